@@ -1,0 +1,1 @@
+//! Shape, force and volume of pneumatic artificial muscles: library and command line.

@@ -1,0 +1,84 @@
+//! The textbook braid: a cylinder up to the fittings (psi = 0 everywhere), with all that the net can carry.
+//!
+//! At a given end distance sigma is known, and radius and tension follow from the net and the radial balance:
+//!
+//! ```text
+//! (1 + e)^2 = sigma^2 + q^2 r^2          A'(r) = h(r, T)          F = N - A
+//! ```
+//!
+//! For inextensible fibres without bladder this is the formula of Schulte, Chou and Hannaford, Tondu and Lopez (S2 eq. 12, S5 eq. 11):
+//! `F = pi r0^2 p (3 (1 - eps)^2/tan^2(alpha0) - 1/sin^2(alpha0))`.
+
+use bulge_numerics::{Dual, Real};
+use std::f64::consts::PI;
+
+use crate::FibreError;
+use crate::net::Net;
+
+/// A cylinder in equilibrium; dimensionless.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cylinder<D> {
+    pub(crate) radius: D,
+    pub(crate) tension: D,
+    pub(crate) force: D,
+    pub(crate) volume: D,
+    pub(crate) iterations: u32,
+}
+
+/// Radius and radial imbalance A' - h at a tension.
+fn balance<D: Real>(net: &Net<D>, sigma: D, tension: D) -> (D, D) {
+    let stretch = net.compliance * tension + 1.0;
+    let radius = (stretch * stretch - sigma * sigma).sqrt() / net.turn;
+    (radius, net.area_r(radius) - net.local(radius, tension).hoop)
+}
+
+/// The cylinder at a contraction.
+///
+/// # Errors
+/// [`FibreError::TooLong`] if inextensible fibres can't reach the end distance, [`FibreError::NotConverged`] otherwise.
+pub(crate) fn solve<D: Real>(net: &Net<D>, contraction: D) -> Result<Cylinder<D>, FibreError> {
+    let sigma = net.cos_rest * (-contraction + 1.0);
+    let inextensible = net.compliance.value() == 0.0;
+    if inextensible && sigma.value() >= 1.0 {
+        let limit = 1.0 - 1.0 / net.cos_rest.value();
+        return Err(FibreError::TooLong { contraction: contraction.value(), limit });
+    }
+    let (tension, iterations) = tension(net, sigma, contraction.value())?;
+    let (radius, _) = balance(net, sigma, tension);
+    let local = net.local(radius, tension);
+    let force = local.force - net.area(radius);
+    let volume = (radius + net.depth).squared() * sigma * net.half_fibre * (2.0 * PI);
+    Ok(Cylinder { radius, tension, force, volume, iterations })
+}
+
+/// The tension of the radial balance: linear for inextensible fibres, else Newton's method in ln T on the values and one step more for the
+/// derivatives.
+fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32), FibreError> {
+    let plain = net.constant();
+    let s = sigma.value();
+    let residual = |ln_t: f64| {
+        let (r, gap) = balance(&plain.lift::<1>(), Dual::from(s), Dual::<1>::variable(ln_t, 0).exp());
+        (r.value(), gap.value(), gap.gradient()[0])
+    };
+    // Fibres must be stretched at least to the end distance, and a little more to have a radius.
+    let least = if net.compliance.value() > 0.0 { ((s - 1.0) / plain.compliance).max(0.0) } else { 0.0 };
+    let mut ln_t = (plain.area_r(1.0) / (plain.turn * plain.turn) + 1.001 * least).ln();
+    let mut last = f64::INFINITY;
+    for iteration in 1..=100 {
+        let (r, gap, slope) = residual(ln_t);
+        let step = gap / slope;
+        if !step.is_finite() || !r.is_finite() {
+            ln_t += 0.5;
+            continue;
+        }
+        last = gap.abs();
+        if step.abs() < 1e-9 {
+            let at = D::from(ln_t.exp());
+            let (_, gap) = balance(net, sigma, at);
+            let tension = at - gap * (ln_t.exp() / slope);
+            return if tension.value() > 0.0 { Ok((tension, iteration)) } else { break };
+        }
+        ln_t -= step.clamp(-1.0, 1.0);
+    }
+    Err(FibreError::NotConverged { contraction, residual: last, iterations: 100 })
+}

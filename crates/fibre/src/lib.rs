@@ -1,0 +1,18 @@
+//! Shape, force and volume of pressurised fibre nets: one meridian equation for pleated and braided pneumatic muscles.
+pub mod closed_form;
+mod cylinder;
+mod draw;
+mod error;
+mod meridian;
+mod net;
+mod outcome;
+mod problem;
+mod shape;
+mod shooting;
+mod solve;
+pub use draw::PleatedNumbers;
+pub use error::FibreError;
+pub use outcome::Approach;
+pub use problem::{BRAID_ANGLE, BRAIDED_SLENDERNESS, PLEATED_SLENDERNESS, Problem, Variable};
+pub use shape::{Convergence, MeridianPoint, Method, Response, Shape};
+pub use solve::{ADIABATIC, AMBIENT_PRESSURE, Given, Gradient};

@@ -1,0 +1,286 @@
+//! The equilibrium ODE of the meridian, integrated from mid-length to the fitting.
+//!
+//! With the unstretched fibre length S from mid-length as the independent variable, chi = -psi the angle by which the meridian has turned
+//! towards the axis, and N, h, sigma, T_r, h_r from [`Net::local`]:
+//!
+//! ```text
+//! rho' = sigma sin(chi)            rho = r_e - r, the distance from the radius at mid-length
+//! d'   = cos(alpha0) - sigma cos(chi)     shortening of the axial distance against rest
+//! chi' = sigma k                   carried as (sin chi, cos chi)
+//! k'   = -(sigma sin(chi)/N) (A'' - h_r cos(chi) - 2 h k)          k = (A' - h cos(chi))/N, the curvature of the meridian
+//! T'   = -T_r sigma sin(chi)
+//! V'   = pi (r + depth)^2 sigma cos(chi)
+//! ```
+//!
+//! It is the second-order balance, regular at mid-length, no square root of a difference. Carrying the curvature k as a state, although r and T
+//! determine it, is what makes long braids easy: at mid-length they lie within exp(-50) of a saddle (the cylinder), where k from
+//! its definition is pure rounding; k and sin(chi) as states keep their *relative* accuracy however small they are. The first integral
+//! `N cos(chi) = F + A(r)` is not used by the integration and so measures its error.
+
+use bulge_numerics::dop853::{self, Dop853};
+use bulge_numerics::Real;
+use std::f64::consts::PI;
+
+use crate::net::Net;
+
+/// Indices of the state.
+pub(crate) const RHO: usize = 0;
+pub(crate) const SHORTENING: usize = 1;
+pub(crate) const SIN: usize = 2;
+pub(crate) const COS: usize = 3;
+pub(crate) const CURVATURE: usize = 4;
+pub(crate) const TENSION: usize = 5;
+pub(crate) const VOLUME: usize = 6;
+const STATES: usize = 7;
+
+/// Steps after which an integration is given up: a braid of l0/r0 = 100 and 50 degrees takes about 300.
+const MAX_STEPS: u32 = 4000;
+
+/// Part of the way that one crossing step may cover: rho as the independent variable sees the square root at mid-length, and the step's
+/// error is about (this)^9.
+const CROSSING: f64 = 0.04;
+
+pub(crate) type State<D> = [D; STATES];
+
+/// A meridian from mid-length to the fitting.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Trajectory<D> {
+    /// Unstretched fibre length from mid-length to the point where the radius is that of the fitting.
+    pub(crate) half_fibre: D,
+    /// State there.
+    pub(crate) end: State<D>,
+    /// Axial force F = N - A at mid-length.
+    pub(crate) force: D,
+    /// Tension at mid-length.
+    pub(crate) mid_tension: D,
+    pub(crate) steps: u32,
+    pub(crate) evaluations: u32,
+    /// |N cos(chi) - A - F| at the fitting, relative to N at mid-length.
+    pub(crate) first_integral: f64,
+}
+
+/// A net with the radius at mid-length fixed: the right-hand side of the ODE.
+struct Flow<'a, D> {
+    net: &'a Net<D>,
+    mid_radius: D,
+}
+
+impl<D: Real> Flow<'_, D> {
+    fn slope(&self, y: &State<D>) -> State<D> {
+        let net = self.net;
+        let (sin, cos, k, tension) = (y[SIN], y[COS], y[CURVATURE], y[TENSION]);
+        let r = self.mid_radius - y[RHO];
+        let l = net.local(r, tension);
+        let out = l.sigma * sin;
+        let turn = l.sigma * k;
+        // cos(alpha0) - sigma cos(chi) without cancellation: (cos^2(alpha0) - sigma^2)/(cos(alpha0) + sigma) + sigma (1 - cos(chi)).
+        let strain = net.compliance * tension;
+        let angle = (net.turn * r).squared() - net.sin2_rest;
+        let shortening = (angle - strain * (strain + 2.0)) / (net.cos_rest + l.sigma) + l.sigma * sin * sin / (cos + 1.0);
+        [
+            out,
+            shortening,
+            cos * turn,
+            -(sin * turn),
+            -(out / l.force) * (net.area_rr() - l.hoop_r * cos - l.hoop * k * 2.0),
+            -(l.tension_r * out),
+            (r + net.depth).squared() * l.sigma * cos * PI,
+        ]
+    }
+
+    /// The same with rho as the independent variable; the place of rho in the state is taken by S.
+    fn slope_by_rho(&self, rho: D, y: &State<D>) -> State<D> {
+        let mut state = *y;
+        state[RHO] = rho;
+        let mut slope = self.slope(&state);
+        let per_rho = D::from(1.0) / slope[RHO];
+        slope[RHO] = D::from(1.0);
+        slope.map(|s| s * per_rho)
+    }
+
+    /// From `y` to the given rho in one or a few steps of equal size (Hénon's way to hit a surface exactly: rho becomes the independent
+    /// variable). Returns the change of S and the new state. For a short way on which rho changes steadily.
+    fn cross_to(&self, y: &State<D>, rho: D, pieces: u32) -> (D, State<D>) {
+        // In this part of the journey the place RHO of the array holds S; rho itself is appended as an eighth component of slope 1.
+        let mut f = |z: &[D; STATES + 1]| {
+            let slope = self.slope_by_rho(z[STATES], &std::array::from_fn(|i| z[i]));
+            std::array::from_fn(|i| if i < STATES { slope[i] } else { D::from(1.0) })
+        };
+        let mut z: [D; STATES + 1] = std::array::from_fn(|i| if i < STATES { y[i] } else { y[RHO] });
+        z[RHO] = D::from(0.0);
+        let h = (rho - y[RHO]) / f64::from(pieces);
+        for _ in 0..pieces {
+            let k1 = f(&z);
+            z = dop853::step(&mut f, &z, &k1, h);
+        }
+        let advance = z[RHO];
+        z[RHO] = rho;
+        (advance, std::array::from_fn(|i| z[i]))
+    }
+
+    /// Fibre length to the target rho by the local parabola, if it leads there.
+    fn distance_to(&self, y: &State<D>, slope: &State<D>, target: f64) -> Option<f64> {
+        let sign = target.signum();
+        let rest = (target - y[RHO].value()) * sign;
+        let speed = slope[RHO].value() * sign;
+        let sigma = self.net.sigma(self.mid_radius - y[RHO], y[TENSION]).value();
+        let push = sigma * slope[SIN].value() * sign;
+        let h = 2.0 * rest / (speed + (speed * speed + 2.0 * push * rest).sqrt());
+        (h.is_finite() && h > 0.0).then_some(h)
+    }
+}
+
+/// Why a trajectory does not exist.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct NoTrajectory;
+
+/// Start of a trajectory: the state at mid-length, where the radius is `end_radius + bulge` and the meridian has the curvature `curvature`.
+fn start<D: Real>(net: &Net<D>, bulge: D, curvature: D) -> Result<(State<D>, D, D), NoTrajectory> {
+    let mid_radius = net.end_radius + bulge;
+    if mid_radius.value() <= 0.0 {
+        return Err(NoTrajectory);
+    }
+    let tension = net.tension_at_equator(mid_radius, curvature).ok_or(NoTrajectory)?;
+    let zero = D::from(0.0);
+    let state = [zero, zero, zero, D::from(1.0), curvature, tension, zero];
+    Ok((state, mid_radius, tension))
+}
+
+/// Integrates from mid-length until the radius is that of the fitting.
+///
+/// `bulge` = r_mid - r_fitting and `curvature` at mid-length have the same sign (positive: bulge, negative: waist) and are not zero.
+pub(crate) fn trajectory<D: Real>(
+    net: &Net<D>,
+    bulge: D,
+    curvature: D,
+    tolerance: f64,
+) -> Result<Trajectory<D>, NoTrajectory> {
+    let (mut y, mid_radius, mid_tension) = start(net, bulge, curvature)?;
+    let flow = Flow { net, mid_radius };
+    let mut f = |y: &State<D>| flow.slope(y);
+    let mut slope = f(&y);
+    let mid = net.local(mid_radius, mid_tension);
+    let force = mid.force - net.area(mid_radius);
+    let sign = bulge.value().signum();
+    let size = bulge.value().abs();
+    // The kink of the cloth's energy, when the meridian crosses it.
+    let mut kink = net
+        .cloth
+        .map(|cloth| mid_radius - cloth.radius)
+        .filter(|rho| rho.value() * sign > 0.0 && rho.value() * sign < size);
+    let parabola = (2.0 * size / (curvature.value().abs())).sqrt() / mid.sigma.value();
+    let mut run = Dop853::new((0.5 * parabola).min(1.0 + 0.1 * net.half_fibre.value()), tolerance);
+    let floor = shortening_floor(net, size, parabola);
+    let mut fibre = D::from(0.0);
+    let far = 10.0 * net.half_fibre.value();
+    loop {
+        let target = kink.unwrap_or(bulge);
+        let limit = D::from(flow.distance_to(&y, &slope, target.value()).map_or(far, |h| h.min(far)));
+        let h = run
+            .advance(&mut f, |a, b| scale(a, b, mid_radius.value(), floor), &mut y, &mut slope, limit)
+            .map_err(|_| NoTrajectory)?;
+        fibre += h;
+        let remaining = (target.value() - y[RHO].value()) * sign;
+        // The last step aims at the target with a Taylor estimate; a remainder of a few per cent is then crossed in rho.
+        let part = remaining / y[RHO].value().abs();
+        if part < CROSSING {
+            let pieces = (part.abs() / CROSSING).ceil().clamp(1.0, 100.0) as u32;
+            let (more, state) = flow.cross_to(&y, target, pieces);
+            fibre += more;
+            y = state;
+            run.evaluations += 12 * pieces;
+            slope = f(&y);
+            if kink.take().is_none() {
+                break;
+            }
+        }
+        if run.accepted > MAX_STEPS || y[COS].value() < -0.999 {
+            return Err(NoTrajectory);
+        }
+    }
+    let end = net.local(net.end_radius, y[TENSION]);
+    let integral = end.force * y[COS] - net.area(net.end_radius) - force;
+    let first_integral = (integral.value() / mid.force.value()).abs();
+    if !first_integral.is_finite() {
+        return Err(NoTrajectory);
+    }
+    Ok(Trajectory {
+        half_fibre: fibre,
+        end: y,
+        force,
+        mid_tension,
+        steps: run.accepted,
+        evaluations: run.evaluations,
+        first_integral,
+    })
+}
+
+/// A point of the meridian, from mid-length outwards; dimensionless.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Station {
+    /// Unstretched fibre length from mid-length.
+    pub(crate) fibre: f64,
+    /// Axial distance from mid-length.
+    pub(crate) x: f64,
+    pub(crate) r: f64,
+    /// Angle by which the meridian has turned towards the axis.
+    pub(crate) chi: f64,
+    pub(crate) tension: f64,
+}
+
+/// The meridian at `pieces + 1` points, equally spaced in fibre length, from mid-length to the fitting at `half_fibre`; and the largest departure
+/// from the first integral over all of them, relative to N at mid-length.
+pub(crate) fn stations(
+    net: &Net<f64>,
+    [bulge, curvature]: [f64; 2],
+    half_fibre: f64,
+    tolerance: f64,
+    pieces: usize,
+) -> Result<(Vec<Station>, f64), NoTrajectory> {
+    let (mut y, mid_radius, tension) = start(net, bulge, curvature)?;
+    let flow = Flow { net, mid_radius };
+    let mut f = |y: &State<f64>| flow.slope(y);
+    let mut slope = f(&y);
+    let mid_force = net.local(mid_radius, tension).force;
+    let force = mid_force - net.area(mid_radius);
+    let floor = shortening_floor(net, bulge.abs(), half_fibre);
+    let mut run = Dop853::new(half_fibre / pieces as f64, tolerance);
+    let mut departure: f64 = 0.0;
+    let mut found = Vec::with_capacity(pieces + 1);
+    let mut fibre = 0.0;
+    for i in 0..=pieces {
+        let target = half_fibre * i as f64 / pieces as f64;
+        while target - fibre > 1e-13 * half_fibre {
+            fibre += run
+                .advance(&mut f, |a, b| scale(a, b, mid_radius, floor), &mut y, &mut slope, target - fibre)
+                .map_err(|_| NoTrajectory)?;
+        }
+        let r = mid_radius - y[RHO];
+        let integral = net.local(r, y[TENSION]).force * y[COS] - net.area(r) - force;
+        departure = departure.max((integral / mid_force).abs());
+        let x = net.cos_rest * fibre - y[SHORTENING];
+        found.push(Station { fibre, x, r, chi: y[SIN].atan2(y[COS]), tension: y[TENSION] });
+    }
+    Ok((found, departure))
+}
+
+/// Size of the shortening below which its relative error does not count: a part of what the bulge itself shortens.
+fn shortening_floor<D: Real>(net: &Net<D>, size: f64, parabola: f64) -> f64 {
+    let slope = size / parabola;
+    (slope * slope).min(1.0) * parabola.min(net.half_fibre.value()) * 1e-2
+}
+
+/// The sizes against which errors count. Curvature and slope count against each other, since both vanish together near a saddle.
+fn scale<D: Real>(old: &State<D>, new: &State<D>, radius: f64, floor: f64) -> [f64; STATES] {
+    let largest = |i: usize| old[i].value().abs().max(new[i].value().abs());
+    let angle = largest(SIN) + largest(CURVATURE) * radius;
+    [
+        largest(RHO) + 1e-3 * radius.min(angle * radius),
+        largest(SHORTENING) + floor,
+        angle,
+        1.0,
+        angle / radius,
+        largest(TENSION),
+        largest(VOLUME) + radius * radius * radius,
+    ]
+}

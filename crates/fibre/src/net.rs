@@ -1,0 +1,371 @@
+//! The fibre net: what every muscle is made of, as functions of the radius r and the fibre tension t.
+//!
+//! A net of n fibres in two opposite families, pinned where they cross. One unit of *unstretched fibre length* S spans the meridional length
+//! sigma and turns by q = sin(alpha0)/r0 about the axis, so a fibre with strain e obeys
+//!
+//! ```text
+//! (1 + e)^2 = sigma^2 + q^2 r^2          (1 + e) sin(theta) = q r          (1 + e) cos(theta) = sigma
+//! ```
+//!
+//! Its stored energy per unit of S, with T the tension of all fibres and 1/EA = c (c = 0: inextensible, e is a constraint and T its multiplier):
+//!
+//! ```text
+//! w(r, sigma) = c T^2/2  +  B W(sigma/cos(alpha0), r/r0)  +  sigma u(r)                fibres + bladder + cloth
+//! ```
+//!
+//! The equilibrium of -p A(r) dx and w dS then needs only these local quantities:
+//!
+//! ```text
+//! N = dw/dsigma    meridional force            h = (1/sigma) dw/dr    hoop term;  dN/dr = h along the meridian
+//! k = (A' - h cos(psi))/N                      curvature of the meridian
+//! ```
+//!
+//! `theta(r)`, `A(r)` and `u(r)` of the theory are `q`, [`Net::area`] and [`Cloth`]; the pleated muscle is q = 0.
+//! Everything is dimensionless: lengths in the reference radius R, forces in p R^2.
+
+use bulge_numerics::{Dual, Real};
+use std::f64::consts::PI;
+
+/// Rubber bladder that follows the net point by point: Mooney-Rivlin W = c10 (I1 - 3) + c01 (I2 - 3), incompressible, plane stress,
+/// stretches l1 = sigma/cos(alpha0) along the meridian and l2 = r/r0 around it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bladder<D> {
+    /// 2 pi r0 t cos(alpha0) c10/(p R^2): energy scale per unstretched fibre length.
+    pub(crate) c10: D,
+    /// The same for c01.
+    pub(crate) c01: D,
+}
+
+/// Cloth that stops unfolding at r_u: u(r) = K (2 pi (r - r_u))^2/(2 * 2 pi r_u) beyond it, per meridian length.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cloth<D> {
+    /// Hoop stiffness K/(p R).
+    pub(crate) stiffness: D,
+    /// Unfolded radius r_u/R.
+    pub(crate) radius: D,
+}
+
+/// A dimensionless fibre net under unit pressure between rigid fittings.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Net<D> {
+    /// Radius at the fittings.
+    pub(crate) end_radius: D,
+    /// Unstretched fibre length from a fitting to mid-length.
+    pub(crate) half_fibre: D,
+    /// Cosine of the rest angle: axial length per fibre length at rest.
+    pub(crate) cos_rest: D,
+    /// sin(alpha0)^2, the square of q at the rest radius.
+    pub(crate) sin2_rest: D,
+    /// Turn per unstretched fibre length, q.
+    pub(crate) turn: D,
+    /// 1/(n EA) in units of 1/(p R^2).
+    pub(crate) compliance: D,
+    /// Area of the cross-section over pi (r + depth)^2: (n/2 pi) sin(2 pi/n) for a polygon, 1 for a circle.
+    pub(crate) area_factor: D,
+    /// Pleat depth: the pressure acts out to the crests at r + depth.
+    pub(crate) depth: D,
+    /// Bladder, if any.
+    pub(crate) bladder: Option<Bladder<D>>,
+    /// Cloth with limited unfolding, if any.
+    pub(crate) cloth: Option<Cloth<D>>,
+}
+
+/// Derivatives of the stored energy of bladder and cloth: w_1 = d/dsigma, w_2 = d/dr.
+struct Wall<D> {
+    w: D,
+    w_1: D,
+    w_2: D,
+    w_11: D,
+    w_12: D,
+    w_22: D,
+}
+
+/// The net at one radius with one tension.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Local<D> {
+    /// Meridional length per unstretched fibre length.
+    pub(crate) sigma: D,
+    /// Meridional force N.
+    pub(crate) force: D,
+    /// Hoop term h = dN/dr along the meridian.
+    pub(crate) hoop: D,
+    /// dh/dr along the meridian.
+    pub(crate) hoop_r: D,
+    /// dT/dr along the meridian.
+    pub(crate) tension_r: D,
+    /// dN/dT and dh/dT at fixed r.
+    pub(crate) force_t: D,
+    pub(crate) hoop_t: D,
+}
+
+impl<D: Real> Net<D> {
+    /// Area enclosed by a cross-section, A(r).
+    pub(crate) fn area(&self, r: D) -> D {
+        self.area_factor * (r + self.depth).squared() * PI
+    }
+
+    /// A'(r).
+    pub(crate) fn area_r(&self, r: D) -> D {
+        self.area_factor * (r + self.depth) * (2.0 * PI)
+    }
+
+    /// A''(r).
+    pub(crate) fn area_rr(&self) -> D {
+        self.area_factor * (2.0 * PI)
+    }
+
+    fn wall(&self, sigma: D, r: D) -> Wall<D> {
+        let zero = D::from(0.0);
+        let mut wall = Wall { w: zero, w_1: zero, w_2: zero, w_11: zero, w_12: zero, w_22: zero };
+        if let Some(bladder) = &self.bladder {
+            bladder.add(&mut wall, sigma, r, self.cos_rest);
+        }
+        if let Some(cloth) = &self.cloth {
+            cloth.add(&mut wall, sigma, r);
+        }
+        wall
+    }
+
+    /// Meridional length per fibre length; NaN beyond the radius where the fibres would lie along the parallels.
+    pub(crate) fn sigma(&self, r: D, tension: D) -> D {
+        ((self.compliance * tension + 1.0).squared() - (self.turn * r).squared()).sqrt()
+    }
+
+    /// Straight fibres and nothing else: the general formulas reduce to N = T, h = 0.
+    fn is_plain(&self) -> bool {
+        self.turn.value() == 0.0 && self.bladder.is_none() && self.cloth.is_none()
+    }
+
+    /// All local quantities at radius `r` and tension `tension` of all fibres.
+    ///
+    /// ```text
+    /// N   = T sigma/(1 + e) + w_1                        h sigma = T q^2 r/(1 + e) + w_2
+    /// T_r: sigma T_r/(1+e)^2 + (T/(1+e) + w_11) sigma_r + w_12 = h,       sigma sigma_r = (1 + e) c T_r - q^2 r
+    /// ```
+    pub(crate) fn local(&self, r: D, tension: D) -> Local<D> {
+        let c = self.compliance;
+        let stretch = c * tension + 1.0;
+        if self.is_plain() {
+            let zero = D::from(0.0);
+            let force_t = D::from(1.0);
+            return Local { sigma: stretch, force: tension, hoop: zero, hoop_r: zero, tension_r: zero, force_t, hoop_t: zero };
+        }
+        let q2 = self.turn * self.turn;
+        let q2r = q2 * r;
+        let sigma = (stretch * stretch - q2r * r).sqrt();
+        let per_sigma = D::from(1.0) / sigma;
+        let per_stretch = D::from(1.0) / stretch;
+        let w = self.wall(sigma, r);
+        let pull = tension * per_stretch;
+        let force = pull * sigma + w.w_1;
+        let hoop = (pull * q2r + w.w_2) * per_sigma;
+        let turn_term = q2r * per_sigma;
+        let force_t = sigma * per_stretch * per_stretch + (pull + w.w_11) * stretch * c * per_sigma;
+        let tension_r = (hoop - w.w_12 + turn_term * (pull + w.w_11)) / force_t;
+        let sigma_r = stretch * c * tension_r * per_sigma - turn_term;
+        let pull_r = tension_r * per_stretch * per_stretch;
+        let hoop_r = (q2 * (pull + r * pull_r) + w.w_22 + w.w_12 * sigma_r - hoop * sigma_r) * per_sigma;
+        let sigma_t = stretch * c * per_sigma;
+        let hoop_t = (q2r * per_stretch * per_stretch + w.w_12 * sigma_t - hoop * sigma_t) * per_sigma;
+        Local { sigma, force, hoop, hoop_r, tension_r, force_t, hoop_t }
+    }
+
+    /// The constant of the motion conjugate to S: H = sigma N - w, the same all along a meridian.
+    pub(crate) fn hamiltonian(&self, r: D, tension: D) -> D {
+        let local = self.local(r, tension);
+        let stored = self.compliance * tension.squared() * 0.5 + self.wall(local.sigma, r).w;
+        local.sigma * local.force - stored
+    }
+
+    /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis at radius `r`: A' - h = k N.
+    ///
+    /// Linear in T for inextensible fibres; else Newton's method on the value and one more step for the derivatives.
+    /// `None` if there is none with a positive tension, or the fibres can't reach that radius.
+    pub(crate) fn tension_at_equator(&self, r: D, curvature: D) -> Option<D> {
+        let gap = |tension: D| {
+            let local = self.local(r, tension);
+            let gap = self.area_r(r) - local.hoop - curvature * local.force;
+            (gap, local.hoop_t + curvature * local.force_t)
+        };
+        let (at_zero, slope) = gap(D::from(0.0));
+        let mut tension = at_zero / slope;
+        if self.compliance.value() != 0.0 {
+            // Stretching makes the true tension smaller than the linear estimate by up to a power of the stretch.
+            tension = tension / (tension.value().abs() * self.compliance.value() + 1.0);
+            for _ in 0..60 {
+                let (residual, slope) = gap(tension);
+                let step = residual / slope;
+                let damped = step.value().abs() > 0.5 * tension.value().abs();
+                tension += if damped { tension * 0.5_f64.copysign(step.value()) } else { step };
+                if step.value().abs() <= 1e-9 * tension.value().abs() {
+                    // The quadratic step from here also settles the derivatives.
+                    let (residual, slope) = gap(tension);
+                    tension += residual / slope;
+                    break;
+                }
+            }
+        }
+        (tension.value() > 0.0 && tension.value().is_finite()).then_some(tension)
+    }
+}
+
+impl<D: Real> Net<D> {
+    /// The values without derivatives.
+    pub(crate) fn constant(&self) -> Net<f64> {
+        Net {
+            end_radius: self.end_radius.value(),
+            half_fibre: self.half_fibre.value(),
+            cos_rest: self.cos_rest.value(),
+            sin2_rest: self.sin2_rest.value(),
+            turn: self.turn.value(),
+            compliance: self.compliance.value(),
+            area_factor: self.area_factor.value(),
+            depth: self.depth.value(),
+            bladder: self.bladder.map(|b| Bladder { c10: b.c10.value(), c01: b.c01.value() }),
+            cloth: self.cloth.map(|c| Cloth { stiffness: c.stiffness.value(), radius: c.radius.value() }),
+        }
+    }
+}
+
+impl Net<f64> {
+    /// Straight inextensible fibres, circular sections, of half-length 1.
+    pub(crate) const fn plain() -> Self {
+        Self {
+            end_radius: 1.0,
+            half_fibre: 1.0,
+            cos_rest: 1.0,
+            sin2_rest: 0.0,
+            turn: 0.0,
+            compliance: 0.0,
+            area_factor: 1.0,
+            depth: 0.0,
+            bladder: None,
+            cloth: None,
+        }
+    }
+
+    /// The same net for numbers with derivatives, as a constant.
+    pub(crate) fn lift<const N: usize>(&self) -> Net<Dual<N>> {
+        self.lift_to()
+    }
+
+    /// The same net for another scalar.
+    pub(crate) fn lift_to<D: Real>(&self) -> Net<D> {
+        Net {
+            end_radius: self.end_radius.into(),
+            half_fibre: self.half_fibre.into(),
+            cos_rest: self.cos_rest.into(),
+            sin2_rest: self.sin2_rest.into(),
+            turn: self.turn.into(),
+            compliance: self.compliance.into(),
+            area_factor: self.area_factor.into(),
+            depth: self.depth.into(),
+            bladder: self.bladder.map(|b| Bladder { c10: b.c10.into(), c01: b.c01.into() }),
+            cloth: self.cloth.map(|c| Cloth { stiffness: c.stiffness.into(), radius: c.radius.into() }),
+        }
+    }
+}
+
+impl<D: Real> Bladder<D> {
+    /// ```text
+    /// I1 - 3 = l1^2 + l2^2 + 1/(l1 l2)^2 - 3        I2 - 3 = 1/l1^2 + 1/l2^2 + (l1 l2)^2 - 3
+    /// ```
+    fn add(&self, wall: &mut Wall<D>, sigma: D, r: D, cos_rest: D) {
+        let (l1, l2) = (sigma / cos_rest, r);
+        let (i1, i2) = (D::from(1.0) / l1, D::from(1.0) / l2);
+        let (a, b) = (l1 * l1, l2 * l2);
+        let (ia, ib) = (i1 * i1, i2 * i2);
+        let iab = ia * ib;
+        let sum = |x: D, y: D| self.c10 * x + self.c01 * y;
+        wall.w += sum(a + b + iab - 3.0, ia + ib + a * b - 3.0);
+        wall.w_1 += sum(l1 - iab * i1, l1 * b - ia * i1) * 2.0 / cos_rest;
+        wall.w_2 += sum(l2 - iab * i2, l2 * a - ib * i2) * 2.0;
+        wall.w_11 += sum(iab * ia * 3.0 + 1.0, ia * ia * 3.0 + b) * 2.0 / (cos_rest * cos_rest);
+        wall.w_22 += sum(iab * ib * 3.0 + 1.0, ib * ib * 3.0 + a) * 2.0;
+        wall.w_12 += sum(iab * i1 * i2, l1 * l2) * 4.0 / cos_rest;
+    }
+}
+
+impl<D: Real> Cloth<D> {
+    /// sigma u(r) with u = pi K (r - r_u)^2/r_u for r > r_u.
+    fn add(&self, wall: &mut Wall<D>, sigma: D, r: D) {
+        let excess = r - self.radius;
+        if excess.value() > 0.0 {
+            let scale = self.stiffness * PI / self.radius;
+            let u = scale * excess * excess;
+            let u_r = scale * excess * 2.0;
+            wall.w += sigma * u;
+            wall.w_1 += u;
+            wall.w_2 += sigma * u_r;
+            wall.w_12 += u_r;
+            wall.w_22 += sigma * scale * 2.0;
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// An elastic net with bladder and cloth, every term alive.
+    pub(crate) fn rich<D: Real>() -> Net<D> {
+        Net {
+            end_radius: D::from(1.0),
+            half_fibre: D::from(5.0),
+            cos_rest: D::from(0.9),
+            sin2_rest: D::from(0.19),
+            turn: D::from(0.19_f64.sqrt()),
+            compliance: D::from(0.004),
+            area_factor: D::from(0.97),
+            depth: D::from(0.1),
+            bladder: Some(Bladder { c10: D::from(0.3), c01: D::from(0.1) }),
+            cloth: Some(Cloth { stiffness: D::from(0.7), radius: D::from(1.2) }),
+        }
+    }
+
+    /// Stored energy as a function of (sigma, r) with the fibre strain from the geometry: the definition, without T.
+    fn energy(net: &Net<Dual<2>>, sigma: Dual<2>, r: Dual<2>) -> Dual<2> {
+        let strain = (sigma * sigma + (net.turn * r).squared()).sqrt() - 1.0;
+        strain * strain / (net.compliance * 2.0) + net.wall(sigma, r).w
+    }
+
+    #[test]
+    fn force_and_hoop_are_derivatives_of_the_stored_energy() {
+        let net: Net<f64> = rich();
+        for r in [0.9, 1.1, 1.3, 1.6] {
+            let tension = 9.0;
+            let sigma = net.sigma(r, tension);
+            let w = energy(&rich(), Dual::variable(sigma, 0), Dual::variable(r, 1));
+            let local = net.local(r, tension);
+            assert!((local.force / w.gradient()[0] - 1.0).abs() < 1e-12);
+            assert!((local.hoop * sigma / w.gradient()[1] - 1.0).abs() < 1e-12);
+        }
+    }
+
+    /// Along the meridian H is constant, dN/dr = h, and the derivatives that the ODE uses are those of N, h and T.
+    #[test]
+    fn derivatives_along_the_meridian() {
+        let net: Net<f64> = rich();
+        let (r, tension, h) = (1.35, 9.0, 1e-5);
+        let local = net.local(r, tension);
+        let (up, down) = (tension + h * local.tension_r, tension - h * local.tension_r);
+        let difference = |f: &dyn Fn(f64, f64) -> f64| (f(r + h, up) - f(r - h, down)) / (2.0 * h);
+        // T(r) is known to first order only, so these differences are exact to h^2 |T_rr| ~ 1e-9.
+        assert!(difference(&|r, t| net.hamiltonian(r, t)).abs() < 1e-7);
+        assert!((difference(&|r, t| net.local(r, t).force) - local.hoop).abs() < 1e-7);
+        assert!((difference(&|r, t| net.local(r, t).hoop) - local.hoop_r).abs() < 1e-7);
+        let by_t = |f: &dyn Fn(f64) -> f64| (f(tension + h) - f(tension - h)) / (2.0 * h);
+        assert!((by_t(&|t| net.local(r, t).force) - local.force_t).abs() < 1e-8);
+        assert!((by_t(&|t| net.local(r, t).hoop) - local.hoop_t).abs() < 1e-8);
+    }
+
+    #[test]
+    fn tension_at_equator_meets_the_curvature() {
+        let net: Net<f64> = rich();
+        for curvature in [-0.05, 1e-12, 0.3, 1.0] {
+            let tension = net.tension_at_equator(1.4, curvature).unwrap();
+            let local = net.local(1.4, tension);
+            assert!((net.area_r(1.4) - local.hoop - curvature * local.force).abs() < 1e-12 * local.force);
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! One equilibrium at a given contraction by whichever method applies, dimensionless, with total derivatives.
+
+use bulge_numerics::{Dual, Real};
+
+use crate::closed_form::{self, ClosedForm, Graded};
+use crate::cylinder;
+use crate::meridian::{COS, SIN, TENSION};
+use crate::net::Net;
+use crate::problem::{Problem, Variable};
+use crate::shape::{Convergence, Method};
+use crate::shooting::{self, Total, Unknowns};
+use crate::FibreError;
+
+/// Which method computes an equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Approach {
+    /// The closed form where there is one, else shooting.
+    #[default]
+    Auto,
+    /// The closed form, or an error.
+    ClosedForm,
+    /// Shooting on the equilibrium ODE.
+    Shooting,
+}
+
+/// What else is needed to draw the meridian.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Solution {
+    ClosedForm(ClosedForm),
+    Shooting(Unknowns),
+    Cylinder { radius: f64, tension: f64 },
+}
+
+/// An equilibrium; dimensionless.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Outcome<const N: usize> {
+    pub(crate) force: Total<N>,
+    /// Whole volume with circular sections.
+    pub(crate) volume: Total<N>,
+    pub(crate) mid_radius: f64,
+    /// Largest tension of all fibres.
+    pub(crate) tension: f64,
+    /// Angle at the left fitting, positive where the muscle widens.
+    pub(crate) end_slope: f64,
+    pub(crate) method: Method,
+    pub(crate) convergence: Convergence,
+    pub(crate) solution: Solution,
+}
+
+impl Problem {
+    /// The method that `approach` means for this muscle.
+    pub(crate) fn method(&self, approach: Approach) -> Result<Method, FibreError> {
+        if self.is_cylinder() {
+            return match approach {
+                Approach::Shooting => Err(FibreError::NothingToShoot),
+                _ => Ok(Method::ClosedForm),
+            };
+        }
+        let obstacle = self.obstacle_to_closed_form();
+        match (approach, obstacle) {
+            (Approach::Shooting, _) | (Approach::Auto, Some(_)) => Ok(Method::Shooting),
+            (Approach::ClosedForm, Some(why)) => Err(FibreError::NoClosedForm { why }),
+            (_, None) => Ok(Method::ClosedForm),
+        }
+    }
+
+    fn obstacle_to_closed_form(&self) -> Option<&'static str> {
+        let net = &self.net;
+        if !self.muscle.is_pleated() {
+            Some("its fibres run at an angle")
+        } else if net.turn != 0.0 {
+            Some("its fibres are misaligned")
+        } else if net.cloth.is_some() {
+            Some("its cloth stops unfolding")
+        } else if net.depth != 0.0 {
+            Some("its pleats have a depth")
+        } else {
+            None
+        }
+    }
+
+    /// The equilibrium at a contraction. `value` gives the variables, with their derivatives in the places 2 .. of the dual numbers;
+    /// `from` is a start for the shooting, such as a neighbour's solution.
+    pub(crate) fn outcome<const N: usize>(
+        &self,
+        method: Method,
+        contraction: f64,
+        value: impl Fn(Variable) -> Dual<N>,
+        from: Option<Unknowns>,
+    ) -> Result<Outcome<N>, FibreError> {
+        if !contraction.is_finite() {
+            return Err(FibreError::NotFinite { what: "contraction", value: contraction });
+        }
+        if self.net.turn == 0.0 && self.net.compliance == 0.0 && contraction <= 0.0 {
+            return Err(FibreError::TooLong { contraction, limit: 0.0 });
+        }
+        let net = self.net_of(value);
+        match method {
+            _ if self.is_cylinder() => by_cylinder(&net, contraction),
+            Method::ClosedForm => by_closed_form(&net, contraction),
+            Method::Shooting => by_shooting(&self.net, &net, contraction, from),
+        }
+    }
+}
+
+fn by_cylinder<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<Outcome<N>, FibreError> {
+    // The contraction takes place 0, which no variable uses.
+    let found = cylinder::solve(net, Dual::variable(contraction, 0))?;
+    let total = |d: Dual<N>| {
+        let mut by_parameter = *d.gradient();
+        let by_contraction = std::mem::take(&mut by_parameter[0]);
+        Total { value: d.value(), by_contraction, by_parameter }
+    };
+    let (radius, tension) = (found.radius.value(), found.tension.value());
+    let local = net.local(found.radius, found.tension);
+    let residual = ((net.area_r(found.radius) - local.hoop) / net.area_r(found.radius)).value().abs();
+    Ok(Outcome {
+        force: total(found.force),
+        volume: total(found.volume),
+        mid_radius: radius,
+        tension,
+        end_slope: 0.0,
+        method: Method::ClosedForm,
+        convergence: Convergence {
+            iterations: found.iterations,
+            evaluations: found.iterations,
+            steps: 0,
+            residual,
+            first_integral: 0.0,
+        },
+        solution: Solution::Cylinder { radius, tension },
+    })
+}
+
+fn by_closed_form<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<Outcome<N>, FibreError> {
+    // kappa = p sin(2 pi/n) R^2/(4 EA) of one fibre = (area factor) (2 pi)/4 * p R^2/(n EA).
+    let kappa = net.area_factor * net.compliance * std::f64::consts::FRAC_PI_2;
+    let slenderness = net.half_fibre * 2.0;
+    let found = closed_form::solve(contraction, slenderness.value(), kappa.value())?;
+    // In units of p R^2 and R^3: F = a L^2 f, V = L^3 v.
+    let carry = |g: &Graded| {
+        (slenderness - slenderness.value()) * g.by_slenderness + (kappa - kappa.value()) * g.by_compliance + g.value
+    };
+    let force_scale = net.area_factor * slenderness.squared();
+    let volume_scale = slenderness.squared() * slenderness;
+    let total = |scale: Dual<N>, g: &Graded| {
+        let d = scale * carry(g);
+        Total { value: d.value(), by_contraction: scale.value() * g.by_contraction, by_parameter: *d.gradient() }
+    };
+    let a = net.area_factor.value();
+    // N = T = pi a/(2 y^2); N cos(psi) - A - F at the fitting.
+    let tension = std::f64::consts::FRAC_PI_2 * a / (found.y * found.y);
+    let force = total(force_scale, &found.force);
+    let end = found.point(found.phi_r());
+    let integral = tension * end[2].cos() - std::f64::consts::PI * a * end[1] * end[1] - force.value;
+    Ok(Outcome {
+        force,
+        volume: total(volume_scale, &found.volume),
+        mid_radius: found.max_radius(),
+        tension,
+        end_slope: -end[2],
+        method: Method::ClosedForm,
+        convergence: Convergence {
+            iterations: found.iterations,
+            evaluations: found.evaluations,
+            steps: 0,
+            residual: found.residual,
+            first_integral: (integral / tension).abs(),
+        },
+        solution: Solution::ClosedForm(found),
+    })
+}
+
+fn by_shooting<const N: usize>(
+    plain: &Net<f64>,
+    net: &Net<Dual<N>>,
+    contraction: f64,
+    from: Option<Unknowns>,
+) -> Result<Outcome<N>, FibreError> {
+    let (unknowns, effort) = shooting::solve(plain, contraction, from)?;
+    let found = shooting::finish(net, contraction, unknowns)?;
+    let run = &found.trajectory;
+    let volume = Total {
+        value: 2.0 * found.half_volume.value,
+        by_contraction: 2.0 * found.half_volume.by_contraction,
+        by_parameter: found.half_volume.by_parameter.map(|v| 2.0 * v),
+    };
+    Ok(Outcome {
+        force: found.force,
+        volume,
+        mid_radius: found.mid_radius,
+        tension: run.mid_tension.value().max(run.end[TENSION].value()),
+        end_slope: run.end[SIN].value().atan2(run.end[COS].value()),
+        method: Method::Shooting,
+        convergence: Convergence {
+            iterations: effort.iterations + 1,
+            evaluations: effort.evaluations + found.evaluations,
+            steps: run.steps,
+            residual: found.residual,
+            first_integral: run.first_integral,
+        },
+        solution: Solution::Shooting(found.unknowns),
+    })
+}

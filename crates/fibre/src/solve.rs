@@ -1,0 +1,448 @@
+//! The questions: given the pressure and one of contraction, length, force or volume, the rest; the contraction limit; exact derivatives.
+
+use bulge_muscles::{Parameter, Quantity};
+use bulge_numerics::root::{RootError, newton_bracketed};
+use bulge_numerics::{Dual, Real};
+
+use crate::FibreError;
+use crate::outcome::{Approach, Outcome, Solution};
+use crate::problem::{Problem, Variable};
+use crate::shape::{Method, Response};
+use crate::shooting::{self, Unknowns};
+
+/// Ambient pressure for the stiffness at constant gas amount \[Pa\] (standard atmosphere).
+pub const AMBIENT_PRESSURE: f64 = 101_325.0;
+/// Exponent of adiabatic air.
+pub const ADIABATIC: f64 = 1.4;
+
+/// Roots in the contraction are found to this; the last Newton step squares it.
+const ROOT_TOLERANCE: f64 = 1e-9;
+/// Beyond this contraction no muscle pulls (the slender limit is 0.5431, a braid's 1 - 1/sqrt(3)).
+const FAR: f64 = 0.6;
+
+/// What is given besides the pressure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Given {
+    /// Contraction (l0 - l)/l0 \[-\].
+    Contraction(f64),
+    /// Distance between the fittings \[m\].
+    Length(f64),
+    /// Axial force \[N\], pull positive.
+    Force(f64),
+    /// Enclosed volume with circular cross-sections of the fibre radius \[m^3\].
+    Volume(f64),
+}
+
+/// Exact derivatives of force and volume at an equilibrium.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gradient {
+    /// dF/d(contraction) \[N\], dV/d(contraction) \[m^3\].
+    pub by_contraction: [f64; 2],
+    /// dF/da and dV/da for each variable that the muscle has, per SI unit, at constant contraction.
+    pub by_variable: Vec<(Variable, [f64; 2])>,
+}
+
+/// An equilibrium with what is needed to go on from it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Found {
+    pub(crate) response: Response,
+    pub(crate) solution: Solution,
+}
+
+impl Found {
+    /// Start for a neighbour's shooting.
+    fn unknowns(&self) -> Option<Unknowns> {
+        if let Solution::Shooting(unknowns) = self.solution { Some(unknowns) } else { None }
+    }
+}
+
+impl Problem {
+    /// Solves for what is given. A contraction, force or volume beyond the limit at which the force vanishes is an error.
+    ///
+    /// # Errors
+    /// See [`FibreError`]; every variant carries the numbers.
+    pub fn solve(&self, given: Given, approach: Approach) -> Result<Response, FibreError> {
+        self.find(given, approach).map(|found| found.response)
+    }
+
+    /// The equilibrium at a contraction even where the force is negative (the muscle would have to push): for fits and tables
+    /// that must not end at the limit.
+    ///
+    /// # Errors
+    /// See [`FibreError`].
+    pub fn follow(&self, contraction: f64, approach: Approach) -> Result<Response, FibreError> {
+        self.at(self.method(approach)?, contraction, None).map(|found| found.response)
+    }
+
+    /// Responses at many contractions, each started from its neighbour: errors stand where there is no pulling equilibrium.
+    ///
+    /// # Errors
+    /// Only if the approach doesn't fit the muscle.
+    pub fn curve(
+        &self,
+        contractions: &[f64],
+        approach: Approach,
+    ) -> Result<Vec<Result<Response, FibreError>>, FibreError> {
+        let method = self.method(approach)?;
+        let mut limit = None;
+        let mut last = [None, None];
+        let mut solve = |contraction: f64| {
+            let found = self.at(method, contraction, extrapolate(last, contraction));
+            if let Ok(found) = &found {
+                last = [last[1], found.unknowns().map(|unknowns| (contraction, unknowns))];
+            }
+            found
+        };
+        let pulling = |contraction: f64, found: Result<Found, FibreError>, limit: &mut Option<f64>| {
+            let response = found.map(|found| found.response);
+            if response.as_ref().is_ok_and(|response| response.force_n >= 0.0) {
+                return response;
+            }
+            let known = match *limit {
+                Some(known) => known,
+                None => *limit.insert(self.contraction_limit(approach)?),
+            };
+            if contraction > known { Err(FibreError::BeyondLimit { contraction, limit: known }) } else { response }
+        };
+        Ok(contractions.iter().map(|&contraction| pulling(contraction, solve(contraction), &mut limit)).collect())
+    }
+
+    /// The contraction at which the force vanishes.
+    ///
+    /// # Errors
+    /// [`FibreError::NotConverged`].
+    pub fn contraction_limit(&self, approach: Approach) -> Result<f64, FibreError> {
+        let method = self.method(approach)?;
+        let start = self.contraction_start();
+        self.root(method, start, |found| found.response.force_n).map(|found| found.response.contraction)
+    }
+
+    /// Exact derivatives of force and volume with respect to the contraction, the pressure and every parameter of the muscle, by dual
+    /// numbers and the implicit function theorem.
+    ///
+    /// # Errors
+    /// See [`FibreError`].
+    pub fn gradient(&self, contraction: f64, approach: Approach) -> Result<Gradient, FibreError> {
+        const N: usize = 2 + Variable::COUNT;
+        let seeded = |variable: Variable| Dual::<N>::variable(self.value(variable), 2 + variable.index());
+        let outcome = self.outcome(self.method(approach)?, contraction, seeded, None)?;
+        let [force, volume] = self.physical(&outcome, seeded);
+        let by_variable = Variable::all()
+            .filter(|variable| match variable {
+                Variable::Pressure => true,
+                Variable::Parameter(Parameter::FittingRadius) => self.has_own_fitting(),
+                Variable::Parameter(parameter) => self.muscle.get(*parameter).is_some(),
+            })
+            .map(|v| (v, [force.gradient()[2 + v.index()], volume.gradient()[2 + v.index()]]))
+            .collect();
+        Ok(Gradient { by_contraction: [force.gradient()[0], volume.gradient()[0]], by_variable })
+    }
+
+    pub(crate) fn find(&self, given: Given, approach: Approach) -> Result<Found, FibreError> {
+        let method = self.method(approach)?;
+        let l0 = self.muscle.length().si();
+        match given {
+            Given::Contraction(contraction) => self.pulling(method, approach, contraction),
+            Given::Length(length) => {
+                if !(length.is_finite() && length > 0.0) {
+                    return Err(FibreError::NotFinite { what: "length", value: length });
+                }
+                self.pulling(method, approach, (l0 - length) / l0)
+            }
+            Given::Force(force) => self.with_force(method, approach, force),
+            Given::Volume(volume) => self.with_volume(method, approach, volume),
+        }
+    }
+
+    fn pulling(&self, method: Method, approach: Approach, contraction: f64) -> Result<Found, FibreError> {
+        let found = self.at(method, contraction, None);
+        // Near the limit the force is small against p R^2: rounding may make it negative there.
+        let rounding = -1e-9 * self.pressure * self.muscle.radius().si().powi(2);
+        match found {
+            Ok(found) if found.response.force_n >= rounding => Ok(found),
+            Ok(_) => Err(FibreError::BeyondLimit { contraction, limit: self.contraction_limit(approach)? }),
+            Err(error @ FibreError::NotConverged { .. }) => match self.contraction_limit(approach) {
+                Ok(limit) if contraction > limit => Err(FibreError::BeyondLimit { contraction, limit }),
+                _ => match self.longest() {
+                    Some(limit) if contraction < limit => Err(FibreError::TooLong { contraction, limit }),
+                    _ => Err(error),
+                },
+            },
+            Err(error) => Err(error),
+        }
+    }
+
+    fn with_force(&self, method: Method, approach: Approach, force: f64) -> Result<Found, FibreError> {
+        if !force.is_finite() {
+            return Err(FibreError::NotFinite { what: "force", value: force });
+        }
+        if force < 0.0 {
+            return Err(FibreError::Pushes { force_n: force, limit: self.contraction_limit(approach)? });
+        }
+        self.root(method, self.contraction_start(), |found| found.response.force_n - force).map_err(|error| {
+            match self.strongest(method) {
+                Some(most) if most.force_n < force => FibreError::ForceTooLarge {
+                    force_n: force,
+                    largest_n: most.force_n,
+                    contraction: most.contraction,
+                },
+                _ => error,
+            }
+        })
+    }
+
+    fn with_volume(&self, method: Method, approach: Approach, volume: f64) -> Result<Found, FibreError> {
+        if !(volume.is_finite() && volume > 0.0) {
+            return Err(FibreError::NotFinite { what: "volume", value: volume });
+        }
+        let limit = self.contraction_limit(approach)?;
+        let fullest = self.at(method, limit, None)?.response.volume_m3;
+        let low = if self.net.turn == 0.0 && self.net.compliance == 0.0 {
+            std::f64::consts::PI * self.muscle.radius().si().powi(2) * self.muscle.length().si()
+        } else {
+            self.strongest(method).map_or(0.0, |most| most.volume_m3)
+        };
+        let out_of_reach =
+            || FibreError::VolumeOutOfReach { volume_m3: volume, low_m3: low, high_m3: fullest };
+        if volume > fullest || volume <= low {
+            return Err(out_of_reach());
+        }
+        self.root(method, 0.5 * limit, |found| volume - found.response.volume_m3).map_err(|_| out_of_reach())
+    }
+
+    /// A contraction inside the range of this muscle to start a search from.
+    fn contraction_start(&self) -> f64 {
+        let net = &self.net;
+        let ends = (net.half_fibre / (1.0 + net.half_fibre)).powi(2);
+        0.12 * ends
+    }
+
+    /// The contraction at which `excess`, which falls with the contraction, is zero. Its derivative is taken from the response.
+    fn root(&self, method: Method, start: f64, excess: impl Fn(&Found) -> f64) -> Result<Found, FibreError> {
+        let l0 = self.muscle.length().si();
+        let mut near: Option<(f64, Unknowns)> = None;
+        let mut evaluate = |contraction: f64| {
+            let found = self.at(method, contraction, near.map(|(_, unknowns)| unknowns))?;
+            near = found.unknowns().map(|unknowns| (contraction, unknowns));
+            Ok::<_, FibreError>(found)
+        };
+        let (mut low, first) = self.bracket_below(&mut evaluate, start, &excess)?;
+        // An equilibrium that doesn't exist any more lies beyond the root: walk back towards the last one that did.
+        let mut high = FAR;
+        let mut x = first;
+        loop {
+            let mut reached = low;
+            let value = |x: f64| {
+                let found = evaluate(x)?;
+                let y = excess(&found);
+                // dF/d(eps) = -l0 dF/dl; for the volume the same with the opposite sign of the excess.
+                let step = 1e-6 * x.abs().max(1e-3);
+                let slope = self.slope_of(&found, y, &excess, step, l0);
+                if y > 0.0 {
+                    reached = reached.max(x);
+                }
+                Ok((y, slope))
+            };
+            match newton_bracketed(value, low, high, x, ROOT_TOLERANCE) {
+                Ok(root) => return evaluate(root),
+                Err(RootError::Function(error)) => {
+                    // The failing point is somewhere above the last good one: halve the bracket from above.
+                    low = reached;
+                    high = 0.5 * (low + high);
+                    x = 0.5 * (low + high);
+                    if high - low < 1e-6 {
+                        return Err(error);
+                    }
+                }
+                Err(RootError::Budget { at, value, .. }) => {
+                    return Err(FibreError::NotConverged { contraction: at, residual: value, iterations: 100 });
+                }
+            }
+        }
+    }
+
+    /// Derivative of the excess with respect to the contraction: exact, from stiffness or volume slope.
+    fn slope_of(&self, found: &Found, y: f64, excess: &impl Fn(&Found) -> f64, step: f64, l0: f64) -> f64 {
+        let mut moved = *found;
+        let r = &mut moved.response;
+        let dl = -l0 * step;
+        r.force_n += r.stiffness_n_per_m * dl;
+        r.volume_m3 += r.volume_slope_m2 * dl * r.volume_m3 / r.volume_polygon_m3;
+        (excess(&moved) - y) / step
+    }
+
+    /// A contraction at which the excess is positive, and where to go on from.
+    fn bracket_below(
+        &self,
+        evaluate: &mut impl FnMut(f64) -> Result<Found, FibreError>,
+        start: f64,
+        excess: &impl Fn(&Found) -> f64,
+    ) -> Result<(f64, f64), FibreError> {
+        if self.net.turn == 0.0 && self.net.compliance == 0.0 {
+            return Ok((0.0, start));
+        }
+        let mut good = None;
+        let mut x = start;
+        let mut stride = 0.5 * start;
+        let mut failures = 0;
+        for _ in 0..80 {
+            match (evaluate(x), good) {
+                (Ok(found), _) if excess(&found) > 0.0 => return Ok((x, x)),
+                (Ok(_), _) => {
+                    good = Some(x);
+                    stride *= if failures == 0 { 1.6 } else { 1.0 };
+                }
+                // Nothing there: from the last one that exists, with smaller strides.
+                (Err(_), Some(_)) if failures < 12 => {
+                    failures += 1;
+                    stride *= 0.3;
+                }
+                // The start itself lies beyond the range of a very short muscle.
+                (Err(_), None) if failures < 12 => {
+                    failures += 1;
+                    x *= 0.3;
+                    continue;
+                }
+                (Err(error), _) => return Err(error),
+            }
+            x = good.unwrap_or(x) - stride;
+        }
+        Err(FibreError::NotConverged { contraction: x, residual: f64::INFINITY, iterations: 80 })
+    }
+
+    /// The strongest equilibrium that can be found at small (negative) contractions: what an error message tells.
+    fn strongest(&self, method: Method) -> Option<Response> {
+        let lowest = self.longest().unwrap_or(-0.5);
+        let mut best: Option<Response> = None;
+        for i in 1..=20 {
+            let contraction = lowest * (1.0 - 0.5_f64.powi(i));
+            if let Ok(found) = self.at(method, contraction, None)
+                && best.is_none_or(|b| found.response.force_n > b.force_n)
+            {
+                best = Some(found.response);
+            }
+        }
+        best
+    }
+
+    /// The contraction at which inextensible fibres are drawn straight, if the muscle has one.
+    fn longest(&self) -> Option<f64> {
+        if self.net.compliance != 0.0 {
+            return None;
+        }
+        if self.net.turn == 0.0 {
+            return Some(0.0);
+        }
+        if self.is_cylinder() {
+            return Some(1.0 - 1.0 / self.net.cos_rest);
+        }
+        shooting::longest(&self.net)
+    }
+
+    /// The equilibrium at a contraction with everything that is reported.
+    pub(crate) fn at(
+        &self,
+        method: Method,
+        contraction: f64,
+        from: Option<Unknowns>,
+    ) -> Result<Found, FibreError> {
+        let constant = |variable| self.value(variable);
+        if self.is_scale_free() {
+            let value = |variable| Dual::<2>::from(constant(variable));
+            let outcome = self.outcome(method, contraction, value, from)?;
+            // F ~ p, V independent of p.
+            return Ok(self.found(contraction, &outcome, value, |force, _| [force / self.pressure, 0.0]));
+        }
+        let seeded = |variable: Variable| match variable {
+            Variable::Pressure => Dual::<3>::variable(self.pressure, 2),
+            Variable::Parameter(_) => Dual::from(constant(variable)),
+        };
+        let outcome = self.outcome(method, contraction, seeded, from)?;
+        let [force, volume] = self.physical(&outcome, seeded);
+        let by_pressure = [force.gradient()[2], volume.gradient()[2]];
+        Ok(self.found(contraction, &outcome, seeded, |_, _| by_pressure))
+    }
+
+    /// Force \[N\] and circular volume \[m^3\] with derivatives: place 0 by the contraction, the others as seeded.
+    fn physical<const N: usize>(
+        &self,
+        outcome: &Outcome<N>,
+        value: impl Fn(Variable) -> Dual<N>,
+    ) -> [Dual<N>; 2] {
+        let radius = self.reference(&value);
+        let scales = [value(Variable::Pressure) * radius * radius, radius * radius * radius];
+        let totals = [&outcome.force, &outcome.volume];
+        std::array::from_fn(|i| {
+            let mut gradient = totals[i].by_parameter;
+            gradient[0] = totals[i].by_contraction;
+            scales[i] * Dual::new(totals[i].value, gradient)
+        })
+    }
+
+    fn found<const N: usize>(
+        &self,
+        contraction: f64,
+        outcome: &Outcome<N>,
+        value: impl Fn(Variable) -> Dual<N>,
+        by_pressure: impl Fn(f64, f64) -> [f64; 2],
+    ) -> Found {
+        let [force, volume] = self.physical(outcome, &value);
+        let p = self.pressure;
+        let radius = self.muscle.radius().si();
+        let l0 = self.muscle.length().si();
+        let a = self.net.area_factor;
+        // Per length: l = l0 (1 - eps).
+        let stiffness = -force.gradient()[0] / l0;
+        let volume_slope = -a * volume.gradient()[0] / l0;
+        let [force_p, volume_p] = by_pressure(force.value(), volume.value());
+        let polygon = a * volume.value();
+        // (p + pa) V^g constant: dp/dl = -g (p + pa) V_l/(V + g (p + pa) V_p).
+        let closed = |g: f64| {
+            let absolute = g * (p + AMBIENT_PRESSURE);
+            stiffness - force_p * absolute * volume_slope / (polygon + absolute * a * volume_p)
+        };
+        let unit_force = p * radius * radius;
+        let end_radius = self.net.end_radius;
+        let response = Response {
+            pressure_pa: p,
+            force_n: force.value(),
+            length_m: l0 * (1.0 - contraction),
+            contraction,
+            volume_m3: volume.value(),
+            volume_polygon_m3: polygon,
+            max_radius_m: radius * outcome.mid_radius.max(if self.is_cylinder() { 0.0 } else { end_radius }),
+            mid_radius_m: radius * outcome.mid_radius,
+            fibre_tension_n: unit_force * outcome.tension / self.fibre_number(|v| self.value(v)),
+            fibre_strain: self.net.compliance * outcome.tension,
+            stiffness_n_per_m: stiffness,
+            volume_slope_m2: volume_slope,
+            stiffness_isothermal_n_per_m: closed(1.0),
+            stiffness_adiabatic_n_per_m: closed(ADIABATIC),
+            end_slope_rad: outcome.end_slope,
+            method: outcome.method,
+            convergence: outcome.convergence,
+        };
+        Found { response, solution: outcome.solution }
+    }
+}
+
+/// A start from the last two solutions on the same side: linear in the contraction.
+fn extrapolate(last: [Option<(f64, Unknowns)>; 2], contraction: f64) -> Option<Unknowns> {
+    let (x1, one) = last[1]?;
+    let Some((x0, zero)) = last[0] else { return Some(one) };
+    let ratio = (contraction - x1) / (x1 - x0);
+    if zero.side != one.side || !ratio.is_finite() || ratio.abs() > 2.0 {
+        return Some(one);
+    }
+    Some(Unknowns { logs: std::array::from_fn(|i| one.logs[i] + ratio * (one.logs[i] - zero.logs[i])), ..one })
+}
+
+/// Names for [`Variable`] in reports.
+impl std::fmt::Display for Variable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Pressure => f.write_str("pressure"),
+            Self::Parameter(parameter) => f.write_str(Parameter::name(*parameter)),
+        }
+    }
+}

@@ -1,0 +1,320 @@
+//! How a muscle is built: pleated (fibres along the meridians) or braided (fibres in a trellis).
+
+use crate::error::{MuscleError, check};
+use crate::quantity::{Angle, Length};
+use crate::units::Quantity;
+use serde::Serialize;
+
+/// The two families of muscle. Both balance by the same equation; what differs is the path of the fibres.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Construction {
+    /// Pleated muscle (PPAM): every fibre lies in a meridian plane, the cloth between unfolds.
+    Pleated(Pleated),
+    /// Braided muscle (McKibben): two families of fibres cross at a braid angle.
+    Braided(Braided),
+}
+
+/// The family alone, as a muscle file names it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// `kind = "pleated"`.
+    Pleated,
+    /// `kind = "braided"`.
+    Braided,
+}
+
+impl Kind {
+    /// The word in a muscle file.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pleated => "pleated",
+            Self::Braided => "braided",
+        }
+    }
+}
+
+impl Construction {
+    /// The family.
+    #[must_use]
+    pub const fn kind(&self) -> Kind {
+        match self {
+            Self::Pleated(_) => Kind::Pleated,
+            Self::Braided(_) => Kind::Braided,
+        }
+    }
+}
+
+/// How many fibres carry a pleated muscle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FibreCount {
+    /// n >= 3 fibres with flat cloth between them: cross-section (n/2) sin(2 pi/n) r^2.
+    Discrete(u32),
+    /// A membrane of fibres all round, the limit n -> infinity: cross-section pi r^2 (first-generation PPAM).
+    Continuous,
+}
+
+/// A pleated muscle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Pleated {
+    pub(crate) radius: Length,
+    pub(crate) end_radius: Option<Length>,
+    pub(crate) fibres: FibreCount,
+    pub(crate) pleat_depth: Length,
+    pub(crate) misalignment: Angle,
+}
+
+impl Pleated {
+    /// A pleated muscle with fibre radius R at the end fittings, straight fibres and no pleat depth.
+    ///
+    /// # Errors
+    /// If the radius is not finite and > 0 or there are fewer than 3 fibres.
+    pub fn new(radius: Length, fibres: FibreCount) -> Result<Self, MuscleError> {
+        check::positive("radius", radius)?;
+        if let FibreCount::Discrete(count) = fibres {
+            check::count(count)?;
+        }
+        Ok(Self {
+            radius,
+            end_radius: None,
+            fibres,
+            pleat_depth: Length::m(0.0),
+            misalignment: Angle::rad(0.0),
+        })
+    }
+
+    /// The same with the radius that the fibres really have at the fittings, where it is other than stated.
+    ///
+    /// # Errors
+    /// If it is not finite and > 0.
+    pub fn with_end_radius(self, end_radius: Length) -> Result<Self, MuscleError> {
+        check::positive("effects.end-radius.radius", end_radius)?;
+        Ok(Self { end_radius: Some(end_radius), ..self })
+    }
+
+    /// The same with pleats that stand this far outside the fibres under pressure.
+    ///
+    /// # Errors
+    /// If it is negative or not finite.
+    pub fn with_pleat_depth(self, pleat_depth: Length) -> Result<Self, MuscleError> {
+        check::not_negative("effects.pleat-depth.depth", pleat_depth)?;
+        Ok(Self { pleat_depth, ..self })
+    }
+
+    /// The same with fibres that leave the end fittings at this angle to the meridian: a slight helix.
+    ///
+    /// # Errors
+    /// If the angle is not between -90 and 90 degrees, both excluded.
+    pub fn with_misalignment(self, misalignment: Angle) -> Result<Self, MuscleError> {
+        let is_forward = misalignment.to_rad().abs() < std::f64::consts::FRAC_PI_2;
+        if is_forward {
+            Ok(Self { misalignment, ..self })
+        } else {
+            Err(MuscleError::Misalignment { degrees: misalignment.to_deg() })
+        }
+    }
+
+    /// Fibre radius R at the end fittings, as it acts: the separate end radius if there is one, else as stated.
+    #[must_use]
+    pub fn radius(&self) -> Length {
+        self.end_radius.unwrap_or(self.radius)
+    }
+
+    /// The radius as the drawing states it, whatever the end radius is.
+    #[must_use]
+    pub fn stated_radius(&self) -> Length {
+        self.radius
+    }
+
+    /// Number n of fibres.
+    #[must_use]
+    pub fn fibres(&self) -> FibreCount {
+        self.fibres
+    }
+
+    /// How far the pleats stand outside the fibres under pressure; 0 if not stated.
+    #[must_use]
+    pub fn pleat_depth(&self) -> Length {
+        self.pleat_depth
+    }
+
+    /// Angle between fibre and meridian at the end fitting; 0 if not stated.
+    #[must_use]
+    pub fn misalignment(&self) -> Angle {
+        self.misalignment
+    }
+}
+
+/// What holds the braid at its ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Ends {
+    /// Clamped to the fittings: the exact shape of the net, which tapers towards them.
+    Clamped,
+    /// A cylinder up to the fittings: the textbook formula.
+    Cylinder,
+}
+
+impl Ends {
+    /// The word in a muscle file.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Clamped => "clamped",
+            Self::Cylinder => "cylinder",
+        }
+    }
+}
+
+/// A braided muscle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Braided {
+    pub(crate) radius: Length,
+    pub(crate) braid_angle: Angle,
+    pub(crate) fitting_radius: Option<Length>,
+    pub(crate) fibres: Option<u32>,
+    pub(crate) ends: Ends,
+    pub(crate) wall: Option<Length>,
+}
+
+impl Braided {
+    /// A braid of radius r0 and angle alpha0 between fibre and axis at rest, clamped to fittings of the same radius.
+    ///
+    /// # Errors
+    /// If the radius is not finite and > 0, or the angle is not between 0 and 90 degrees, both excluded.
+    pub fn new(radius: Length, braid_angle: Angle) -> Result<Self, MuscleError> {
+        check::positive("radius", radius)?;
+        let angle = braid_angle.to_rad();
+        if !(angle > 0.0 && angle < std::f64::consts::FRAC_PI_2) {
+            return Err(MuscleError::BraidAngle { degrees: braid_angle.to_deg() });
+        }
+        Ok(Self { radius, braid_angle, fitting_radius: None, fibres: None, ends: Ends::Clamped, wall: None })
+    }
+
+    /// The same, clamped to fittings of another radius.
+    ///
+    /// # Errors
+    /// If it is not finite and > 0.
+    pub fn with_fitting_radius(self, fitting_radius: Length) -> Result<Self, MuscleError> {
+        check::positive("effects.end-radius.radius", fitting_radius)?;
+        Ok(Self { fitting_radius: Some(fitting_radius), ..self })
+    }
+
+    /// The same with a known number of fibres, both families together.
+    ///
+    /// # Errors
+    /// If there are fewer than 3.
+    pub fn with_fibres(self, fibres: u32) -> Result<Self, MuscleError> {
+        check::count(fibres)?;
+        Ok(Self { fibres: Some(fibres), ..self })
+    }
+
+    /// The same with other ends.
+    #[must_use]
+    pub fn with_ends(self, ends: Ends) -> Self {
+        Self { ends, ..self }
+    }
+
+    /// The same with a wall of known thickness.
+    ///
+    /// # Errors
+    /// If it is not finite and > 0.
+    pub fn with_wall(self, wall: Length) -> Result<Self, MuscleError> {
+        check::positive("wall", wall)?;
+        Ok(Self { wall: Some(wall), ..self })
+    }
+
+    /// Braid radius r0 at rest.
+    #[must_use]
+    pub fn radius(&self) -> Length {
+        self.radius
+    }
+
+    /// Angle alpha0 between fibre and axis at rest.
+    #[must_use]
+    pub fn braid_angle(&self) -> Angle {
+        self.braid_angle
+    }
+
+    /// Radius to which the ends are clamped: r0 if not stated separately.
+    #[must_use]
+    pub fn fitting_radius(&self) -> Length {
+        self.fitting_radius.unwrap_or(self.radius)
+    }
+
+    /// Number of fibres, both families together, if known.
+    #[must_use]
+    pub fn fibres(&self) -> Option<u32> {
+        self.fibres
+    }
+
+    /// What holds the ends.
+    #[must_use]
+    pub fn ends(&self) -> Ends {
+        self.ends
+    }
+
+    /// Thickness of the wall at rest, if known.
+    #[must_use]
+    pub fn wall(&self) -> Option<Length> {
+        self.wall
+    }
+
+    /// Length b = l0 / cos(alpha0) of one fibre of a braid of length l0.
+    #[must_use]
+    pub fn fibre_length(&self, length: Length) -> Length {
+        Length::from_si(length.si() / self.braid_angle.to_rad().cos())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn radii_follow_unless_stated() {
+        let pleated = Pleated::new(Length::mm(11.5), FibreCount::Discrete(40)).unwrap();
+        assert_eq!(pleated.radius(), Length::mm(11.5));
+        let unfolded = pleated.with_end_radius(Length::mm(16.0)).unwrap();
+        assert_eq!((unfolded.radius(), unfolded.stated_radius()), (Length::mm(16.0), Length::mm(11.5)));
+        let braided = Braided::new(Length::mm(10.0), Angle::deg(25.0)).unwrap();
+        assert_eq!(braided.fitting_radius(), Length::mm(10.0));
+        assert_eq!(braided.with_fitting_radius(Length::mm(8.0)).unwrap().fitting_radius(), Length::mm(8.0));
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_its_number() {
+        let pleated = Pleated::new(Length::mm(16.0), FibreCount::Continuous).unwrap();
+        let braided = Braided::new(Length::mm(10.0), Angle::deg(25.0)).unwrap();
+        for (error, part) in [
+            (Pleated::new(Length::mm(-16.0), FibreCount::Continuous).err(), "-0.016 m"),
+            (Pleated::new(Length::m(f64::NAN), FibreCount::Continuous).err(), "NaN"),
+            (Pleated::new(Length::mm(16.0), FibreCount::Discrete(2)).err(), "says 2"),
+            (pleated.with_end_radius(Length::m(0.0)).err(), "0 m"),
+            (pleated.with_pleat_depth(Length::mm(-1.0)).err(), "-0.001 m"),
+            (pleated.with_pleat_depth(Length::m(f64::INFINITY)).err(), "inf"),
+            (pleated.with_misalignment(Angle::deg(-90.0)).err(), "-90"),
+            (pleated.with_misalignment(Angle::rad(f64::NAN)).err(), "NaN"),
+            (Braided::new(Length::mm(10.0), Angle::deg(90.0)).err(), "90"),
+            (Braided::new(Length::mm(10.0), Angle::deg(0.0)).err(), "0 deg"),
+            (Braided::new(Length::mm(10.0), Angle::rad(f64::NAN)).err(), "NaN"),
+            (Braided::new(Length::mm(0.0), Angle::deg(25.0)).err(), "`radius`"),
+            (braided.with_fitting_radius(Length::mm(0.0)).err(), "end-radius"),
+            (braided.with_fibres(1).err(), "says 1"),
+            (braided.with_wall(Length::mm(0.0)).err(), "`wall`"),
+        ] {
+            let message = error.map(|e| e.to_string()).unwrap_or_default();
+            assert!(message.contains(part), "{message:?} does not say {part:?}");
+        }
+    }
+
+    #[test]
+    fn a_fibre_is_longer_than_the_muscle() {
+        // DMSP-20-250: 275.85 mm measured.
+        let braid = Braided::new(Length::mm(10.725), Angle::deg(25.0)).unwrap();
+        assert!((braid.fibre_length(Length::mm(250.0)).to_mm() - 275.85).abs() < 0.01);
+    }
+}

@@ -1,0 +1,161 @@
+//! Why values do not make a muscle: one variant per event, with its numbers.
+
+use crate::construction::Kind;
+use crate::parameter::Parameter;
+use thiserror::Error;
+
+/// Why values do not make a muscle. Values are in SI; `key` is where the value stands in a muscle file.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum MuscleError {
+    /// A value that must be finite and > 0.
+    #[error("`{key}` is {value} {unit}: it must be finite and greater than 0")]
+    NotPositive {
+        /// Where it stands in a muscle file.
+        key: &'static str,
+        /// The value in SI.
+        value: f64,
+        /// Its SI unit.
+        unit: &'static str,
+    },
+    /// A value that must be finite and >= 0.
+    #[error("`{key}` is {value} {unit}: it must be finite and not negative")]
+    Negative {
+        /// Where it stands in a muscle file.
+        key: &'static str,
+        /// The value in SI.
+        value: f64,
+        /// Its SI unit.
+        unit: &'static str,
+    },
+    /// Too few fibres to enclose a volume.
+    #[error("`fibres` says {count}: at least 3 are needed to enclose a volume")]
+    TooFewFibres {
+        /// The count.
+        count: u32,
+    },
+    /// A number of fibres that is not a whole number from 3 to 4294967295.
+    #[error("{value} is not a number of fibres: it must be a whole number of at least 3")]
+    FibreCount {
+        /// The value.
+        value: f64,
+    },
+    /// A braid angle that is no braid.
+    #[error("`braid_angle` is {degrees} deg: it must lie between 0 deg and 90 deg, both excluded")]
+    BraidAngle {
+        /// The angle in degrees.
+        degrees: f64,
+    },
+    /// Fibres that do not run from end to end.
+    #[error(
+        "`effects.fibre-misalignment.angle` is {degrees} deg: it must lie between -90 deg and 90 deg, both excluded"
+    )]
+    Misalignment {
+        /// The angle in degrees.
+        degrees: f64,
+    },
+    /// Both constants of the bladder are zero.
+    #[error("the bladder has c10 = {c10} Pa and c01 = {c01} Pa: a rubber needs at least one greater than 0")]
+    NoElasticity {
+        /// The first Mooney-Rivlin constant.
+        c10: f64,
+        /// The second Mooney-Rivlin constant.
+        c01: f64,
+    },
+    /// A muscle without a name.
+    #[error("`name` is empty: every table and report shows it")]
+    NoName,
+    /// Elastic fibres, but not how many.
+    #[error("`fibre` gives the stiffness of one fibre, but `fibres` does not say how many the braid has")]
+    NoFibreCount,
+    /// A bladder without thickness.
+    #[error("a bladder needs a wall thickness: `wall` is not stated")]
+    NoWall,
+    /// One part of an unfolding limit without the other.
+    #[error("`{}` alone does not limit the unfolding: hoop stiffness and unfolded radius are needed together", parameter.name())]
+    HalfUnfolding {
+        /// The one given.
+        parameter: Parameter,
+    },
+    /// A parameter of the other family.
+    #[error("a {} muscle has no `{}`: that belongs to a {} muscle", kind.name(), parameter.name(), owner.name())]
+    OtherKind {
+        /// The parameter.
+        parameter: Parameter,
+        /// The family of this muscle.
+        kind: Kind,
+        /// The family that has it.
+        owner: Kind,
+    },
+    /// A bladder in a pleated muscle.
+    #[error("a pleated muscle has no bladder: `bladder-elasticity` belongs to a braided muscle")]
+    BladderInPleated,
+    /// A width for something that has none.
+    #[error("`{}` has no stated value that could have a width", parameter.name())]
+    NoWidth {
+        /// The parameter.
+        parameter: Parameter,
+    },
+    /// A width that is not finite and > 0.
+    #[error("the width of `{}` is {width} in SI units: it must be finite and greater than 0", parameter.name())]
+    WidthNotPositive {
+        /// The parameter.
+        parameter: Parameter,
+        /// The width in SI.
+        width: f64,
+    },
+    /// An instrument without any standard deviation.
+    #[error("an instrument needs at least one of `noise`, `zero` and `gain` greater than 0")]
+    NoSpread,
+}
+
+impl MuscleError {
+    /// Where in a muscle file the cause stands, as a dotted path; `name` and `fibre` are such paths too.
+    #[must_use]
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::NotPositive { key, .. } | Self::Negative { key, .. } => key,
+            Self::TooFewFibres { .. } | Self::FibreCount { .. } => "fibres",
+            Self::BraidAngle { .. } => "braid_angle",
+            Self::Misalignment { .. } => "effects.fibre-misalignment.angle",
+            Self::NoElasticity { .. } => "effects.bladder-elasticity.c10",
+            Self::NoName => "name",
+            Self::NoFibreCount => "fibre",
+            Self::NoWall | Self::BladderInPleated => "effects.bladder-elasticity",
+            Self::HalfUnfolding { .. } => "effects.limited-unfolding",
+            Self::OtherKind { parameter, .. }
+            | Self::NoWidth { parameter }
+            | Self::WidthNotPositive { parameter, .. } => parameter.key(),
+            Self::NoSpread => "instruments",
+        }
+    }
+}
+
+/// The ranges that several constructors share.
+pub(crate) mod check {
+    use super::MuscleError;
+    use crate::units::Quantity;
+
+    /// Finite and > 0.
+    pub(crate) fn positive<Q: Quantity>(key: &'static str, quantity: Q) -> Result<(), MuscleError> {
+        let value = quantity.si();
+        let holds = value.is_finite() && value > 0.0;
+        if holds { Ok(()) } else { Err(MuscleError::NotPositive { key, value, unit: si_unit::<Q>() }) }
+    }
+
+    /// Finite and >= 0.
+    pub(crate) fn not_negative<Q: Quantity>(key: &'static str, quantity: Q) -> Result<(), MuscleError> {
+        let value = quantity.si();
+        let holds = value.is_finite() && value >= 0.0;
+        if holds { Ok(()) } else { Err(MuscleError::Negative { key, value, unit: si_unit::<Q>() }) }
+    }
+
+    /// At least three fibres.
+    pub(crate) fn count(count: u32) -> Result<(), MuscleError> {
+        if count >= 3 { Ok(()) } else { Err(MuscleError::TooFewFibres { count }) }
+    }
+
+    /// The SI unit stands first in every list.
+    fn si_unit<Q: Quantity>() -> &'static str {
+        Q::UNITS.first().map_or("", |unit| unit.0)
+    }
+}

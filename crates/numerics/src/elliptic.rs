@@ -1,0 +1,142 @@
+//! Incomplete elliptic integrals by Carlson's duplication, the two that a meridian needs in one pass.
+//!
+//! B. C. Carlson, *Numerical computation of real or complex elliptic integrals*, Numerical Algorithms 10 (1995) 13-26;
+//! NIST Digital Library of Mathematical Functions, sections 19.25 and 19.36.
+//!
+//! The second argument `m` is the *parameter* k^2, not the modulus k and not the modular angle (S1 writes `F(phi\m)`, which
+//! elsewhere means the angle).
+
+/// The pair `F(phi|m)` and `D(phi|m)`.
+///
+/// ```text
+/// F = integral 0..phi of             dtheta / sqrt(1 - m sin^2 theta)      first kind
+/// D = integral 0..phi of sin^2 theta dtheta / sqrt(1 - m sin^2 theta)      = (F - E)/m
+/// E = F - m D                                                             second kind
+/// ```
+///
+/// D is the well-behaved companion of F: formulas written with it keep all digits as m -> 0, where `(F - E)/m` loses them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// First kind, F.
+    pub f: f64,
+    /// (F - E)/m.
+    pub d: f64,
+}
+
+/// Deviation below which the series after the duplications is exact to rounding: its error is about 0.1 x^8.
+const SERIES: f64 = 0.012;
+/// Duplications divide the deviation by four each: enough for a spread of 1e300.
+const MAX_DUPLICATIONS: u32 = 300;
+
+/// F and D for the amplitude phi with `tan(phi) = t >= 0` (phi below 90 degrees) and `m < 1 + 1/t^2`.
+///
+/// ```text
+/// F = t RF(1, 1 + (1 - m) t^2, 1 + t^2)        D = t^3/3 RD(1, 1 + (1 - m) t^2, 1 + t^2)
+/// ```
+///
+/// Relative error below 2e-15 (F) and 4e-15 (D); NaN outside the range.
+#[must_use]
+pub fn incomplete(t: f64, m: f64) -> Pair {
+    let t2 = t * t;
+    let (rf, rd) = carlson(1.0, 1.0 + (1.0 - m) * t2, 1.0 + t2);
+    Pair { f: t * rf, d: t * t2 * rd / 3.0 }
+}
+
+/// `F(phi|m)` and `E(phi|m)` for 0 <= phi < 90 degrees.
+///
+/// ```
+/// let (f, e) = bulge_numerics::elliptic::first_and_second(1.0, 0.5);
+/// assert!((f - 1.083_216_772_845_168_7).abs() < 1e-14);
+/// assert!((e - 0.927_329_883_625_120_7).abs() < 1e-14);
+/// ```
+#[must_use]
+pub fn first_and_second(phi: f64, m: f64) -> (f64, f64) {
+    let pair = incomplete(phi.tan(), m);
+    (pair.f, pair.f - m * pair.d)
+}
+
+/// Carlson's RF(x, y, z) and RD(x, y, z) for positive arguments, sharing the duplications.
+#[must_use]
+pub fn carlson(x: f64, y: f64, z: f64) -> (f64, f64) {
+    let (mut x, mut y, mut z) = (x, y, z);
+    let mut sum = 0.0;
+    let mut quarter = 1.0;
+    let mut a = (x + y + 3.0 * z) * 0.2;
+    for _ in 0..MAX_DUPLICATIONS {
+        if (a - x).abs().max((a - y).abs()).max((a - z).abs()) < SERIES * a {
+            break;
+        }
+        let (sx, sy, sz) = (x.sqrt(), y.sqrt(), z.sqrt());
+        let lambda = sx * (sy + sz) + sy * sz;
+        sum += quarter / (sz * (z + lambda));
+        quarter *= 0.25;
+        x = 0.25 * (x + lambda);
+        y = 0.25 * (y + lambda);
+        z = 0.25 * (z + lambda);
+        a = 0.25 * (a + lambda);
+    }
+    (rf_series(x, y, z), quarter * rd_series(x, y, z, a) + 3.0 * sum)
+}
+
+/// Series of RF about equal arguments (DLMF 19.36.1).
+fn rf_series(x: f64, y: f64, z: f64) -> f64 {
+    let a = (x + y + z) / 3.0;
+    let inverse = 1.0 / a;
+    let (dx, dy) = (1.0 - x * inverse, 1.0 - y * inverse);
+    let dz = -dx - dy;
+    let e2 = dx * dy - dz * dz;
+    let e3 = dx * dy * dz;
+    let series = 1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0 - 5.0 * e2 * e2 * e2 / 208.0
+        + 3.0 * e3 * e3 / 104.0
+        + e2 * e2 * e3 / 16.0;
+    series * inverse.sqrt()
+}
+
+/// Series of RD about equal arguments (DLMF 19.36.2).
+fn rd_series(x: f64, y: f64, z: f64, a: f64) -> f64 {
+    let inverse = 1.0 / a;
+    let (dx, dy) = (1.0 - x * inverse, 1.0 - y * inverse);
+    let dz = (z - a) * -inverse;
+    let (xy, z2) = (dx * dy, dz * dz);
+    let e2 = xy - 6.0 * z2;
+    let e3 = (3.0 * xy - 8.0 * z2) * dz;
+    let e4 = 3.0 * (xy - z2) * z2;
+    let e5 = xy * z2 * dz;
+    let series = 1.0 - 3.0 * e2 / 14.0 + e3 / 6.0 + 9.0 * e2 * e2 / 88.0 - 3.0 * e4 / 22.0 - 9.0 * e2 * e3 / 52.0
+        + 3.0 * e5 / 26.0
+        - e2 * e2 * e2 / 16.0
+        + 3.0 * e3 * e3 / 40.0
+        + 3.0 * e2 * e4 / 20.0
+        + 45.0 * e2 * e2 * e3 / 272.0
+        - 9.0 * (e3 * e4 + e2 * e5) / 68.0;
+    series * inverse * inverse.sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// mpmath 1.3, 30 digits: `t, m, ellipf(atan(t), m), (ellipf - ellipe)/m`.
+    const TABLE: &[(f64, f64, f64, f64)] = &include!("elliptic_table.in");
+
+    #[test]
+    fn agrees_with_thirty_digits() {
+        let (mut worst_f, mut worst_d) = (0.0_f64, 0.0_f64);
+        for &(t, m, f, d) in TABLE {
+            let pair = incomplete(t, m);
+            worst_f = worst_f.max((pair.f / f - 1.0).abs());
+            worst_d = worst_d.max((pair.d / d - 1.0).abs());
+        }
+        assert!(worst_f < 2e-15 && worst_d < 4e-15, "F {worst_f:e}, D {worst_d:e} over {} points", TABLE.len());
+    }
+
+    #[test]
+    fn limits() {
+        // m = 0: F = phi, D = (phi - sin phi cos phi)/2; t -> 0: F -> t, D -> t^3/3.
+        let pair = incomplete(1.0, 0.0);
+        let phi = std::f64::consts::FRAC_PI_4;
+        assert!((pair.f - phi).abs() < 1e-15 && (pair.d - (phi - 0.5) / 2.0).abs() < 1e-15);
+        let pair = incomplete(1e-8, 0.3);
+        assert!((pair.f / 1e-8 - 1.0).abs() < 1e-15 && (pair.d / (1e-24 / 3.0) - 1.0).abs() < 1e-15);
+    }
+}

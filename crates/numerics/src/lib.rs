@@ -1,0 +1,16 @@
+//! Dual numbers, adaptive Runge-Kutta integration, elliptic integrals and bracketed roots for membrane equilibria.
+//!
+//! How to compute; knows no muscle, no file and no unit. Everything is `f64`; only the integrator and what runs through it
+//! is generic over [`Real`], so that it can carry exact derivatives ([`Dual`]).
+
+pub mod dop853;
+mod dop853_coefficients;
+mod dual;
+pub mod elliptic;
+pub mod gauss;
+mod real;
+pub mod root;
+
+pub use dop853::Dop853;
+pub use dual::Dual;
+pub use real::Real;

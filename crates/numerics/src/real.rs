@@ -1,0 +1,74 @@
+//! The one scalar abstraction of Bulge: what the integrator and the equilibrium laws need of a number.
+//!
+//! Solvers are written once against [`Real`]; with `f64` they compute a value, with [`crate::Dual`] the same code also
+//! carries exact derivatives. Nothing else in the workspace is generic over its scalar.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+/// A real number, possibly with derivatives.
+pub trait Real:
+    Copy
+    + Debug
+    + From<f64>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// The value without derivatives.
+    fn value(self) -> f64;
+    /// Square root; the argument must be positive for derivatives to be finite.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// Sine and cosine of an angle in radians.
+    fn sin_cos(self) -> (Self, Self);
+    /// Natural exponential.
+    #[must_use]
+    fn exp(self) -> Self;
+    /// Natural logarithm.
+    #[must_use]
+    fn ln(self) -> Self;
+    /// `self * a + b` with a plain factor: the inner operation of a Runge-Kutta stage.
+    #[must_use]
+    fn scale_add(self, a: f64, b: Self) -> Self;
+
+    /// Square.
+    #[must_use]
+    fn squared(self) -> Self {
+        self * self
+    }
+}
+
+impl Real for f64 {
+    #[inline]
+    fn value(self) -> f64 {
+        self
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        Self::sqrt(self)
+    }
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        Self::sin_cos(self)
+    }
+    #[inline]
+    fn exp(self) -> Self {
+        Self::exp(self)
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        Self::ln(self)
+    }
+    #[inline]
+    fn scale_add(self, a: f64, b: Self) -> Self {
+        self * a + b
+    }
+}

@@ -1,0 +1,120 @@
+//! Roots of one function of one variable: Newton's method that never leaves its bracket.
+
+/// A root could not be found.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum RootError<E> {
+    /// The function itself failed.
+    #[error("{0}")]
+    Function(E),
+    /// The budget of evaluations ran out.
+    #[error("no root to the asked accuracy in [{low}, {high}]: at {at} the function is {value:e}")]
+    Budget {
+        /// Lower end of the last bracket.
+        low: f64,
+        /// Upper end of the last bracket.
+        high: f64,
+        /// Last iterate.
+        at: f64,
+        /// Function value there.
+        value: f64,
+    },
+}
+
+/// Root of a function that is positive at `low` and negative at `high`, from `start`, by Newton steps that fall back to bisection.
+///
+/// `f` returns value and derivative. Neither end is evaluated: the caller vouches for the signs there. Ends when a step is shorter than
+/// `tolerance` (absolute, in the variable) or the value is zero; the quadratic step makes the result far more exact than that.
+///
+/// # Errors
+/// [`RootError::Function`] with the error of `f`, or [`RootError::Budget`] after 100 evaluations.
+pub fn newton_bracketed<E>(
+    mut f: impl FnMut(f64) -> Result<(f64, f64), E>,
+    mut low: f64,
+    mut high: f64,
+    start: f64,
+    tolerance: f64,
+) -> Result<f64, RootError<E>> {
+    let mut x = start.clamp(low, high);
+    let mut value = f64::NAN;
+    for _ in 0..100 {
+        let (y, dy) = f(x).map_err(RootError::Function)?;
+        value = y;
+        if y == 0.0 {
+            return Ok(x);
+        }
+        if y > 0.0 {
+            low = x;
+        } else {
+            high = x;
+        }
+        let newton = x - y / dy;
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        // The function falls, so a step the other way means that the derivative is noise: the root is as good as it gets.
+        if (next - x).abs() <= tolerance || high - low <= tolerance {
+            return Ok(next);
+        }
+        x = next;
+    }
+    Err(RootError::Budget { low, high, at: x, value })
+}
+
+/// Root of a continuous function with a sign change in \[`low`, `high`\] by the Illinois variant of regula falsi, to `tolerance` in the
+/// variable or 60 evaluations, whichever comes first. Without a sign change the end with the smaller value is returned.
+///
+/// For starting values, where a rough answer is better than an error.
+pub fn illinois(mut f: impl FnMut(f64) -> f64, low: f64, high: f64, tolerance: f64) -> f64 {
+    let (mut a, mut b) = (low, high);
+    let (mut fa, mut fb) = (f(a), f(b));
+    if fa * fb > 0.0 {
+        return if fa.abs() < fb.abs() { a } else { b };
+    }
+    for _ in 0..60 {
+        let c = (a * fb - b * fa) / (fb - fa);
+        if !c.is_finite() {
+            return 0.5 * (a + b);
+        }
+        let fc = f(c);
+        if fc == 0.0 || (b - a).abs() < tolerance {
+            return c;
+        }
+        if fc * fb < 0.0 {
+            (a, fa) = (b, fb);
+        } else {
+            fa *= 0.5;
+        }
+        (b, fb) = (c, fc);
+    }
+    b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::convert::Infallible;
+
+    #[test]
+    fn newton_finds_a_steep_root_and_keeps_inside() {
+        // 1/sqrt(x) - 10 on (0, 1): plain Newton from 0.9 jumps to a negative x.
+        let mut seen = Vec::new();
+        let f = |x: f64| {
+            seen.push(x);
+            Ok::<_, Infallible>((1.0 / x.sqrt() - 10.0, -0.5 * x.powf(-1.5)))
+        };
+        let root = newton_bracketed(f, 0.0, 1.0, 0.9, 1e-12).unwrap();
+        assert!((root - 0.01).abs() < 1e-15);
+        assert!(seen.iter().all(|x| *x > 0.0 && *x < 1.0) && seen.len() < 30);
+    }
+
+    #[test]
+    fn newton_passes_errors_on() {
+        let failing = |_: f64| Err::<(f64, f64), _>("no");
+        assert_eq!(newton_bracketed(failing, 0.0, 1.0, 0.5, 1e-9), Err(RootError::Function("no")));
+    }
+
+    #[test]
+    fn illinois_finds_a_flat_root() {
+        let root = illinois(|x| x.powi(5) - 1e-5, 0.0, 2.0, 1e-10);
+        assert!((root - 0.1).abs() < 1e-8);
+        assert!((illinois(|x| x + 1.0, 0.0, 2.0, 1e-10) - 0.0).abs() < f64::EPSILON);
+    }
+}

@@ -1,0 +1,346 @@
+//! Isobaric characteristics: force and volume against contraction.
+
+use crate::PlotError;
+use crate::axis::{Axis, range};
+use crate::palette;
+use bulge_fibre::Response;
+use plotters::coord::Shift;
+use plotters::prelude::{
+    ChartBuilder, Color, DrawingArea, IntoDrawingArea, IntoFont, LineSeries, PathElement, RGBColor,
+    SVGBackend, Text, TextStyle, WHITE,
+};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// One isobaric curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Curve<'a> {
+    /// Gauge pressure \[Pa\], for the legend.
+    pub pressure_pa: f64,
+    /// Its points in the order of drawing, at least 2.
+    pub points: &'a [Response],
+}
+
+/// Draws force \[N\] and volume \[ml\] against contraction \[%\] side by side, one line per pressure, with a legend, as an SVG document.
+///
+/// # Errors
+/// No curve, a curve of fewer than 2 points, or a value that isn't finite.
+pub fn characteristics_svg(title: &str, curves: &[Curve]) -> Result<String, PlotError> {
+    check(curves)?;
+    let mut svg = String::new();
+    draw(&mut svg, title, curves)?;
+    Ok(finish(&svg, curves.len()))
+}
+
+/// Size of the picture in pixels.
+const SIZE: (u32, u32) = (1160, 470);
+/// Plotters rounds to whole units: it draws this many times as large, and the viewer scales back.
+const SCALE: u32 = 10;
+const LINE: u32 = 2 * SCALE;
+const TITLE_HEIGHT: u32 = 50;
+const LEGEND_WIDTH: u32 = 130;
+const INK: RGBColor = RGBColor(34, 34, 34);
+const GRID: RGBColor = RGBColor(222, 222, 222);
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// A quantity of a response, in the unit of its axis.
+#[derive(Clone, Copy)]
+struct Quantity {
+    name: &'static str,
+    read: fn(&Response) -> f64,
+}
+
+const CONTRACTION: Quantity = Quantity { name: "contraction [%]", read: |r| 100.0 * r.contraction };
+const FORCE: Quantity = Quantity { name: "force [N]", read: |r| r.force_n };
+const VOLUME: Quantity = Quantity { name: "volume [ml]", read: |r| 1e6 * r.volume_m3 };
+
+impl Quantity {
+    fn axis(self, curves: &[Curve]) -> Result<Axis, PlotError> {
+        let values = || curves.iter().flat_map(|c| c.points).map(self.read);
+        Axis::around(values()).ok_or_else(|| {
+            let (low, high) = range(values()).unwrap_or((f64::MIN, f64::MAX));
+            PlotError::Span { quantity: self.name, low, high }
+        })
+    }
+}
+
+fn check(curves: &[Curve]) -> Result<(), PlotError> {
+    if curves.is_empty() {
+        return Err(PlotError::NoCurves);
+    }
+    for (index, curve) in curves.iter().enumerate() {
+        let pressure_pa = curve.pressure_pa;
+        if !pressure_pa.is_finite() {
+            return Err(PlotError::Pressure { curve: index, value: pressure_pa });
+        }
+        if curve.points.len() < 2 {
+            return Err(PlotError::TooFewPoints { pressure_pa, found: curve.points.len() });
+        }
+        for (point, response) in curve.points.iter().enumerate() {
+            for Quantity { name, read } in [CONTRACTION, FORCE, VOLUME] {
+                let value = read(response);
+                if !value.is_finite() {
+                    return Err(PlotError::NotFinite { quantity: name, point, pressure_pa, value });
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn failed(reason: impl std::fmt::Display) -> PlotError {
+    PlotError::Drawing { reason: reason.to_string() }
+}
+
+fn draw(svg: &mut String, title: &str, curves: &[Curve]) -> Result<(), PlotError> {
+    let (width, height) = (SIZE.0 * SCALE, SIZE.1 * SCALE);
+    let paper = SVGBackend::with_string(svg, (width, height)).into_drawing_area();
+    paper.fill(&WHITE).map_err(failed)?;
+    let (head, body) = paper.split_vertically(TITLE_HEIGHT * SCALE);
+    // Control characters aren't allowed in XML.
+    let title = title.replace(char::is_control, " ");
+    text(&head, &title, (pixels(SIZE.0) / 2, pixels(TITLE_HEIGHT) / 2), 21, HPos::Center)?;
+
+    let (plots, legend) = body.split_horizontally((SIZE.0 - LEGEND_WIDTH) * SCALE);
+    let (left, right) = plots.split_horizontally((SIZE.0 - LEGEND_WIDTH) * SCALE / 2);
+    panel(&left, FORCE, curves)?;
+    panel(&right, VOLUME, curves)?;
+    self::legend(&legend, curves)?;
+    paper.present().map_err(failed)
+}
+
+/// A length in pixels as a coordinate of the drawing.
+fn pixels(length: u32) -> i32 {
+    i32::try_from(length * SCALE).unwrap_or(i32::MAX)
+}
+
+fn style(size: u32) -> TextStyle<'static> {
+    ("sans-serif", size * SCALE).into_font().color(&INK)
+}
+
+fn text(area: &Area, words: &str, at: (i32, i32), size: u32, side: HPos) -> Result<(), PlotError> {
+    let style = style(size).pos(Pos::new(side, VPos::Center));
+    area.draw(&Text::new(words.to_owned(), at, style)).map_err(failed)
+}
+
+fn panel(area: &Area, quantity: Quantity, curves: &[Curve]) -> Result<(), PlotError> {
+    let (x, y) = (CONTRACTION.axis(curves)?, quantity.axis(curves)?);
+    let mut chart = ChartBuilder::on(area)
+        .margin_right(22 * SCALE)
+        .margin_bottom(14 * SCALE)
+        .margin_left(12 * SCALE)
+        .margin_top(10 * SCALE)
+        .x_label_area_size(52 * SCALE)
+        .y_label_area_size(74 * SCALE)
+        .build_cartesian_2d(x, y)
+        .map_err(failed)?;
+    chart
+        .configure_mesh()
+        .x_desc(CONTRACTION.name)
+        .y_desc(quantity.name)
+        .label_style(style(15))
+        .axis_desc_style(style(17))
+        .axis_style(INK.stroke_width(SCALE))
+        .bold_line_style(GRID.stroke_width(SCALE))
+        .light_line_style(WHITE.mix(0.0))
+        .set_all_tick_mark_size(5 * SCALE)
+        .draw()
+        .map_err(failed)?;
+    for (i, curve) in curves.iter().enumerate() {
+        let points = curve.points.iter().map(|r| ((CONTRACTION.read)(r), (quantity.read)(r)));
+        let line = palette::colour(i, curves.len()).stroke_width(LINE);
+        chart.draw_series(LineSeries::new(points, line)).map_err(failed)?;
+    }
+    Ok(())
+}
+
+/// Rows a legend has at most; of more curves only every second, third, ... is named.
+const ROWS: usize = 16;
+const ROW_HEIGHT: i32 = 24;
+
+/// Highest pressure on top, as the curves mostly lie.
+fn legend(area: &Area, curves: &[Curve]) -> Result<(), PlotError> {
+    let every = curves.len().div_ceil(ROWS);
+    let mut named: Vec<usize> = (0..curves.len()).step_by(every).collect();
+    named.sort_by(|a, b| curves[*b].pressure_pa.total_cmp(&curves[*a].pressure_pa));
+    let scale = pixels(1);
+    for (row, i) in (0_i32..).zip(named) {
+        let y = (22 + row * ROW_HEIGHT) * scale;
+        let line = palette::colour(i, curves.len()).stroke_width(LINE);
+        area.draw(&PathElement::new(vec![(0, y), (38 * scale, y)], line)).map_err(failed)?;
+        text(area, &bar(curves[i].pressure_pa), (46 * scale, y), 16, HPos::Left)?;
+    }
+    Ok(())
+}
+
+/// "2 bar", "0.125 bar": four digits, without trailing zeros.
+fn bar(pressure_pa: f64) -> String {
+    let value = pressure_pa / 1e5;
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    // Adding zero turns -0 into 0.
+    let rounded = rounded + 0.0;
+    if rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) {
+        format!("{rounded} bar")
+    } else {
+        format!("{rounded:e} bar")
+    }
+}
+
+/// Scales the drawing back and adds the dashes, for which plotters would draw every dash as a line of its own. Text can't be mistaken for
+/// an attribute: its quotation marks are escaped.
+fn finish(svg: &str, n: usize) -> String {
+    let size = |factor: u32| format!(r#"width="{}" height="{}""#, SIZE.0 * factor, SIZE.1 * factor);
+    let mut svg = svg.replacen(&size(SCALE), &size(1), 1);
+    for i in 0..n {
+        if let Some(dashes) = palette::dashes(i, n, LINE) {
+            let RGBColor(r, g, b) = palette::colour(i, n);
+            let stroke = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\"");
+            svg = svg.replace(&stroke, &format!(r#"{stroke} stroke-dasharray="{dashes}""#));
+        }
+    }
+    svg
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_fibre::{Convergence, Method};
+
+    fn response(pressure_pa: f64, contraction: f64) -> Response {
+        Response {
+            pressure_pa,
+            force_n: pressure_pa * 6e-4 * (1.6 * (1.0 - contraction).powi(2) - 1.0),
+            length_m: 0.1 * (1.0 - contraction),
+            contraction,
+            volume_m3: 6e-5 * (1.0 + 3.0 * contraction - 2.0 * contraction * contraction),
+            volume_polygon_m3: 6e-5,
+            max_radius_m: 0.02,
+            mid_radius_m: 0.02,
+            fibre_tension_n: 10.0,
+            fibre_strain: 0.0,
+            stiffness_n_per_m: 1e3,
+            volume_slope_m2: 0.0,
+            stiffness_isothermal_n_per_m: 1e3,
+            stiffness_adiabatic_n_per_m: 1e3,
+            end_slope_rad: 0.1,
+            method: Method::ClosedForm,
+            convergence: Convergence {
+                iterations: 1,
+                evaluations: 1,
+                steps: 0,
+                residual: 0.0,
+                first_integral: 0.0,
+            },
+        }
+    }
+
+    fn isobar(pressure_pa: f64) -> Vec<Response> {
+        (0..=30).map(|i| response(pressure_pa, 0.01 * f64::from(i))).collect()
+    }
+
+    fn plot(title: &str, pressures: &[f64]) -> String {
+        let points: Vec<_> = pressures.iter().map(|p| isobar(*p)).collect();
+        let curves: Vec<_> =
+            pressures.iter().zip(&points).map(|(p, points)| Curve { pressure_pa: *p, points }).collect();
+        characteristics_svg(title, &curves).unwrap()
+    }
+
+    /// Names of the tags, after checking that they nest and that quotation marks are even.
+    fn tags(svg: &str) -> Vec<String> {
+        let (mut open, mut names) = (Vec::new(), Vec::new());
+        for tag in svg.split('<').skip(1) {
+            let (tag, _) = tag.split_once('>').expect("a tag ends");
+            assert!(tag.matches('"').count().is_multiple_of(2), "{tag}");
+            if let Some(name) = tag.strip_prefix('/') {
+                assert_eq!(open.pop().as_deref(), Some(name));
+                continue;
+            }
+            let name = tag.split_whitespace().next().unwrap().to_owned();
+            if !tag.ends_with('/') {
+                open.push(name.clone());
+            }
+            names.push(name);
+        }
+        assert!(open.is_empty(), "left open: {open:?}");
+        names
+    }
+
+    #[test]
+    fn draws_every_curve_in_both_panels_and_in_the_legend() {
+        let svg = plot("second-generation PPAM", &[1e5, 2e5, 3e5]);
+        assert_eq!(tags(&svg)[0], "svg");
+        for i in 0..3 {
+            let RGBColor(r, g, b) = palette::colour(i, 3);
+            let stroke = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\"");
+            let lines: Vec<_> =
+                svg.lines().filter(|l| l.starts_with("<polyline") && l.contains(&stroke)).collect();
+            let points = |line: &str| line.split_once("points=").unwrap().1.matches(',').count();
+            assert_eq!(lines.iter().map(|line| points(line)).collect::<Vec<_>>(), [31, 31, 2]);
+            assert_eq!(
+                lines.iter().filter(|l| l.contains("stroke-dasharray")).count(),
+                if i == 0 { 0 } else { 3 }
+            );
+        }
+    }
+
+    #[test]
+    fn names_quantities_units_and_pressures() {
+        let svg = plot("second-generation PPAM", &[1e5, 2.5e5]);
+        for words in
+            ["contraction [%]", "force [N]", "volume [ml]", "second-generation PPAM", "1 bar", "2.5 bar"]
+        {
+            assert!(svg.contains(words), "{words}");
+        }
+        assert!(svg.contains(r#"width="1160" height="470" viewBox="0 0 11600 4700""#));
+    }
+
+    #[test]
+    fn any_title_gives_well_formed_xml() {
+        let svg = plot("<b> \"a\" & stroke=\"#0D0887\" \u{7}\n", &[1e5, 2e5]);
+        tags(&svg);
+        assert!(svg.contains("&lt;b&gt;") && svg.contains("&amp;") && !svg.contains('\u{7}'));
+    }
+
+    #[test]
+    fn same_curves_same_bytes() {
+        assert_eq!(plot("a", &[1e5, 2e5]), plot("a", &[1e5, 2e5]));
+    }
+
+    #[test]
+    fn many_curves_keep_a_short_legend() {
+        let pressures: Vec<_> = (1..=50).map(|i| 1e4 * f64::from(i)).collect();
+        let svg = plot("fifty", &pressures);
+        assert!(svg.matches(" bar\n").count() <= ROWS && !svg.contains("dasharray"));
+    }
+
+    #[test]
+    fn refuses_what_can_not_be_drawn_and_says_why() {
+        let message = |curves: &[Curve]| characteristics_svg("a", curves).unwrap_err().to_string();
+        assert_eq!(message(&[]), "a plot needs at least one curve");
+        let mut points = isobar(1e5);
+        assert!(message(&[Curve { pressure_pa: 1e5, points: &points[..1] }]).contains("1 point(s)"));
+        assert!(message(&[Curve { pressure_pa: f64::NAN, points: &points }]).contains("NaN Pa"));
+        points[7].force_n = f64::INFINITY;
+        assert_eq!(
+            message(&[Curve { pressure_pa: 1e5, points: &points }]),
+            "force [N] is inf at point 7 of the curve at 100000 Pa: only finite values can be drawn"
+        );
+        points[7].force_n = 1e308;
+        points[8].force_n = -1e308;
+        assert!(
+            message(&[Curve { pressure_pa: 1e5, points: &points }]).contains("more than an axis can span")
+        );
+    }
+
+    #[test]
+    fn constant_values_can_be_drawn() {
+        let points = [response(1e5, 0.1); 2];
+        assert!(characteristics_svg("a", &[Curve { pressure_pa: 1e5, points: &points }]).is_ok());
+    }
+
+    #[test]
+    fn pressures_are_short() {
+        let shown: Vec<_> = [0.0, -0.0, 2e5, 12_345.678, 1.0, -5e4].into_iter().map(bar).collect();
+        assert_eq!(shown, ["0 bar", "0 bar", "2 bar", "0.1235 bar", "1e-5 bar", "-0.5 bar"]);
+    }
+}

@@ -1,0 +1,73 @@
+//! Colours and dashes that tell curves apart on screen, in grey print and with any kind of colour vision.
+
+use plotters::style::RGBColor;
+
+/// Stops of a scale from cold to hot whose lightness rises evenly (as in "plasma"), without the light end that fades on paper.
+const STOPS: [[f64; 3]; 4] =
+    [[13.0, 8.0, 135.0], [126.0, 3.0, 168.0], [204.0, 71.0, 120.0], [240.0, 140.0, 50.0]];
+
+/// Dashes of neighbouring curves, in widths of a line; the first is solid.
+const DASHES: [&[u32]; 4] = [&[], &[6, 3], &[2, 2], &[8, 2, 2, 2]];
+
+/// More curves than this are told apart by the order of their colours alone.
+const MOST_DASHED: usize = 12;
+
+/// Colour of curve `i` of `n`.
+pub(crate) fn colour(i: usize, n: usize) -> RGBColor {
+    let place = i as f64 / n.saturating_sub(1).max(1) as f64 * (STOPS.len() - 1) as f64;
+    let below = (0..STOPS.len() - 1).rev().find(|k| *k as f64 <= place).unwrap_or(0);
+    let share = place - below as f64;
+    let [r, g, b] =
+        [0, 1, 2].map(|c| to_byte(STOPS[below][c] + share * (STOPS[below + 1][c] - STOPS[below][c])));
+    RGBColor(r, g, b)
+}
+
+/// Nearest byte of 0 ..= 255.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "rounded and clamped to the range of a byte"
+)]
+fn to_byte(value: f64) -> u8 {
+    value.round().clamp(0.0, 255.0) as u8
+}
+
+/// Value of the SVG attribute `stroke-dasharray` for curve `i` of `n`; `None` for a solid line.
+pub(crate) fn dashes(i: usize, n: usize, line_width: u32) -> Option<String> {
+    let pattern = DASHES[i % DASHES.len()];
+    if n > MOST_DASHED || pattern.is_empty() {
+        return None;
+    }
+    let lengths: Vec<String> = pattern.iter().map(|widths| (widths * line_width).to_string()).collect();
+    Some(lengths.join(" "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_that_are_dashed_have_colours_of_their_own() {
+        for n in 1..=MOST_DASHED {
+            let colours: Vec<_> = (0..n).map(|i| colour(i, n)).collect();
+            assert!((0..n).all(|i| (0..i).all(|j| colours[i] != colours[j])), "{n} curves");
+        }
+    }
+
+    #[test]
+    fn scale_runs_from_first_to_last_stop() {
+        assert_eq!(colour(0, 1), RGBColor(13, 8, 135));
+        assert_eq!(colour(4, 5), RGBColor(240, 140, 50));
+        assert_eq!(colour(1, 4), RGBColor(126, 3, 168));
+    }
+
+    /// Grey values (Rec. 709) rise along the scale: the order survives a copying machine.
+    #[test]
+    fn lightness_rises() {
+        let grey = |i| {
+            let RGBColor(r, g, b) = colour(i, 20);
+            0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
+        };
+        assert!((1..20).all(|i| grey(i) > grey(i - 1)));
+    }
+}

@@ -1,0 +1,201 @@
+//! How a shape is drawn: the number of fibres, the kind of surface, the fineness around the axis.
+
+use crate::VtkError;
+use bulge_fibre::{MeridianPoint, Response, Shape};
+use std::f64::consts::PI;
+
+/// What is drawn between the fibres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Style {
+    /// A surface of revolution through the fibres.
+    Revolution,
+    /// Cloth of constant width between every two fibres: pleats where there is more of it than needed, lobes where the pressure has
+    /// unfolded them, flat panels where it is spanned. The fibres must be straight.
+    Pleats {
+        /// Circumference of the unfolded cloth \[m\]; `None`: the cloth is just unfolded (a polygon) at the largest radius.
+        cloth_circumference: Option<f64>,
+    },
+}
+
+impl Style {
+    /// A number of facets that looks round: 96 around the axis, or 12 for every pleat.
+    #[must_use]
+    pub fn default_facets(self) -> u32 {
+        match self {
+            Self::Revolution => 96,
+            Self::Pleats { .. } => 12,
+        }
+    }
+}
+
+/// An equilibrium shape and how to draw it.
+///
+/// Fibres that turn about the axis (braids) are drawn as two opposite families of helices, half of the fibres each; straight ones lie in
+/// meridian planes.
+///
+/// ```no_run
+/// # fn draw(shape: &bulge_fibre::Shape) -> Result<(), bulge_vtk::VtkError> {
+/// use bulge_vtk::{Bulge, Style, write_vtp};
+/// let style = Style::Pleats { cloth_circumference: None };
+/// let bulge = Bulge { shape, fibres: 40, style, facets: style.default_facets() };
+/// write_vtp("muscle.vtp", &bulge)
+/// # }
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bulge<'a> {
+    /// The equilibrium, in SI units.
+    pub shape: &'a Shape,
+    /// Number of fibres drawn: at least 3 with pleats, may be 0 for a surface of revolution.
+    pub fibres: u32,
+    /// What is drawn between them.
+    pub style: Style,
+    /// Segments around the axis: of every pleat, or of the whole circumference of a surface of revolution; at least 4.
+    pub facets: u32,
+}
+
+const LEAST_FACETS: u32 = 4;
+const LEAST_PLEATS: u32 = 3;
+
+impl Bulge<'_> {
+    /// Points of the cloth around the axis.
+    pub(crate) fn columns(&self) -> usize {
+        let facets = self.facets as usize;
+        match self.style {
+            Style::Revolution => facets,
+            Style::Pleats { .. } => facets.saturating_mul(self.fibres as usize),
+        }
+    }
+
+    /// Whether the fibres turn about the axis.
+    pub(crate) fn is_braided(&self) -> bool {
+        largest_turn(self.shape) > 0.0
+    }
+
+    /// Width of the cloth between two fibres \[m\]: s = C/n, or the chord at the largest radius.
+    pub(crate) fn cloth_width(&self, cloth_circumference: Option<f64>) -> f64 {
+        let n = f64::from(self.fibres);
+        cloth_circumference.map_or_else(
+            || 2.0 * (PI / n).sin() * self.shape.meridian.iter().map(|p| p.r_m).fold(0.0, f64::max),
+            |c| c / n,
+        )
+    }
+
+    /// Refuses what can't be drawn.
+    pub(crate) fn check(&self) -> Result<(), VtkError> {
+        self.check_drawing()?;
+        check_shape(self.shape)?;
+        let (stations, around) =
+            (self.shape.meridian.len(), self.columns().saturating_add(self.fibres as usize));
+        // Four vertices a quadrangle, and the format counts in 32 bits.
+        let most = u32::MAX / 4;
+        if stations.checked_mul(around).is_none_or(|points| points > most as usize) {
+            return Err(VtkError::TooLarge { stations, around, most });
+        }
+        Ok(())
+    }
+
+    fn check_drawing(&self) -> Result<(), VtkError> {
+        if self.facets < LEAST_FACETS {
+            return Err(VtkError::Facets { found: self.facets, least: LEAST_FACETS });
+        }
+        let Style::Pleats { cloth_circumference } = self.style else { return Ok(()) };
+        if self.fibres < LEAST_PLEATS {
+            return Err(VtkError::Fibres { found: self.fibres, least: LEAST_PLEATS });
+        }
+        if self.is_braided() {
+            return Err(VtkError::TurningFibres { turn_rad: largest_turn(self.shape) });
+        }
+        match cloth_circumference {
+            Some(value_m) if !(value_m > 0.0 && value_m.is_finite()) => Err(VtkError::Cloth { value_m }),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn largest_turn(shape: &Shape) -> f64 {
+    shape.meridian.iter().map(|p| p.turn_rad.abs()).fold(0.0, f64::max)
+}
+
+/// The quantities of a shape as a whole that go into a file, with the names they have there.
+pub(crate) fn whole(response: &Response) -> [(&'static str, f64); 5] {
+    [
+        ("pressure_Pa", response.pressure_pa),
+        ("force_N", response.force_n),
+        ("length_m", response.length_m),
+        ("contraction", response.contraction),
+        ("volume_m3", response.volume_m3),
+    ]
+}
+
+fn check_shape(shape: &Shape) -> Result<(), VtkError> {
+    if shape.meridian.len() < 2 {
+        return Err(VtkError::MeridianTooShort { found: shape.meridian.len() });
+    }
+    if let Some((quantity, value)) = whole(&shape.response).into_iter().find(|(_, value)| !value.is_finite())
+    {
+        return Err(VtkError::ResponseNotFinite { quantity, value });
+    }
+    shape.meridian.iter().enumerate().try_for_each(|(station, point)| check_point(station, point))
+}
+
+fn check_point(station: usize, point: &MeridianPoint) -> Result<(), VtkError> {
+    let drawn = [
+        ("x_m", point.x_m),
+        ("r_m", point.r_m),
+        ("slope_rad", point.slope_rad),
+        ("braid_angle_rad", point.braid_angle_rad),
+        ("fibre_tension_N", point.fibre_tension_n),
+        ("fibre_strain", point.fibre_strain),
+        ("membrane_force_N_per_m", point.membrane_force_n_per_m),
+        ("fibre_length_m", point.fibre_length_m),
+        ("turn_rad", point.turn_rad),
+    ];
+    if let Some((quantity, value)) = drawn.into_iter().find(|(_, value)| !value.is_finite()) {
+        return Err(VtkError::NotFinite { quantity, station, value });
+    }
+    if point.r_m <= 0.0 {
+        return Err(VtkError::Radius { station, radius_m: point.r_m });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::barrel;
+
+    const PLEATS: Style = Style::Pleats { cloth_circumference: None };
+
+    fn message(shape: &Shape, fibres: u32, style: Style, facets: u32) -> String {
+        Bulge { shape, fibres, style, facets }.check().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn refuses_what_can_not_be_drawn_and_says_why() {
+        let (straight, braided) = (barrel(8, 0.0), barrel(8, 1.5));
+        assert!(message(&straight, 40, PLEATS, 3).contains("3 facets"));
+        assert!(message(&straight, 2, PLEATS, 12).contains("found 2"));
+        assert!(message(&braided, 40, PLEATS, 12).contains("1.5 rad"));
+        let wrong = Style::Pleats { cloth_circumference: Some(f64::NAN) };
+        assert!(message(&straight, 40, wrong, 12).contains("NaN"));
+        assert!(message(&straight, u32::MAX, PLEATS, u32::MAX).contains("more than a file holds"));
+    }
+
+    #[test]
+    fn refuses_a_value_that_is_not_finite_and_names_it() {
+        let mut shape = barrel(8, 0.0);
+        shape.meridian[3].fibre_strain = f64::INFINITY;
+        assert_eq!(
+            message(&shape, 40, PLEATS, 12),
+            "fibre_strain is inf at meridian point 3: only finite values can be drawn"
+        );
+        let mut shape = barrel(8, 0.0);
+        shape.response.force_n = f64::NAN;
+        assert!(message(&shape, 40, PLEATS, 12).contains("force_N is NaN"));
+        shape = barrel(8, 0.0);
+        shape.meridian[2].r_m = 0.0;
+        assert!(message(&shape, 0, Style::Revolution, 12).contains("meridian point 2"));
+        shape.meridian.truncate(1);
+        assert!(message(&shape, 0, Style::Revolution, 12).contains("has 1"));
+    }
+}

@@ -1,0 +1,123 @@
+//! What can go wrong between a shape and a file on disk.
+
+use std::path::PathBuf;
+
+/// Why a VTK file wasn't written.
+#[derive(Debug, thiserror::Error)]
+pub enum VtkError {
+    /// The meridian is a point or nothing.
+    #[error("a surface needs at least 2 meridian points, the shape has {found}")]
+    MeridianTooShort {
+        /// Number of meridian points.
+        found: usize,
+    },
+    /// A value of the shape is infinite or not a number.
+    #[error("{quantity} is {value} at meridian point {station}: only finite values can be drawn")]
+    NotFinite {
+        /// Name of the quantity, with its unit.
+        quantity: &'static str,
+        /// Index of the meridian point.
+        station: usize,
+        /// The value found.
+        value: f64,
+    },
+    /// A value of the shape as a whole is infinite or not a number.
+    #[error("{quantity} is {value}: only finite values can be written")]
+    ResponseNotFinite {
+        /// Name of the quantity, with its unit.
+        quantity: &'static str,
+        /// The value found.
+        value: f64,
+    },
+    /// A radius that isn't positive.
+    #[error("the radius is {radius_m} m at meridian point {station}: it must be positive")]
+    Radius {
+        /// Index of the meridian point.
+        station: usize,
+        /// The radius found \[m\].
+        radius_m: f64,
+    },
+    /// Too coarse around the axis.
+    #[error("{found} facets are too few to draw a round cross-section: use {least} or more")]
+    Facets {
+        /// Number asked for.
+        found: u32,
+        /// Least number.
+        least: u32,
+    },
+    /// Too few fibres to hold a cloth between them.
+    #[error("pleats need at least {least} fibres to stand between, found {found}")]
+    Fibres {
+        /// Number asked for.
+        found: u32,
+        /// Least number.
+        least: u32,
+    },
+    /// Pleats were asked for a braid.
+    #[error(
+        "pleats stand between straight fibres, but these turn by {turn_rad} rad about the axis: draw a surface of revolution"
+    )]
+    TurningFibres {
+        /// Largest turn of a fibre \[rad\].
+        turn_rad: f64,
+    },
+    /// A circumference of cloth that is no length.
+    #[error("the cloth circumference is {value_m} m: it must be positive and finite")]
+    Cloth {
+        /// The circumference found \[m\].
+        value_m: f64,
+    },
+    /// More points than the format counts.
+    #[error(
+        "{stations} rings of {around} points are more than a file holds ({most}): draw fewer facets or fibres"
+    )]
+    TooLarge {
+        /// Number of meridian points.
+        stations: usize,
+        /// Points around the axis, cloth and fibres.
+        around: usize,
+        /// Largest number of points.
+        most: u32,
+    },
+    /// The mesh couldn't be turned into XML.
+    #[error("{}: the mesh can't be written as VTK XML: {reason}", path.display())]
+    Encode {
+        /// File that was to be written.
+        path: PathBuf,
+        /// What the encoder says.
+        reason: String,
+    },
+    /// ParaView chooses its reader by the end of the name.
+    #[error("{}: the name of the file must end in .vtp", path.display())]
+    Extension {
+        /// File that was to be written.
+        path: PathBuf,
+    },
+    /// The stem of a series is no file name.
+    #[error("{stem:?} can't begin the file names of a series: use a name without folders")]
+    Stem {
+        /// The stem found.
+        stem: String,
+    },
+    /// A series without members.
+    #[error("a series needs at least one shape")]
+    EmptySeries,
+    /// A member of a series has no finite value.
+    #[error("the value of member {index} of the series is {value}: it must be finite")]
+    SeriesValue {
+        /// Index of the member.
+        index: usize,
+        /// The value found.
+        value: f64,
+    },
+    /// The file system refuses.
+    #[error("{}: can't {action}: {source}", path.display())]
+    File {
+        /// File or folder concerned.
+        path: PathBuf,
+        /// What was being done.
+        action: &'static str,
+        /// Why it failed.
+        source: std::io::Error,
+    },
+}

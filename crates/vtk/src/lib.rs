@@ -1,0 +1,29 @@
+//! VTK files of bulging pneumatic muscles for ParaView.
+//!
+//! A [`Bulge`] says how an equilibrium shape is drawn: as a surface of revolution, or with the cloth between the fibres folded into pleats. [`write_vtp`]
+//! writes one of them, [`write_series`] writes many and a `.pvd` that ParaView plays as a film. Lengths are in metres; the axis of
+//! the muscle is the x axis, the left fitting lies at x = 0.
+//!
+//! What stands in a file (`PolyData`: the cloth as quadrangles, each fibre as one polyline, outward normals):
+//!
+//! | where | arrays |
+//! |---|---|
+//! | points | `radius_m` (of the fibres), `cloth_radius_m` (of the point itself), `slope_rad`, `braid_angle_rad`, `fibre_tension_N`, `fibre_strain`, `membrane_force_N_per_m` |
+//! | cells | `part` (0 cloth, 1 fibre), `area_m2` (0 for a fibre), `membrane_force_N_per_m` |
+//! | field data | `pressure_Pa`, `force_N`, `length_m`, `contraction`, `volume_m3` |
+//!
+//! This crate solves nothing and reads nothing: every file is a function of a [`bulge_fibre::Shape`].
+#[cfg(test)]
+mod analytic;
+mod bulge;
+mod error;
+mod mesh;
+mod panel;
+mod series;
+mod vtp;
+mod whole_file;
+
+pub use bulge::{Bulge, Style};
+pub use error::VtkError;
+pub use series::write_series;
+pub use vtp::write_vtp;

@@ -1,0 +1,111 @@
+//! Many shapes as numbered `.vtp` files and one `.pvd` that ParaView plays as a film.
+
+use crate::bulge::Bulge;
+use crate::{VtkError, whole_file, write_vtp};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Writes `stem_0000.vtp`, `stem_0001.vtp`, ... into the folder `dir`, which is created if needed, and last `stem.pvd`, whose path is
+/// returned. The first of each pair is the value ParaView shows as time: the contraction, or whatever orders the shapes.
+///
+/// # Errors
+/// As [`write_vtp`]; and if the series is empty, one of its values isn't finite, the stem is no file name, or the folder can't be created.
+pub fn write_series(
+    dir: impl AsRef<Path>,
+    stem: &str,
+    members: &[(f64, Bulge)],
+) -> Result<PathBuf, VtkError> {
+    let dir = dir.as_ref();
+    check(stem, members)?;
+    fs::create_dir_all(dir).map_err(|source| VtkError::File {
+        path: dir.to_path_buf(),
+        action: "create the folder",
+        source,
+    })?;
+    for (index, (_, bulge)) in members.iter().enumerate() {
+        write_vtp(dir.join(member_name(stem, index)), bulge)?;
+    }
+    let path = dir.join(format!("{stem}.pvd"));
+    whole_file::write(&path, collection(stem, members.iter().map(|(value, _)| *value)).as_bytes())?;
+    Ok(path)
+}
+
+fn check(stem: &str, members: &[(f64, Bulge)]) -> Result<(), VtkError> {
+    let is_name = !stem.is_empty() && !stem.contains(['/', '\\']) && !stem.contains(char::is_control);
+    if !is_name {
+        return Err(VtkError::Stem { stem: stem.to_owned() });
+    }
+    if members.is_empty() {
+        return Err(VtkError::EmptySeries);
+    }
+    match members.iter().enumerate().find(|(_, (value, _))| !value.is_finite()) {
+        Some((index, (value, _))) => Err(VtkError::SeriesValue { index, value: *value }),
+        None => members.iter().try_for_each(|(_, bulge)| bulge.check()),
+    }
+}
+
+fn member_name(stem: &str, index: usize) -> String {
+    format!("{stem}_{index:04}.vtp")
+}
+
+/// The `.pvd` file: names are relative to it.
+fn collection(stem: &str, values: impl Iterator<Item = f64>) -> String {
+    let mut xml = String::from(concat!(
+        "<?xml version=\"1.0\"?>\n",
+        "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n",
+        "  <Collection>\n",
+    ));
+    for (index, value) in values.enumerate() {
+        let file = escape(&member_name(stem, index));
+        // Writing to a String can't fail.
+        let _ = writeln!(xml, "    <DataSet timestep=\"{value}\" part=\"0\" file=\"{file}\"/>");
+    }
+    xml + "  </Collection>\n</VTKFile>\n"
+}
+
+/// Text as the value of an XML attribute.
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Style;
+    use crate::analytic::barrel;
+
+    #[test]
+    fn writes_members_and_collection() {
+        let folder = std::env::temp_dir().join(format!("bulge-vtk-series-{}/new", std::process::id()));
+        let shapes = [barrel(8, 0.0), barrel(9, 0.0)];
+        let style = Style::Pleats { cloth_circumference: None };
+        let members: Vec<_> = shapes
+            .iter()
+            .zip([0.0, 0.05])
+            .map(|(shape, value)| (value, Bulge { shape, fibres: 4, style, facets: 4 }))
+            .collect();
+        let path = write_series(&folder, "a & b", &members).unwrap();
+        assert_eq!(path, folder.join("a & b.pvd"));
+        let xml = fs::read_to_string(&path).unwrap();
+        assert!(xml.contains(r#"<DataSet timestep="0.05" part="0" file="a &amp; b_0001.vtp"/>"#), "{xml}");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 3);
+        fs::remove_dir_all(folder.parent().unwrap()).unwrap();
+    }
+
+    #[test]
+    fn refuses_before_writing_anything() {
+        let folder = std::env::temp_dir().join(format!("bulge-vtk-refused-{}", std::process::id()));
+        let shape = barrel(8, 0.0);
+        let bulge = Bulge { shape: &shape, fibres: 4, style: Style::Revolution, facets: 4 };
+        let message = |stem: &str, members: &[(f64, Bulge)]| {
+            write_series(&folder, stem, members).unwrap_err().to_string()
+        };
+        assert!(message("up/down", &[(0.0, bulge)]).contains("up/down"));
+        assert!(message("", &[(0.0, bulge)]).contains("without folders"));
+        assert!(message("a", &[]).contains("at least one shape"));
+        assert!(message("a", &[(0.0, bulge), (f64::NAN, bulge)]).contains("member 1"));
+        assert!(message("a", &[(0.0, bulge), (0.1, Bulge { facets: 1, ..bulge })]).contains("1 facets"));
+        assert!(!folder.exists());
+    }
+}

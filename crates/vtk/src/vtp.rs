@@ -1,0 +1,154 @@
+//! One shape as one `.vtp` file (VTK XML `PolyData`).
+
+use crate::VtkError;
+use crate::bulge::{Bulge, whole};
+use crate::mesh::Mesh;
+use crate::whole_file;
+use bulge_fibre::Response;
+use std::fmt::Write as _;
+use std::path::Path;
+use vtkio::model::{Attribute, Attributes, ByteOrder, DataSet, PolyDataPiece, Version, VertexNumbers, Vtk};
+use vtkio::xml::Compressor;
+
+/// Writes one shape; the file appears whole or not at all.
+///
+/// # Errors
+/// The bulge can't be drawn (too few facets, a value that isn't finite, ...), the name doesn't end in `.vtp`, its folder doesn't exist, or
+/// the disk refuses. The message names the path and the reason.
+pub fn write_vtp(path: impl AsRef<Path>, bulge: &Bulge) -> Result<(), VtkError> {
+    let path = path.as_ref();
+    if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("vtp")) {
+        return Err(VtkError::Extension { path: path.to_path_buf() });
+    }
+    bulge.check()?;
+    let xml = encode(Mesh::new(bulge), &bulge.shape.response)
+        .map_err(|reason| VtkError::Encode { path: path.to_path_buf(), reason })?;
+    whole_file::write(path, &xml)
+}
+
+/// The bytes of a file.
+fn encode(mesh: Mesh, response: &Response) -> Result<Vec<u8>, String> {
+    let vtk = Vtk {
+        version: Version::new_xml(1, 0),
+        title: String::new(),
+        byte_order: ByteOrder::LittleEndian,
+        data: DataSet::inline(piece(mesh)),
+        file_path: None,
+    };
+    let file = vtk.try_into_xml_format(Compressor::ZLib, 6).map_err(|e| e.to_string())?;
+    // Into memory: the writer of vtkio doesn't notice a disk that is full.
+    let mut body = Vec::new();
+    file.write(&mut body).map_err(|e| e.to_string())?;
+    let body = String::from_utf8(body).map_err(|e| e.to_string())?;
+    let (head, tail) = body.split_once("<PolyData>").ok_or("no PolyData element")?;
+    Ok(format!("<?xml version=\"1.0\"?>\n{head}<PolyData>{}{tail}\n", field_data(response)).into_bytes())
+}
+
+/// Field data, which vtkio doesn't write.
+fn field_data(response: &Response) -> String {
+    let mut xml = String::from("<FieldData>");
+    for (name, value) in whole(response) {
+        // Writing to a String can't fail.
+        let _ = write!(
+            xml,
+            r#"<DataArray type="Float64" Name="{name}" NumberOfTuples="1" format="ascii">{value:e}</DataArray>"#
+        );
+    }
+    xml + "</FieldData>"
+}
+
+fn piece(mesh: Mesh) -> PolyDataPiece {
+    let mut cell = vec![Attribute::generic("part", 1).with_data(mesh.part)];
+    cell.extend(
+        mesh.cell_fields.into_iter().map(|(name, values)| Attribute::generic(name, 1).with_data(values)),
+    );
+    let point =
+        mesh.point_fields.into_iter().map(|(name, values)| Attribute::scalars(name, 1).with_data(values));
+    PolyDataPiece {
+        points: mesh.points.into_iter().flatten().collect::<Vec<f64>>().into(),
+        lines: (!mesh.fibres.is_empty()).then(|| cells(mesh.fibres)),
+        polys: Some(cells(mesh.quads)),
+        data: Attributes { point: point.collect(), cell },
+        ..PolyDataPiece::default()
+    }
+}
+
+fn cells<C: IntoIterator<Item = usize>>(cells: impl IntoIterator<Item = C>) -> VertexNumbers {
+    let (mut connectivity, mut offsets) = (Vec::new(), Vec::new());
+    for cell in cells {
+        connectivity.extend(cell.into_iter().map(|vertex| vertex as u64));
+        offsets.push(connectivity.len() as u64);
+    }
+    VertexNumbers::XML { connectivity, offsets }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Style;
+    use crate::analytic::barrel;
+    use bulge_fibre::Shape;
+
+    fn drawn(shape: &Shape, facets: u32, fibres: u32) -> String {
+        let bulge = Bulge { shape, fibres, style: Style::Revolution, facets };
+        bulge.check().unwrap();
+        String::from_utf8(encode(Mesh::new(&bulge), &shape.response).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn names_counts_arrays_and_field_data() {
+        let xml = drawn(&barrel(20, 1.5), 24, 6);
+        for part in [
+            r#"NumberOfPoints="630""#,
+            r#"NumberOfLines="6""#,
+            r#"NumberOfPolys="480""#,
+            r#"compressor="vtkZLibDataCompressor""#,
+            r#"Scalars="membrane_force_N_per_m""#,
+            r#"Name="pressure_Pa" NumberOfTuples="1" format="ascii">2e5<"#,
+            r#"Name="force_N" NumberOfTuples="1" format="ascii">3.215e2<"#,
+        ] {
+            assert!(xml.contains(part), "{part}");
+        }
+    }
+
+    #[test]
+    fn vtkio_reads_back_the_points_it_wrote() {
+        let shape = barrel(20, 1.5);
+        let bulge = Bulge { shape: &shape, fibres: 6, style: Style::Revolution, facets: 24 };
+        let mesh = Mesh::new(&bulge);
+        let xml = encode(mesh.clone(), &shape.response).unwrap();
+        // vtkio doesn't read field data either.
+        let xml = String::from_utf8(xml).unwrap();
+        let (head, rest) = xml.split_once("<FieldData>").unwrap();
+        let (_, tail) = rest.split_once("</FieldData>").unwrap();
+        let vtk = Vtk::parse_xml(format!("{head}{tail}").as_bytes()).unwrap();
+        let DataSet::PolyData { pieces, .. } = vtk.data else { panic!("not PolyData") };
+        let piece = pieces[0].load_piece_data(None).unwrap();
+        let points: Vec<f64> = piece.points.cast_into().unwrap();
+        assert_eq!(points, mesh.points.into_iter().flatten().collect::<Vec<_>>());
+        assert_eq!(piece.polys.unwrap().num_cells(), mesh.quads.len());
+        assert_eq!(piece.data.point.len(), 7);
+    }
+
+    #[test]
+    fn leaves_nothing_behind_when_writing_fails() {
+        let folder = std::env::temp_dir().join(format!("bulge-vtk-fails-{}", std::process::id()));
+        let occupied = folder.join("occupied.vtp");
+        std::fs::create_dir_all(&occupied).unwrap();
+        let shape = barrel(8, 0.0);
+        let bulge = Bulge { shape: &shape, fibres: 4, style: Style::Revolution, facets: 8 };
+        let message = |path: &Path| write_vtp(path, &bulge).unwrap_err().to_string();
+
+        let missing = message(&folder.join("nowhere/shape.vtp"));
+        assert!(missing.contains("nowhere") && missing.contains("no folder"), "{missing}");
+        assert!(message(&occupied).contains("occupied.vtp"));
+        assert!(message(&folder.join("shape.vtk")).contains("must end in .vtp"));
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1, "only the folder that was there");
+        assert_eq!(std::fs::read_dir(&occupied).unwrap().count(), 0);
+
+        write_vtp(folder.join("shape.vtp"), &bulge).unwrap();
+        write_vtp(folder.join("shape.vtp"), &bulge).unwrap();
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2, "the file and no temporary one");
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}

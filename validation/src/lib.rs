@@ -1,0 +1,1 @@
+//! Verification of Bulge: every check with its error and its tolerance.
