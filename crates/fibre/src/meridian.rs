@@ -266,6 +266,10 @@ pub(crate) fn stations(
 
 /// Size of the shortening below which its relative error does not count: a part of what the bulge itself shortens.
 fn shortening_floor<D: Real>(net: &Net<D>, size: f64, parabola: f64) -> f64 {
+    if net.turn.value() != 0.0 || net.compliance.value() != 0.0 {
+        // Angle and strain shorten or lengthen the muscle by themselves.
+        return 0.01 * net.half_fibre.value();
+    }
     let slope = size / parabola;
     (slope * slope).min(1.0) * parabola.min(net.half_fibre.value()) * 1e-2
 }

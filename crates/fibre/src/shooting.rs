@@ -26,8 +26,10 @@ const MAX_STEP: [f64; 2] = [0.8, 4.0];
 const NEAR: f64 = 1e-2;
 /// Largest step of the last integration: what the derivatives are exact to.
 const DERIVATIVES: f64 = 1e-8;
+/// Difference of the contraction from that of a straight meridian up to which the start is taken from the linear solution.
+const SHALLOW: f64 = 1e-4;
 /// Smallest difference of the contraction from that of a straight meridian.
-const STRAIGHT: f64 = 1e-11;
+const STRAIGHT: f64 = 1e-7;
 /// After a step of this size the quadratic convergence has done its work.
 const LAST_STEP: f64 = 1e-6;
 
@@ -125,7 +127,7 @@ pub(crate) fn solve(
 }
 
 /// Where the meridian is exactly straight, bulge and curvature are zero and their logarithms don't exist: a contraction within `STRAIGHT` of it is
-/// moved that far, which moves the force by about the same relative amount.
+/// moved that far, and [`finish`] comes back along the derivatives (an error of the second order).
 fn beside_straight(net: &Net<f64>, contraction: f64) -> f64 {
     match straight_contraction(net) {
         Some(straight) if (contraction - straight).abs() < STRAIGHT => straight + STRAIGHT,
@@ -142,7 +144,9 @@ fn newton(
 ) -> Result<Unknowns, FibreError> {
     let lifted = net.lift::<2>();
     let mut at = start;
-    let mut tolerance: f64 = 1e-4;
+    // Near the straight meridian the shortening that counts is a small difference.
+    let excess = straight_contraction(net).map_or(1.0, |straight| (contraction - straight).abs());
+    let mut tolerance = (1e-2 * excess).clamp(TOLERANCE, 1e-4);
     let mut previous = f64::INFINITY;
     let mut last_step = [0.0, 0.0];
     let mut halvings = 0;
@@ -320,8 +324,15 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
         }
         high = probe.min(high);
     }
-    let bulge = illinois(|b| end_distance(b * b), low, high, 1e-4 * high).powi(2);
-    let bulge = bulge.max(1e-14);
+    let bulge = if (contraction - straight).abs() < SHALLOW {
+        // First order in the bulge: d(sigma)/dr = -q^2 r/sigma.
+        let kappa = rate(net.end_radius);
+        let mean = gauss::integrate(|tau| 1.0 - shape(kappa * half * tau) / shape(kappa * half));
+        let sigma = net.cos_rest * (1.0 - straight);
+        (contraction - straight).abs() * net.cos_rest * sigma / (net.turn * net.turn * net.end_radius * mean)
+    } else {
+        illinois(|b| end_distance(b * b), low, high, 1e-4 * high).powi(2)
+    };
     let mid = net.end_radius + side * bulge;
     let kappa = rate(mid);
     let sigma2 = ((1.0 + strain).powi(2) - (net.turn * mid).powi(2)).max(1e-3);
@@ -375,6 +386,7 @@ pub(crate) fn finish<const N: usize>(
     unknowns: Unknowns,
 ) -> Result<Solved<N>, FibreError> {
     let failed = FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: 0 };
+    let asked = contraction;
     let contraction = beside_straight(&net.constant(), contraction);
     let mut at = unknowns;
     let mut evaluations = 0;
@@ -397,7 +409,7 @@ pub(crate) fn finish<const N: usize>(
         let o = out.gradient();
         let along = |z: [f64; 2]| o[0] * z[0] + o[1] * z[1];
         Total {
-            value: out.value() - along(step),
+            value: out.value() - along(step) - along(by_contraction) * (asked - contraction),
             by_contraction: -along(by_contraction),
             by_parameter: std::array::from_fn(|i| if i < 2 { 0.0 } else { o[i] - along(follow[i]) }),
         }
