@@ -1,1 +1,87 @@
-fn main() {}
+//! The command `bulge`: one file per command, this one chooses among them and turns errors into messages and exit statuses.
+
+mod arguments;
+mod characteristics;
+mod curve;
+mod demo;
+mod failure;
+mod files;
+mod muscle;
+mod shape;
+mod sketch;
+mod text;
+mod validate;
+
+use clap::{Parser, Subcommand};
+use std::io::Write;
+use std::process::ExitCode;
+
+use failure::Failure;
+
+/// Shape, force and volume of pneumatic artificial muscles.
+///
+/// Pleated (PPAM) and braided (McKibben, Festo Fluidic Muscle) muscles from one meridian equation. MUSCLE is a TOML file or the name of a
+/// shipped muscle (`bulge muscle` lists them).
+///
+/// Exit status: 0 done; 1 the input is wrong; 2 usage; 3 no solution exists; 4 it did not converge.
+#[derive(Debug, Parser)]
+#[command(name = "bulge", version, max_term_width = 110)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// The tour, on shipped muscles: shapes, VTK, characteristics (what runs when no command is given)
+    Demo(demo::Demo),
+    /// One equilibrium: force, length, volume, fibre tension, stiffness, meridian
+    Shape(shape::ShapeCommand),
+    /// Isobaric characteristics: force and volume over the contraction
+    Curve(curve::CurveCommand),
+    /// Shipped muscles: list them, or print one as a file to start from
+    Muscle(muscle::MuscleCommand),
+    /// The verification tables: every check, its error, its tolerance
+    Validate(validate::Validate),
+}
+
+/// Exit status for a mistaken command line, as clap's own.
+const USAGE: u8 = 2;
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version come this way too, on standard output with status 0.
+            let status = if error.use_stderr() { USAGE } else { 0 };
+            let _ = error.print();
+            return ExitCode::from(status);
+        }
+    };
+    let command = arguments.command.unwrap_or(Command::Demo(demo::Demo::default()));
+    let outcome = match command {
+        Command::Demo(command) => command.run(),
+        Command::Shape(command) => command.run(),
+        Command::Curve(command) => command.run(),
+        Command::Muscle(command) => command.run(),
+        Command::Validate(command) => command.run(),
+    };
+    match outcome.and_then(|text| print(&text)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let _ = writeln!(std::io::stderr(), "error: {failure}");
+            ExitCode::from(failure.status())
+        }
+    }
+}
+
+/// Everything a command says on standard output, at once. A reader who has seen enough (`| head`) is no error.
+fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::Output { path: "standard output".into(), source: error })
+        }
+        _ => Ok(()),
+    }
+}

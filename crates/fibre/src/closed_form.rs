@@ -129,7 +129,14 @@ struct Equations {
 }
 
 impl Equations {
-    fn at(i: &Integrals, [m, t, y]: [f64; 3], a: f64, contraction: f64, slenderness: f64, kappa: f64) -> Self {
+    fn at(
+        i: &Integrals,
+        [m, t, y]: [f64; 3],
+        a: f64,
+        contraction: f64,
+        slenderness: f64,
+        kappa: f64,
+    ) -> Self {
         let elastic = kappa / y;
         let b = y + elastic;
         let md_m = i.f_m - 0.5 * i.d; // m dD/dm

@@ -29,7 +29,7 @@ pub(crate) struct Cylinder<D> {
 fn balance<D: Real>(net: &Net<D>, sigma: D, tension: D) -> (D, D) {
     let stretch = net.compliance * tension + 1.0;
     let radius = (stretch * stretch - sigma * sigma).sqrt() / net.turn;
-    (radius, net.area_r(radius) - net.local(radius, tension).hoop)
+    (radius, net.area_r(radius) - net.acting_at(radius.value()).local(radius, tension).hoop)
 }
 
 /// The cylinder at a contraction.
@@ -45,7 +45,7 @@ pub(crate) fn solve<D: Real>(net: &Net<D>, contraction: D) -> Result<Cylinder<D>
     }
     let (tension, iterations) = tension(net, sigma, contraction.value())?;
     let (radius, _) = balance(net, sigma, tension);
-    let local = net.local(radius, tension);
+    let local = net.acting_at(radius.value()).local(radius, tension);
     let force = local.force - net.area(radius);
     let volume = (radius + net.depth).squared() * sigma * net.half_fibre * (2.0 * PI);
     Ok(Cylinder { radius, tension, force, volume, iterations })

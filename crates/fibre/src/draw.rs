@@ -100,7 +100,7 @@ impl Problem {
 
     /// A station on the left (-1) or right (+1) half.
     fn point(&self, station: &Station, side: f64, length: f64) -> MeridianPoint {
-        let net = &self.net;
+        let net = &self.net.acting_at(station.r);
         let radius = self.muscle.radius().si();
         let local = net.local(station.r, station.tension);
         let fibre = net.half_fibre + side * station.fibre;

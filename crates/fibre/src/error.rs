@@ -42,7 +42,7 @@ pub enum FibreError {
     },
     /// The muscle would have to be longer than its inextensible fibres allow.
     #[error(
-        "no equilibrium at contraction {:.4} %: the limit is {:.4} %, where the inextensible fibres are drawn straight (give `fibre.stiffness` to let them stretch)",
+        "no equilibrium at contraction {:.4} %: it must be greater than {:.4} %, where the inextensible fibres are drawn straight (give `fibre.stiffness` to let them stretch)",
         100.0 * contraction, 100.0 * limit
     )]
     TooLong {
@@ -96,7 +96,9 @@ pub enum FibreError {
         why: &'static str,
     },
     /// Shooting was asked for a muscle without a meridian to integrate.
-    #[error("there is nothing to shoot at in a muscle with ends = \"cylinder\": its meridian is straight; use the method `auto`, or ends = \"clamped\"")]
+    #[error(
+        "there is nothing to shoot at in a muscle with ends = \"cylinder\": its meridian is straight; use the method `auto`, or ends = \"clamped\""
+    )]
     NothingToShoot,
     /// Newton's method did not converge.
     #[error("the equilibrium at contraction {:.4} % did not converge: residual {residual:.2e} after {iterations} iterations; try a contraction nearer to the middle of the range, or stiffer fibres", 100.0 * contraction)]

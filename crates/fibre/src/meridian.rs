@@ -17,8 +17,8 @@
 //! its definition is pure rounding; k and sin(chi) as states keep their *relative* accuracy however small they are. The first integral
 //! `N cos(chi) = F + A(r)` is not used by the integration and so measures its error.
 
-use bulge_numerics::dop853::{self, Dop853};
 use bulge_numerics::Real;
+use bulge_numerics::dop853::{self, Dop853};
 use std::f64::consts::PI;
 
 use crate::net::Net;
@@ -60,14 +60,15 @@ pub(crate) struct Trajectory<D> {
 }
 
 /// A net with the radius at mid-length fixed: the right-hand side of the ODE.
-struct Flow<'a, D> {
-    net: &'a Net<D>,
+#[derive(Clone, Copy)]
+struct Flow<D> {
+    net: Net<D>,
     mid_radius: D,
 }
 
-impl<D: Real> Flow<'_, D> {
+impl<D: Real> Flow<D> {
     fn slope(&self, y: &State<D>) -> State<D> {
-        let net = self.net;
+        let net = &self.net;
         let (sin, cos, k, tension) = (y[SIN], y[COS], y[CURVATURE], y[TENSION]);
         let r = self.mid_radius - y[RHO];
         let l = net.local(r, tension);
@@ -76,7 +77,8 @@ impl<D: Real> Flow<'_, D> {
         // cos(alpha0) - sigma cos(chi) without cancellation: (cos^2(alpha0) - sigma^2)/(cos(alpha0) + sigma) + sigma (1 - cos(chi)).
         let strain = net.compliance * tension;
         let angle = (net.turn * r).squared() - net.sin2_rest;
-        let shortening = (angle - strain * (strain + 2.0)) / (net.cos_rest + l.sigma) + l.sigma * sin * sin / (cos + 1.0);
+        let shortening =
+            (angle - strain * (strain + 2.0)) / (net.cos_rest + l.sigma) + l.sigma * sin * sin / (cos + 1.0);
         [
             out,
             shortening,
@@ -140,7 +142,8 @@ fn start<D: Real>(net: &Net<D>, bulge: D, curvature: D) -> Result<(State<D>, D, 
     if mid_radius.value() <= 0.0 {
         return Err(NoTrajectory);
     }
-    let tension = net.tension_at_equator(mid_radius, curvature).ok_or(NoTrajectory)?;
+    let tension =
+        net.acting_at(mid_radius.value()).tension_at_equator(mid_radius, curvature).ok_or(NoTrajectory)?;
     let zero = D::from(0.0);
     let state = [zero, zero, zero, D::from(1.0), curvature, tension, zero];
     Ok((state, mid_radius, tension))
@@ -156,14 +159,15 @@ pub(crate) fn trajectory<D: Real>(
     tolerance: f64,
 ) -> Result<Trajectory<D>, NoTrajectory> {
     let (mut y, mid_radius, mid_tension) = start(net, bulge, curvature)?;
-    let flow = Flow { net, mid_radius };
-    let mut f = |y: &State<D>| flow.slope(y);
-    let mut slope = f(&y);
-    let mid = net.local(mid_radius, mid_tension);
+    // Where the meridian crosses the radius at which the cloth becomes taut, the law has a kink: one smooth law on either side, and the
+    // crossing hit exactly.
+    let at_middle = net.acting_at(mid_radius.value());
+    let mut flow = Flow { net: at_middle, mid_radius };
+    let mut slope = flow.slope(&y);
+    let mid = at_middle.local(mid_radius, mid_tension);
     let force = mid.force - net.area(mid_radius);
     let sign = bulge.value().signum();
     let size = bulge.value().abs();
-    // The kink of the cloth's energy, when the meridian crosses it.
     let mut kink = net
         .cloth
         .map(|cloth| mid_radius - cloth.radius)
@@ -177,28 +181,35 @@ pub(crate) fn trajectory<D: Real>(
         let target = kink.unwrap_or(bulge);
         let limit = D::from(flow.distance_to(&y, &slope, target.value()).map_or(far, |h| h.min(far)));
         let h = run
-            .advance(&mut f, |a, b| scale(a, b, mid_radius.value(), floor), &mut y, &mut slope, limit)
+            .advance(
+                &mut |y: &State<D>| flow.slope(y),
+                |a, b| scale(a, b, mid_radius.value(), floor),
+                &mut y,
+                &mut slope,
+                limit,
+            )
             .map_err(|_| NoTrajectory)?;
         fibre += h;
         let remaining = (target.value() - y[RHO].value()) * sign;
         // The last step aims at the target with a Taylor estimate; a remainder of a few per cent is then crossed in rho.
         let part = remaining / y[RHO].value().abs();
         if part < CROSSING {
-            let pieces = (part.abs() / CROSSING).ceil().clamp(1.0, 100.0) as u32;
+            let pieces = (1..100).find(|pieces| part.abs() <= CROSSING * f64::from(*pieces)).unwrap_or(100);
             let (more, state) = flow.cross_to(&y, target, pieces);
             fibre += more;
             y = state;
             run.evaluations += 12 * pieces;
-            slope = f(&y);
             if kink.take().is_none() {
                 break;
             }
+            flow.net = net.acting_at(net.end_radius.value());
+            slope = flow.slope(&y);
         }
         if run.accepted > MAX_STEPS || y[COS].value() < -0.999 {
             return Err(NoTrajectory);
         }
     }
-    let end = net.local(net.end_radius, y[TENSION]);
+    let end = flow.net.local(net.end_radius, y[TENSION]);
     let integral = end.force * y[COS] - net.area(net.end_radius) - force;
     let first_integral = (integral.value() / mid.force.value()).abs();
     if !first_integral.is_finite() {
@@ -238,10 +249,14 @@ pub(crate) fn stations(
     pieces: usize,
 ) -> Result<(Vec<Station>, f64), NoTrajectory> {
     let (mut y, mid_radius, tension) = start(net, bulge, curvature)?;
-    let flow = Flow { net, mid_radius };
-    let mut f = |y: &State<f64>| flow.slope(y);
+    let flows = [net.acting_at(0.0), *net].map(|net| Flow { net, mid_radius });
+    let flow_at = |y: &State<f64>| {
+        let taut = net.cloth.is_some_and(|cloth| mid_radius - y[RHO] > cloth.radius);
+        flows[usize::from(taut)]
+    };
+    let mut f = |y: &State<f64>| flow_at(y).slope(y);
     let mut slope = f(&y);
-    let mid_force = net.local(mid_radius, tension).force;
+    let mid_force = flow_at(&y).net.local(mid_radius, tension).force;
     let force = mid_force - net.area(mid_radius);
     let floor = shortening_floor(net, bulge.abs(), half_fibre);
     let mut run = Dop853::new(half_fibre / pieces as f64, tolerance);
@@ -256,7 +271,7 @@ pub(crate) fn stations(
                 .map_err(|_| NoTrajectory)?;
         }
         let r = mid_radius - y[RHO];
-        let integral = net.local(r, y[TENSION]).force * y[COS] - net.area(r) - force;
+        let integral = flow_at(&y).net.local(r, y[TENSION]).force * y[COS] - net.area(r) - force;
         departure = departure.max((integral / mid_force).abs());
         let x = net.cos_rest * fibre - y[SHORTENING];
         found.push(Station { fibre, x, r, chi: y[SIN].atan2(y[COS]), tension: y[TENSION] });

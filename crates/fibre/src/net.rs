@@ -37,6 +37,8 @@ pub(crate) struct Bladder<D> {
 }
 
 /// Cloth that stops unfolding at r_u: u(r) = K (2 pi (r - r_u))^2/(2 * 2 pi r_u) beyond it, per meridian length.
+///
+/// In a [`Net`] it acts at every radius, so that the law is smooth; [`Net::acting_at`] leaves it out where it is slack.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cloth<D> {
     /// Hoop stiffness K/(p R).
@@ -99,6 +101,11 @@ pub(crate) struct Local<D> {
 }
 
 impl<D: Real> Net<D> {
+    /// The net as it is at radius `r`: without the cloth where that is slack.
+    pub(crate) fn acting_at(&self, r: f64) -> Self {
+        Self { cloth: self.cloth.filter(|cloth| r > cloth.radius.value()), ..*self }
+    }
+
     /// Area enclosed by a cross-section, A(r).
     pub(crate) fn area(&self, r: D) -> D {
         self.area_factor * (r + self.depth).squared() * PI
@@ -148,7 +155,15 @@ impl<D: Real> Net<D> {
         if self.is_plain() {
             let zero = D::from(0.0);
             let force_t = D::from(1.0);
-            return Local { sigma: stretch, force: tension, hoop: zero, hoop_r: zero, tension_r: zero, force_t, hoop_t: zero };
+            return Local {
+                sigma: stretch,
+                force: tension,
+                hoop: zero,
+                hoop_r: zero,
+                tension_r: zero,
+                force_t,
+                hoop_t: zero,
+            };
         }
         let q2 = self.turn * self.turn;
         let q2r = q2 * r;
@@ -168,13 +183,6 @@ impl<D: Real> Net<D> {
         let sigma_t = stretch * c * per_sigma;
         let hoop_t = (q2r * per_stretch * per_stretch + w.w_12 * sigma_t - hoop * sigma_t) * per_sigma;
         Local { sigma, force, hoop, hoop_r, tension_r, force_t, hoop_t }
-    }
-
-    /// The constant of the motion conjugate to S: H = sigma N - w, the same all along a meridian.
-    pub(crate) fn hamiltonian(&self, r: D, tension: D) -> D {
-        let local = self.local(r, tension);
-        let stored = self.compliance * tension.squared() * 0.5 + self.wall(local.sigma, r).w;
-        local.sigma * local.force - stored
     }
 
     /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis at radius `r`: A' - h = k N.
@@ -287,25 +295,32 @@ impl<D: Real> Bladder<D> {
 }
 
 impl<D: Real> Cloth<D> {
-    /// sigma u(r) with u = pi K (r - r_u)^2/r_u for r > r_u.
+    /// sigma u(r) with u = pi K (r - r_u)^2/r_u.
     fn add(&self, wall: &mut Wall<D>, sigma: D, r: D) {
         let excess = r - self.radius;
-        if excess.value() > 0.0 {
-            let scale = self.stiffness * PI / self.radius;
-            let u = scale * excess * excess;
-            let u_r = scale * excess * 2.0;
-            wall.w += sigma * u;
-            wall.w_1 += u;
-            wall.w_2 += sigma * u_r;
-            wall.w_12 += u_r;
-            wall.w_22 += sigma * scale * 2.0;
-        }
+        let scale = self.stiffness * PI / self.radius;
+        let u = scale * excess * excess;
+        let u_r = scale * excess * 2.0;
+        wall.w += sigma * u;
+        wall.w_1 += u;
+        wall.w_2 += sigma * u_r;
+        wall.w_12 += u_r;
+        wall.w_22 += sigma * scale * 2.0;
     }
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+
+    impl<D: Real> Net<D> {
+        /// The constant of the motion conjugate to S: H = sigma N - w, the same all along a meridian.
+        fn hamiltonian(&self, r: D, tension: D) -> D {
+            let local = self.local(r, tension);
+            let stored = self.compliance * tension.squared() * 0.5 + self.wall(local.sigma, r).w;
+            local.sigma * local.force - stored
+        }
+    }
 
     /// An elastic net with bladder and cloth, every term alive.
     pub(crate) fn rich<D: Real>() -> Net<D> {

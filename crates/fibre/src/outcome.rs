@@ -2,6 +2,7 @@
 
 use bulge_numerics::{Dual, Real};
 
+use crate::FibreError;
 use crate::closed_form::{self, ClosedForm, Graded};
 use crate::cylinder;
 use crate::meridian::{COS, SIN, TENSION};
@@ -9,7 +10,6 @@ use crate::net::Net;
 use crate::problem::{Problem, Variable};
 use crate::shape::{Convergence, Method};
 use crate::shooting::{self, Total, Unknowns};
-use crate::FibreError;
 
 /// Which method computes an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -112,7 +112,7 @@ fn by_cylinder<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<O
         Total { value: d.value(), by_contraction, by_parameter }
     };
     let (radius, tension) = (found.radius.value(), found.tension.value());
-    let local = net.local(found.radius, found.tension);
+    let local = net.acting_at(radius).local(found.radius, found.tension);
     let residual = ((net.area_r(found.radius) - local.hoop) / net.area_r(found.radius)).value().abs();
     Ok(Outcome {
         force: total(found.force),
@@ -139,13 +139,19 @@ fn by_closed_form<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Resul
     let found = closed_form::solve(contraction, slenderness.value(), kappa.value())?;
     // In units of p R^2 and R^3: F = a L^2 f, V = L^3 v.
     let carry = |g: &Graded| {
-        (slenderness - slenderness.value()) * g.by_slenderness + (kappa - kappa.value()) * g.by_compliance + g.value
+        (slenderness - slenderness.value()) * g.by_slenderness
+            + (kappa - kappa.value()) * g.by_compliance
+            + g.value
     };
     let force_scale = net.area_factor * slenderness.squared();
     let volume_scale = slenderness.squared() * slenderness;
     let total = |scale: Dual<N>, g: &Graded| {
         let d = scale * carry(g);
-        Total { value: d.value(), by_contraction: scale.value() * g.by_contraction, by_parameter: *d.gradient() }
+        Total {
+            value: d.value(),
+            by_contraction: scale.value() * g.by_contraction,
+            by_parameter: *d.gradient(),
+        }
     };
     let a = net.area_factor.value();
     // N = T = pi a/(2 y^2); N cos(psi) - A - F at the fitting.

@@ -88,11 +88,6 @@ impl Problem {
         }
     }
 
-    /// Reference radius R.
-    pub(crate) fn reference<D>(&self, value: impl Fn(Variable) -> D) -> D {
-        value(Variable::Parameter(Parameter::Radius))
-    }
-
     /// Whether shape, force/p and volume are the same at every pressure.
     pub(crate) fn is_scale_free(&self) -> bool {
         self.net.compliance == 0.0 && self.net.bladder.is_none() && self.net.cloth.is_none()
@@ -110,8 +105,12 @@ impl Problem {
         match self.muscle.construction() {
             Construction::Pleated(pleated) => {
                 net.depth = get(Parameter::PleatDepth) / radius;
-                // sin(theta) = r sin(gamma)/R
-                net.turn = get(Parameter::Misalignment).sin_cos().0;
+                // Misaligned fibres make the unpressurised muscle a braid of radius R and angle gamma, of one family.
+                let (sin, cos) = get(Parameter::Misalignment).sin_cos();
+                net.half_fibre = half_length / cos;
+                net.cos_rest = cos;
+                net.turn = sin;
+                net.sin2_rest = sin * sin;
                 if let FibreCount::Discrete(_) = pleated.fibres() {
                     let n = get(Parameter::Fibres);
                     net.area_factor = n * (D::from(2.0 * PI) / n).sin_cos().0 / (2.0 * PI);
@@ -120,7 +119,8 @@ impl Problem {
             Construction::Braided(_) => {
                 let (sin, cos) = get(Parameter::BraidAngle).sin_cos();
                 // Where the fitting's radius isn't stated separately it is the braid's, and follows it.
-                net.end_radius = if self.fitting_follows() { one } else { get(Parameter::FittingRadius) / radius };
+                net.end_radius =
+                    if self.fitting_follows() { one } else { get(Parameter::FittingRadius) / radius };
                 net.half_fibre = half_length / cos;
                 net.cos_rest = cos;
                 net.turn = sin;
@@ -149,7 +149,11 @@ impl Problem {
 
     /// Number of fibres over which tension and stiffness are counted; 1 where the muscle doesn't say or is continuous.
     pub(crate) fn fibre_number<D: From<f64>>(&self, value: impl Fn(Variable) -> D) -> D {
-        if self.muscle.fibres().is_some() { value(Variable::Parameter(Parameter::Fibres)) } else { D::from(1.0) }
+        if self.muscle.fibres().is_some() {
+            value(Variable::Parameter(Parameter::Fibres))
+        } else {
+            D::from(1.0)
+        }
     }
 
     /// Whether the radius of the fittings is a variable of its own: a clamped braid where it is stated.
@@ -181,10 +185,22 @@ fn check_ranges(muscle: &Muscle) -> Result<(), FibreError> {
     };
     let slenderness = muscle.length().si() / muscle.radius().si();
     match muscle.construction() {
-        Construction::Pleated(_) => inside("slenderness l0/R", slenderness, PLEATED_SLENDERNESS),
+        Construction::Pleated(pleated) if pleated.misalignment().si() == 0.0 => {
+            inside("slenderness l0/R", slenderness, PLEATED_SLENDERNESS)
+        }
+        Construction::Pleated(pleated) => {
+            let range = [PLEATED_SLENDERNESS[0], BRAIDED_SLENDERNESS[1]];
+            inside("slenderness l0/R (with misaligned fibres)", slenderness, range)?;
+            let degrees = pleated.misalignment().si().to_degrees();
+            inside("misalignment in degrees", degrees, [-BRAID_ANGLE[1], BRAID_ANGLE[1]])
+        }
         Construction::Braided(braided) if braided.ends() == Ends::Clamped => {
             inside("length l0/r0", slenderness, BRAIDED_SLENDERNESS)?;
-            inside("fitting radius over the braid radius", muscle.end_radius().si() / muscle.radius().si(), [0.2, 2.0])?;
+            inside(
+                "fitting radius over the braid radius",
+                muscle.end_radius().si() / muscle.radius().si(),
+                [0.2, 2.0],
+            )?;
             inside("braid angle in degrees", braided.braid_angle().si().to_degrees(), BRAID_ANGLE)
         }
         Construction::Braided(_) => Ok(()),

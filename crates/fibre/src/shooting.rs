@@ -47,7 +47,11 @@ impl Unknowns {
     ///
     /// The curvature of a waist is bounded: as k -> -q^2 r/sigma^2 the tension grows without limit. There the second unknown is the
     /// logarithm of k only for a shallow waist, and of the distance to that bound for a deep one.
-    pub(crate) fn bulge_and_curvature<D: Real>(&self, net: &Net<D>, variable: impl Fn(f64, usize) -> D) -> [D; 2] {
+    pub(crate) fn bulge_and_curvature<D: Real>(
+        &self,
+        net: &Net<D>,
+        variable: impl Fn(f64, usize) -> D,
+    ) -> [D; 2] {
         let bulge = variable(self.logs[0], 0).exp() * self.side;
         let second = variable(self.logs[1], 1);
         if self.side > 0.0 {
@@ -163,7 +167,11 @@ fn newton(
         if !size.is_finite() || (size > 2.0 * previous && size > NEAR) {
             halvings += 1;
             if halvings > 10 || (iteration == 1 && !size.is_finite()) {
-                return Err(FibreError::NotConverged { contraction, residual: previous, iterations: iteration });
+                return Err(FibreError::NotConverged {
+                    contraction,
+                    residual: previous,
+                    iterations: iteration,
+                });
             }
             last_step = last_step.map(|s: f64| 0.5 * s);
             at.logs = [at.logs[0] + last_step[0], at.logs[1] + last_step[1]];
@@ -192,7 +200,8 @@ fn newton(
 /// From a shallow bulge (or waist), where the start is good, towards the asked contraction in steps that adapt.
 fn continuation(net: &Net<f64>, contraction: f64, effort: &mut Effort) -> Result<Unknowns, FibreError> {
     let straight = straight_contraction(net).unwrap_or(0.0);
-    let failed = FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: effort.iterations };
+    let failed =
+        FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: effort.iterations };
     let whole = contraction - straight;
     let mut part = 0.02;
     let mut at = loop {
@@ -248,13 +257,17 @@ pub(crate) fn straight_contraction(net: &Net<f64>) -> Option<f64> {
     if net.turn == 0.0 {
         return None;
     }
-    let tension = net.tension_at_equator(net.end_radius, 0.0)?;
+    let tension = net.acting_at(net.end_radius).tension_at_equator(net.end_radius, 0.0)?;
     Some(1.0 - net.sigma(net.end_radius, tension) / net.cos_rest)
 }
 
 /// Values to start from, some per cent to some ten per cent off.
 pub(crate) fn start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
-    if net.turn == 0.0 { arc_start(net, contraction) } else { net_start(net, contraction) }
+    // Fibres that hardly turn bulge as straight ones do.
+    let straight = net.turn == 0.0
+        || (straight_contraction(net)? < contraction - SHALLOW
+            && net.turn * net.turn * net.half_fibre < 0.02);
+    if straight { arc_start(net, contraction) } else { net_start(net, contraction) }
 }
 
 /// Straight fibres: a circular arc of the stretched fibre length, half-angle K: `sin(K)/K` is the end distance over the fibre length,
@@ -272,7 +285,8 @@ fn arc_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
             }
         }
         let length = straight * (1.0 + strain);
-        let end_distance = (1.0 + strain) * if angle < 1e-4 { 1.0 - angle * angle / 6.0 } else { angle.sin() / angle };
+        let end_distance =
+            (1.0 + strain) * if angle < 1e-4 { 1.0 - angle * angle / 6.0 } else { angle.sin() / angle };
         (end_distance, length, strain)
     };
     let angle = if net.compliance > 0.0 {
@@ -285,7 +299,10 @@ fn arc_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
         return None;
     };
     let (_, length, _) = arc(angle);
-    Some(Unknowns { side: 1.0, logs: [(length * 0.5 * angle * (1.0 - angle * angle / 12.0)).ln(), (angle / length).ln()] })
+    Some(Unknowns {
+        side: 1.0,
+        logs: [(length * 0.5 * angle * (1.0 - angle * angle / 12.0)).ln(), (angle / length).ln()],
+    })
 }
 
 /// Nets with an angle: the trial meridian `r = r_mid - B (cosh(kappa S) - 1)/(cosh(kappa S_half) - 1)` of the linearised equation about
@@ -300,7 +317,10 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
         let angle = (net.turn * r).min(0.98);
         3.0_f64.sqrt() * net.turn * angle / (1.0 - angle * angle).sqrt()
     };
-    let strain = net.tension_at_equator(net.end_radius, 0.0).map_or(0.0, |t| net.compliance * t);
+    let strain = net
+        .acting_at(net.end_radius)
+        .tension_at_equator(net.end_radius, 0.0)
+        .map_or(0.0, |t| net.compliance * t);
     let end_distance = |bulge: f64| {
         let mid = net.end_radius + side * bulge;
         let kappa = rate(mid);
@@ -395,7 +415,7 @@ pub(crate) fn finish<const N: usize>(
         let run = trajectory(net, bulge, curvature, TOLERANCE).map_err(|_| failed.clone())?;
         let g = residuals(net, Dual::from(contraction), &run);
         let jacobian = g.map(|g| [g.gradient()[0], g.gradient()[1]]);
-        let step = solve_two(jacobian, g.map(|g| g.value()));
+        let step = solve_two(jacobian, g.map(Real::value));
         evaluations += run.evaluations;
         // The derivatives are as exact as this step is small; a start from loose integrations may need one more round.
         if step[0].abs().max(step[1].abs()) < DERIVATIVES || evaluations > 4 * run.evaluations {
@@ -425,22 +445,89 @@ pub(crate) fn finish<const N: usize>(
     })
 }
 
-/// The contraction towards which a braid of inextensible fibres can be drawn out: the waist whose curvature is at its bound, where the
-/// tension has no limit. `None` if it can't be found.
-pub(crate) fn longest(net: &Net<f64>) -> Option<f64> {
-    // Close to the bound, at a tension of about 1e6 p R^2, the shape is final to 1e-6.
-    let drawn = 14.0;
-    let run = |ln_bulge: f64| {
-        let unknowns = Unknowns { side: -1.0, logs: [ln_bulge, drawn] };
-        let [bulge, curvature] = unknowns.bulge_and_curvature(net, |value, _| value);
-        trajectory(net, bulge, curvature, 1e-10).ok()
+/// The contraction towards which a braid of inextensible fibres can be drawn out, where the tension has no limit.
+///
+/// The pressure then no longer counts and the end distance is the largest one, `integral of sqrt(1 - q^2 r^2 - r'^2) dS`. With the radius
+/// `r_m cosh(w)` its first integral gives, from the middle to the fitting,
+///
+/// ```text
+/// S = sqrt(1 - q^2 r_m^2)/q  integral dw/sqrt(1 - q^2 r_m^2 cosh^2 w)        x = 1/q  integral sqrt(1 - q^2 r_m^2 cosh^2 w) dw
+/// ```
+pub(crate) fn longest(net: &Net<f64>) -> f64 {
+    let q = net.turn.abs();
+    let drawn = |ln_mid: f64| {
+        let mid = ln_mid.exp();
+        let end = (net.end_radius / mid).acosh();
+        let panels = end.ceil().max(1.0);
+        let (mut fibre, mut distance, mut left) = (0.0, 0.0, 0.0);
+        while left < panels {
+            let root = |part: f64| {
+                let r = mid * (end * (left + part) / panels).cosh();
+                (1.0 - q * q * r * r).max(0.0).sqrt()
+            };
+            fibre += gauss::integrate(|part| 1.0 / root(part)) * end / panels;
+            distance += gauss::integrate(root) * end / panels;
+            left += 1.0;
+        }
+        (fibre * (1.0 - q * q * mid * mid).sqrt() / q, distance / q)
     };
-    let low = (1e-9 * net.end_radius).ln();
-    let high = (0.95 * net.end_radius).ln();
-    let mismatch = |ln: f64| run(ln).map_or(1.0, |run| (run.half_fibre / net.half_fibre).ln());
-    if mismatch(low) > 0.0 || mismatch(high) < 0.0 {
-        return None;
+    let top = net.end_radius.ln();
+    let mismatch = |ln_mid: f64| drawn(ln_mid).0 - net.half_fibre;
+    // S grows by 1/q for every factor e of the radius.
+    let ln_mid = illinois(mismatch, top - q * net.half_fibre - 3.0, top, 1e-13);
+    1.0 - drawn(ln_mid).1 / (net.cos_rest * net.half_fibre)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn braid(length: f64, degrees: f64) -> Net<f64> {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let half_fibre = 0.5 * length / cos;
+        Net { half_fibre, cos_rest: cos, sin2_rest: sin * sin, turn: sin, ..Net::plain() }
     }
-    let found = run(illinois(mismatch, low, high, 1e-9))?;
-    Some(found.end[SHORTENING] / (net.cos_rest * net.half_fibre))
+
+    /// Equilibria exist up to the drawn-out limit, with a force that grows without bound, and not beyond.
+    #[test]
+    fn the_drawn_out_limit_is_where_the_force_grows_without_bound() {
+        for net in [braid(3.0, 25.0), braid(6.0, 25.0), braid(10.0, 45.0)] {
+            let limit = longest(&net);
+            let force = |contraction: f64| {
+                let (unknowns, _) = solve(&net, contraction, None)?;
+                finish::<2>(&net.lift(), contraction, unknowns).map(|found| found.force.value)
+            };
+            let forces = [1e-2, 1e-3, 1e-4].map(|part| force(limit * (1.0 - part)).unwrap());
+            // F ~ a + b distance^(-1/2): the differences grow by sqrt(10).
+            let growth = (forces[2] - forces[1]) / (forces[1] - forces[0]);
+            assert!((growth / 10.0_f64.sqrt() - 1.0).abs() < 0.05, "{forces:?}");
+            assert!(force(limit * 1.01).is_err());
+        }
+    }
+
+    /// The saddle: the middle of a long braid differs from the cylinder by exp(-140), and doubling the length adds exactly a cylinder.
+    #[test]
+    fn a_long_braid_is_two_ends_and_a_cylinder() {
+        let at = |length: f64| {
+            let net = braid(length, 50.0);
+            let (unknowns, _) = solve(&net, 0.05, None).unwrap();
+            let found = finish::<2>(&net.lift(), 0.05, unknowns).unwrap();
+            (unknowns.logs[1], found.trajectory.first_integral)
+        };
+        let (half, full) = (at(50.0), at(100.0));
+        assert!(full.0 < -130.0 && (full.0 / half.0 - 2.0).abs() < 0.2, "{half:?} {full:?}");
+        assert!(full.1 < 1e-10);
+    }
+
+    /// A start given by a neighbour leads to the same solution as none.
+    #[test]
+    fn the_start_does_not_matter() {
+        let net = braid(25.0, 25.0);
+        let (near, _) = solve(&net, 0.19, None).unwrap();
+        let (cold, effort) = solve(&net, 0.2, None).unwrap();
+        let (warm, _) = solve(&net, 0.2, Some(near)).unwrap();
+        let force = |unknowns| finish::<2>(&net.lift(), 0.2, unknowns).unwrap().force.value;
+        assert!((force(cold) / force(warm) - 1.0).abs() < 1e-11);
+        assert!(effort.iterations < 8);
+    }
 }

@@ -51,7 +51,7 @@ pub(crate) struct Found {
 
 impl Found {
     /// Start for a neighbour's shooting.
-    fn unknowns(&self) -> Option<Unknowns> {
+    pub(crate) fn unknowns(&self) -> Option<Unknowns> {
         if let Solution::Shooting(unknowns) = self.solution { Some(unknowns) } else { None }
     }
 }
@@ -74,39 +74,6 @@ impl Problem {
         self.at(self.method(approach)?, contraction, None).map(|found| found.response)
     }
 
-    /// Responses at many contractions, each started from its neighbour: errors stand where there is no pulling equilibrium.
-    ///
-    /// # Errors
-    /// Only if the approach doesn't fit the muscle.
-    pub fn curve(
-        &self,
-        contractions: &[f64],
-        approach: Approach,
-    ) -> Result<Vec<Result<Response, FibreError>>, FibreError> {
-        let method = self.method(approach)?;
-        let mut limit = None;
-        let mut last = [None, None];
-        let mut solve = |contraction: f64| {
-            let found = self.at(method, contraction, extrapolate(last, contraction));
-            if let Ok(found) = &found {
-                last = [last[1], found.unknowns().map(|unknowns| (contraction, unknowns))];
-            }
-            found
-        };
-        let pulling = |contraction: f64, found: Result<Found, FibreError>, limit: &mut Option<f64>| {
-            let response = found.map(|found| found.response);
-            if response.as_ref().is_ok_and(|response| response.force_n >= 0.0) {
-                return response;
-            }
-            let known = match *limit {
-                Some(known) => known,
-                None => *limit.insert(self.contraction_limit(approach)?),
-            };
-            if contraction > known { Err(FibreError::BeyondLimit { contraction, limit: known }) } else { response }
-        };
-        Ok(contractions.iter().map(|&contraction| pulling(contraction, solve(contraction), &mut limit)).collect())
-    }
-
     /// The contraction at which the force vanishes.
     ///
     /// # Errors
@@ -126,7 +93,7 @@ impl Problem {
         const N: usize = 2 + Variable::COUNT;
         let seeded = |variable: Variable| Dual::<N>::variable(self.value(variable), 2 + variable.index());
         let outcome = self.outcome(self.method(approach)?, contraction, seeded, None)?;
-        let [force, volume] = self.physical(&outcome, seeded);
+        let [force, volume] = physical(&outcome, seeded);
         let by_variable = Variable::all()
             .filter(|variable| match variable {
                 Variable::Pressure => true,
@@ -237,7 +204,7 @@ impl Problem {
                 let y = excess(&found);
                 // dF/d(eps) = -l0 dF/dl; for the volume the same with the opposite sign of the excess.
                 let step = 1e-6 * x.abs().max(1e-3);
-                let slope = self.slope_of(&found, y, &excess, step, l0);
+                let slope = slope_of(&found, y, &excess, step * l0) * l0;
                 if y > 0.0 {
                     reached = reached.max(x);
                 }
@@ -255,20 +222,14 @@ impl Problem {
                     }
                 }
                 Err(RootError::Budget { at, value, .. }) => {
-                    return Err(FibreError::NotConverged { contraction: at, residual: value, iterations: 100 });
+                    return Err(FibreError::NotConverged {
+                        contraction: at,
+                        residual: value,
+                        iterations: 100,
+                    });
                 }
             }
         }
-    }
-
-    /// Derivative of the excess with respect to the contraction: exact, from stiffness or volume slope.
-    fn slope_of(&self, found: &Found, y: f64, excess: &impl Fn(&Found) -> f64, step: f64, l0: f64) -> f64 {
-        let mut moved = *found;
-        let r = &mut moved.response;
-        let dl = -l0 * step;
-        r.force_n += r.stiffness_n_per_m * dl;
-        r.volume_m3 += r.volume_slope_m2 * dl * r.volume_m3 / r.volume_polygon_m3;
-        (excess(&moved) - y) / step
     }
 
     /// A contraction at which the excess is positive, and where to go on from.
@@ -336,7 +297,7 @@ impl Problem {
         if self.is_cylinder() {
             return Some(1.0 - 1.0 / self.net.cos_rest);
         }
-        shooting::longest(&self.net)
+        Some(shooting::longest(&self.net))
     }
 
     /// The equilibrium at a contraction with everything that is reported.
@@ -358,25 +319,9 @@ impl Problem {
             Variable::Parameter(_) => Dual::from(constant(variable)),
         };
         let outcome = self.outcome(method, contraction, seeded, from)?;
-        let [force, volume] = self.physical(&outcome, seeded);
+        let [force, volume] = physical(&outcome, seeded);
         let by_pressure = [force.gradient()[2], volume.gradient()[2]];
         Ok(self.found(contraction, &outcome, seeded, |_, _| by_pressure))
-    }
-
-    /// Force \[N\] and circular volume \[m^3\] with derivatives: place 0 by the contraction, the others as seeded.
-    fn physical<const N: usize>(
-        &self,
-        outcome: &Outcome<N>,
-        value: impl Fn(Variable) -> Dual<N>,
-    ) -> [Dual<N>; 2] {
-        let radius = self.reference(&value);
-        let scales = [value(Variable::Pressure) * radius * radius, radius * radius * radius];
-        let totals = [&outcome.force, &outcome.volume];
-        std::array::from_fn(|i| {
-            let mut gradient = totals[i].by_parameter;
-            gradient[0] = totals[i].by_contraction;
-            scales[i] * Dual::new(totals[i].value, gradient)
-        })
     }
 
     fn found<const N: usize>(
@@ -386,7 +331,7 @@ impl Problem {
         value: impl Fn(Variable) -> Dual<N>,
         by_pressure: impl Fn(f64, f64) -> [f64; 2],
     ) -> Found {
-        let [force, volume] = self.physical(outcome, &value);
+        let [force, volume] = physical(outcome, &value);
         let p = self.pressure;
         let radius = self.muscle.radius().si();
         let l0 = self.muscle.length().si();
@@ -396,11 +341,7 @@ impl Problem {
         let volume_slope = -a * volume.gradient()[0] / l0;
         let [force_p, volume_p] = by_pressure(force.value(), volume.value());
         let polygon = a * volume.value();
-        // (p + pa) V^g constant: dp/dl = -g (p + pa) V_l/(V + g (p + pa) V_p).
-        let closed = |g: f64| {
-            let absolute = g * (p + AMBIENT_PRESSURE);
-            stiffness - force_p * absolute * volume_slope / (polygon + absolute * a * volume_p)
-        };
+        let closed = |g| closed_stiffness(g, p, [stiffness, force_p], [polygon, volume_slope, a * volume_p]);
         let unit_force = p * radius * radius;
         let end_radius = self.net.end_radius;
         let response = Response {
@@ -426,15 +367,36 @@ impl Problem {
     }
 }
 
-/// A start from the last two solutions on the same side: linear in the contraction.
-fn extrapolate(last: [Option<(f64, Unknowns)>; 2], contraction: f64) -> Option<Unknowns> {
-    let (x1, one) = last[1]?;
-    let Some((x0, zero)) = last[0] else { return Some(one) };
-    let ratio = (contraction - x1) / (x1 - x0);
-    if zero.side != one.side || !ratio.is_finite() || ratio.abs() > 2.0 {
-        return Some(one);
-    }
-    Some(Unknowns { logs: std::array::from_fn(|i| one.logs[i] + ratio * (one.logs[i] - zero.logs[i])), ..one })
+/// Force \[N\] and circular volume \[m^3\] with derivatives: place 0 by the contraction, the others as seeded.
+fn physical<const N: usize>(outcome: &Outcome<N>, value: impl Fn(Variable) -> Dual<N>) -> [Dual<N>; 2] {
+    let radius = value(Variable::Parameter(Parameter::Radius));
+    let scales = [value(Variable::Pressure) * radius * radius, radius * radius * radius];
+    let totals = [&outcome.force, &outcome.volume];
+    std::array::from_fn(|i| {
+        let mut gradient = totals[i].by_parameter;
+        gradient[0] = totals[i].by_contraction;
+        scales[i] * Dual::new(totals[i].value, gradient)
+    })
+}
+
+/// Derivative of an excess of force or volume by the contraction, per length l0: along the exact slopes for a small shortening.
+fn slope_of(found: &Found, y: f64, excess: &impl Fn(&Found) -> f64, shortening: f64) -> f64 {
+    let mut moved = *found;
+    let r = &mut moved.response;
+    r.force_n -= r.stiffness_n_per_m * shortening;
+    r.volume_m3 -= r.volume_slope_m2 * shortening * r.volume_m3 / r.volume_polygon_m3;
+    (excess(&moved) - y) / shortening
+}
+
+/// dF/dl with the gas enclosed, (p + pa) V^g constant: dp/dl = -g (p + pa) V_l/(V + g (p + pa) V_p) in F_l + F_p dp/dl.
+pub(crate) fn closed_stiffness(
+    g: f64,
+    pressure: f64,
+    [force_l, force_p]: [f64; 2],
+    [volume, volume_l, volume_p]: [f64; 3],
+) -> f64 {
+    let absolute = g * (pressure + AMBIENT_PRESSURE);
+    force_l - force_p * absolute * volume_l / (volume + absolute * volume_p)
 }
 
 /// Names for [`Variable`] in reports.

@@ -65,8 +65,8 @@ pub fn preset(name: &str) -> Result<Muscle, PresetError> {
         return Ok(from_toml(preset.text, preset.name)?);
     }
     let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
-    let question = nearest(name, &names).map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
-    let instead = format!("{question}There are {}", names.join(", "));
+    let question = nearest(name, &names).map(|near| format!("did you mean `{near}`? otherwise ")).unwrap_or_default();
+    let instead = format!("{question}there are {}", names.join(", "));
     Err(PresetError::Unknown { name: shortened(name), instead })
 }
 
@@ -122,6 +122,6 @@ mod tests {
             "{message}"
         );
         let message = preset("x").unwrap_err().to_string();
-        assert!(message.contains("There are ppam-1, ppam-2-r11.5"), "{message}");
+        assert!(message.contains("there are ppam-1, ppam-2-r11.5"), "{message}");
     }
 }

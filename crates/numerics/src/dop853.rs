@@ -69,7 +69,8 @@ fn step_with_errors<D: Real, const N: usize>(
     let k5 = f(&combine(y, h, [(A[4][0], k1), (A[4][2], &k3), (A[4][3], &k4)]));
     let k6 = f(&combine(y, h, [(A[5][0], k1), (A[5][3], &k4), (A[5][4], &k5)]));
     let k7 = f(&combine(y, h, [(A[6][0], k1), (A[6][3], &k4), (A[6][4], &k5), (A[6][5], &k6)]));
-    let k8 = f(&combine(y, h, [(A[7][0], k1), (A[7][3], &k4), (A[7][4], &k5), (A[7][5], &k6), (A[7][6], &k7)]));
+    let k8 =
+        f(&combine(y, h, [(A[7][0], k1), (A[7][3], &k4), (A[7][4], &k5), (A[7][5], &k6), (A[7][6], &k7)]));
     let a = &A[8];
     let k9 = f(&combine(y, h, [(a[0], k1), (a[3], &k4), (a[4], &k5), (a[5], &k6), (a[6], &k7), (a[7], &k8)]));
     let a = &A[9];
@@ -82,7 +83,16 @@ fn step_with_errors<D: Real, const N: usize>(
     let k11 = f(&combine(
         y,
         h,
-        [(a[0], k1), (a[3], &k4), (a[4], &k5), (a[5], &k6), (a[6], &k7), (a[7], &k8), (a[8], &k9), (a[9], &k10)],
+        [
+            (a[0], k1),
+            (a[3], &k4),
+            (a[4], &k5),
+            (a[5], &k6),
+            (a[6], &k7),
+            (a[7], &k8),
+            (a[8], &k9),
+            (a[9], &k10),
+        ],
     ));
     let a = &A[11];
     let k12 = f(&combine(

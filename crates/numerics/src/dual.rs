@@ -66,7 +66,10 @@ impl<const N: usize> Add for Dual<N> {
     type Output = Self;
     #[inline]
     fn add(self, o: Self) -> Self {
-        Self { value: self.value + o.value, gradient: std::array::from_fn(|i| self.gradient[i] + o.gradient[i]) }
+        Self {
+            value: self.value + o.value,
+            gradient: std::array::from_fn(|i| self.gradient[i] + o.gradient[i]),
+        }
     }
 }
 impl<const N: usize> AddAssign for Dual<N> {
@@ -79,7 +82,10 @@ impl<const N: usize> Sub for Dual<N> {
     type Output = Self;
     #[inline]
     fn sub(self, o: Self) -> Self {
-        Self { value: self.value - o.value, gradient: std::array::from_fn(|i| self.gradient[i] - o.gradient[i]) }
+        Self {
+            value: self.value - o.value,
+            gradient: std::array::from_fn(|i| self.gradient[i] - o.gradient[i]),
+        }
     }
 }
 impl<const N: usize> Mul for Dual<N> {
@@ -174,7 +180,9 @@ mod tests {
     /// Every operation in one expression, against central differences.
     fn formula<D: Real>(x: D, y: D) -> D {
         let (s, c) = (x * y).sin_cos();
-        (x / y - s * 2.0 + 1.5).squared().sqrt() * c + (-x + 0.25).exp() / 3.0 + (y * y + x).ln().scale_add(0.7, y)
+        (x / y - s * 2.0 + 1.5).squared().sqrt() * c
+            + (-x + 0.25).exp() / 3.0
+            + (y * y + x).ln().scale_add(0.7, y)
             - 0.1
     }
 

@@ -1,0 +1,61 @@
+//! What several commands take: the muscle, quantities with units, the method.
+
+use bulge_fibre::{Approach, FibreError};
+use bulge_muscles::units::Quantity;
+use bulge_muscles::{Muscle, PRESETS, Pressure, preset, read, units};
+use clap::ValueEnum;
+use std::path::Path;
+
+use crate::failure::Failure;
+
+/// How to compute.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodArgument {
+    /// The closed form where there is one, else shooting
+    #[default]
+    Auto,
+    /// Elliptic integrals (straight fibres), or the cylinder formula
+    ClosedForm,
+    /// Shooting on the equilibrium ODE
+    Shooting,
+}
+
+impl MethodArgument {
+    pub(crate) fn approach(self) -> Approach {
+        match self {
+            Self::Auto => Approach::Auto,
+            Self::ClosedForm => Approach::ClosedForm,
+            Self::Shooting => Approach::Shooting,
+        }
+    }
+}
+
+/// A muscle file, or a shipped muscle where no file of that name exists.
+pub(crate) fn muscle(name: &str) -> Result<Muscle, Failure> {
+    let shipped = PRESETS.iter().any(|preset| preset.name == name);
+    let looks_like_a_name = !name.contains(['/', '.', '\\']) && !name.is_empty();
+    if (shipped || looks_like_a_name) && !Path::new(name).exists() {
+        return Ok(preset(name)?);
+    }
+    Ok(read(name)?)
+}
+
+/// A quantity with its unit.
+pub(crate) fn quantity<Q: Quantity>(option: &'static str, text: &str) -> Result<Q, Failure> {
+    units::parse(text).map_err(|source| Failure::Option { option, source: Box::new(source) })
+}
+
+/// A list of quantities.
+pub(crate) fn list<Q: Quantity>(option: &'static str, text: &str) -> Result<Vec<Q>, Failure> {
+    units::parse_list(text).map_err(|source| Failure::Option { option, source: Box::new(source) })
+}
+
+/// A solver's error with the muscle and the pressure it is about.
+pub(crate) fn about(muscle: &Muscle, pressure: Pressure) -> impl Fn(FibreError) -> Failure {
+    let (muscle, pressure) = (muscle.name().to_owned(), pressure.to_string());
+    move |source| Failure::Equilibrium {
+        muscle: muscle.clone(),
+        pressure: pressure.clone(),
+        source: Box::new(source),
+    }
+}

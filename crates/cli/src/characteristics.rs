@@ -1,0 +1,82 @@
+//! Isobars as CSV, table and plot: what `curve` and `demo` share.
+
+use bulge_fibre::{Isobar, Response};
+use bulge_muscles::Pressure;
+use bulge_report::{Curve, characteristics_svg};
+use std::fmt::Write;
+
+use crate::failure::Failure;
+use crate::text::{significant, table};
+
+type Column = (&'static str, fn(&Response) -> f64);
+
+/// Columns of the CSV: names as data files have them, units in brackets, SI.
+const COLUMNS: [Column; 14] = [
+    ("pressure [Pa]", |r| r.pressure_pa),
+    ("contraction [-]", |r| r.contraction),
+    ("length [m]", |r| r.length_m),
+    ("force [N]", |r| r.force_n),
+    ("volume [m^3]", |r| r.volume_m3),
+    ("volume_polygon [m^3]", |r| r.volume_polygon_m3),
+    ("diameter [m]", |r| 2.0 * r.max_radius_m),
+    ("fibre_tension [N]", |r| r.fibre_tension_n),
+    ("fibre_strain [-]", |r| r.fibre_strain),
+    ("stiffness [N/m]", |r| r.stiffness_n_per_m),
+    ("stiffness_isothermal [N/m]", |r| r.stiffness_isothermal_n_per_m),
+    ("stiffness_adiabatic [N/m]", |r| r.stiffness_adiabatic_n_per_m),
+    ("end_slope [rad]", |r| r.end_slope_rad),
+    ("residual [-]", |r| r.convergence.residual),
+];
+
+/// All points of all isobars.
+pub(crate) fn csv(isobars: &[Isobar]) -> String {
+    let mut text = COLUMNS.map(|(name, _)| name).join(",") + "\n";
+    for response in isobars.iter().flat_map(|isobar| &isobar.points) {
+        for (i, (_, value)) in COLUMNS.iter().enumerate() {
+            let _ = write!(text, "{}{}", if i == 0 { "" } else { "," }, value(response));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// About ten rows of every isobar.
+pub(crate) fn summary(isobars: &[Isobar]) -> String {
+    let mut text = String::new();
+    for isobar in isobars {
+        let _ = writeln!(
+            text,
+            "{}   (force vanishes at {} %)\n",
+            Pressure::pa(isobar.pressure_pa),
+            significant(100.0 * isobar.contraction_limit, 5)
+        );
+        let heading = ["contraction", "force", "volume", "largest radius", "fibre tension", "stiffness"];
+        let units = ["%", "N", "ml", "mm", "N", "N/mm"];
+        let mut rows = vec![heading.map(String::from).to_vec(), units.map(String::from).to_vec()];
+        let largest = isobar.points.iter().map(|r| r.force_n.abs()).fold(0.0, f64::max);
+        let every = isobar.points.len().div_ceil(11).max(1);
+        for r in isobar.points.iter().step_by(every) {
+            rows.push(vec![
+                significant(100.0 * r.contraction, 4),
+                // The force at the limit itself is rounding.
+                if r.force_n.abs() < 1e-9 * largest { "0".to_owned() } else { significant(r.force_n, 5) },
+                significant(1e6 * r.volume_m3, 5),
+                significant(1e3 * r.max_radius_m, 4),
+                significant(r.fibre_tension_n, 4),
+                significant(1e-3 * r.stiffness_n_per_m, 4),
+            ]);
+        }
+        text.push_str(&table(&rows));
+        text.push('\n');
+    }
+    text
+}
+
+/// Force and volume against contraction.
+pub(crate) fn svg(title: &str, isobars: &[Isobar]) -> Result<String, Failure> {
+    let curves: Vec<Curve> = isobars
+        .iter()
+        .map(|isobar| Curve { pressure_pa: isobar.pressure_pa, points: &isobar.points })
+        .collect();
+    Ok(characteristics_svg(title, &curves)?)
+}

@@ -1,0 +1,204 @@
+//! `bulge curve`: isobaric characteristics.
+
+use bulge_fibre::{Given, Isobar, Problem, Shape, isobars};
+use bulge_muscles::units::{self, Quantity};
+use bulge_muscles::{Muscle, Pressure, Ratio};
+use bulge_vtk::write_series;
+use clap::Args;
+use serde_json::json;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use crate::arguments::{MethodArgument, about, list, muscle};
+use crate::characteristics;
+use crate::failure::Failure;
+use crate::files;
+use crate::shape::bulge;
+
+/// Most points per pressure.
+const MAX_POINTS: usize = 1_000_000;
+/// Most members of a VTK series: each is about a megabyte.
+const MAX_FRAMES: usize = 1000;
+/// Where an inextensible pleated muscle starts by itself: at 0 its force is infinite.
+const FIRST_CONTRACTION: f64 = 0.01;
+
+/// Isobaric characteristics: force and volume over the contraction.
+#[derive(Debug, Args)]
+pub(crate) struct CurveCommand {
+    /// Muscle file, or name of a shipped muscle
+    muscle: String,
+    /// Gauge pressures, such as "1 bar,2 bar,3 bar"
+    #[arg(long, allow_hyphen_values = true)]
+    pressure: String,
+    /// Range of contractions, such as "0 %..35 %" [default: from 1 % (pleated) or 0 to the limit]
+    #[arg(long, allow_hyphen_values = true)]
+    contraction: Option<String>,
+    /// Number of contractions, both ends included
+    #[arg(long, default_value_t = 101)]
+    points: usize,
+    #[arg(long, value_enum, default_value_t)]
+    method: MethodArgument,
+    /// Write all points as CSV ("-": to standard output)
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Draw force and volume against contraction
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    /// Write the bulging as a time series for ParaView (bulge.pvd), one folder per pressure
+    #[arg(long, value_name = "DIR")]
+    vtk: Option<PathBuf>,
+    /// Number of frames of the time series
+    #[arg(long, default_value_t = 41)]
+    frames: usize,
+    /// One JSON document on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl CurveCommand {
+    pub(crate) fn run(&self) -> Result<String, Failure> {
+        let muscle = muscle(&self.muscle)?;
+        let pressures: Vec<Pressure> = list("--pressure", &self.pressure)?;
+        self.check()?;
+        let first = pressures.first().copied().unwrap_or(Pressure::pa(0.0));
+        let contractions = self.contractions(&muscle, first)?;
+        let isobars = isobars(&muscle, &pressures, &contractions, self.method.approach())
+            .map_err(about(&muscle, first))?;
+        for isobar in &isobars {
+            if let (true, Some((_, error))) = (isobar.points.is_empty(), isobar.without.first()) {
+                return Err(about(&muscle, Pressure::pa(isobar.pressure_pa))(error.clone()));
+            }
+        }
+        let mut wrote = String::new();
+        let to_stdout = self.csv.as_deref() == Some(Path::new("-"));
+        if let Some(path) = self.csv.as_deref().filter(|_| !to_stdout) {
+            files::write(path, characteristics::csv(&isobars).as_bytes())?;
+            let _ = writeln!(wrote, "  wrote {}", path.display());
+        }
+        if let Some(path) = &self.plot {
+            files::write(path, characteristics::svg(muscle.name(), &isobars)?.as_bytes())?;
+            let _ = writeln!(wrote, "  wrote {}", path.display());
+        }
+        if let Some(folder) = &self.vtk {
+            for isobar in &isobars {
+                let path = series(&muscle, isobar, self, folder, isobars.len() > 1)?;
+                let _ = writeln!(wrote, "  wrote {}", path.display());
+            }
+        }
+        if self.json {
+            return Ok(serde_json::to_string_pretty(&document(&muscle, &isobars))? + "\n");
+        }
+        if to_stdout {
+            return Ok(characteristics::csv(&isobars));
+        }
+        let heading = format!("{}\n\n", muscle.name());
+        Ok(heading + &characteristics::summary(&isobars) + &left_out(&isobars) + &wrote)
+    }
+
+    fn check(&self) -> Result<(), Failure> {
+        let within = |option, value: usize, low, high| {
+            if (low..=high).contains(&value) {
+                return Ok(());
+            }
+            Err(Failure::Value { option, what: format!("{value} is out of range: give {low} to {high}") })
+        };
+        within("--points", self.points, 2, MAX_POINTS)?;
+        within("--frames", self.frames, 2, MAX_FRAMES)?;
+        if self.json && self.csv.as_deref() == Some(Path::new("-")) {
+            let what = "standard output can take CSV or JSON, not both: give a file name".to_owned();
+            return Err(Failure::Value { option: "--csv", what });
+        }
+        Ok(())
+    }
+
+    /// The contractions, from the option or over the range in which the muscle pulls at the first pressure.
+    fn contractions(&self, muscle: &Muscle, pressure: Pressure) -> Result<Vec<f64>, Failure> {
+        let (low, high) = if let Some(text) = &self.contraction {
+            let (low, high): (Ratio, Ratio) = units::parse_range(text)
+                .map_err(|source| Failure::Option { option: "--contraction", source: Box::new(source) })?;
+            (low.si(), high.si())
+        } else {
+            let about = about(muscle, pressure);
+            let problem = Problem::new(muscle, pressure).map_err(&about)?;
+            let limit = problem.contraction_limit(self.method.approach()).map_err(&about)?;
+            let singular = muscle.is_pleated() && muscle.fibre().is_none();
+            (if singular { FIRST_CONTRACTION * limit / 0.4 } else { 0.0 }, limit)
+        };
+        if low >= high {
+            let what = format!(
+                "the range {low}..{high} is empty: write the smaller contraction first, as in \"0 %..35 %\""
+            );
+            return Err(Failure::Value { option: "--contraction", what });
+        }
+        let step = (high - low) / (self.points - 1) as f64;
+        let last = self.points - 1;
+        Ok((0..self.points).map(|i| if i == last { high } else { low + step * i as f64 }).collect())
+    }
+}
+
+/// A time series over the contractions of an isobar; "time" is the contraction in per cent.
+fn series(
+    muscle: &Muscle,
+    isobar: &Isobar,
+    command: &CurveCommand,
+    folder: &Path,
+    several: bool,
+) -> Result<PathBuf, Failure> {
+    let pressure = Pressure::pa(isobar.pressure_pa);
+    let about = about(muscle, pressure);
+    let problem = Problem::new(muscle, pressure).map_err(&about)?;
+    let count = command.frames.min(isobar.points.len());
+    let last = isobar.points.len() - 1;
+    let shapes: Vec<(f64, Shape)> = (0..count)
+        .map(|i| {
+            let contraction = isobar.points[if count > 1 { i * last / (count - 1) } else { 0 }].contraction;
+            let shape = problem.shape(Given::Contraction(contraction), command.method.approach(), 101)?;
+            Ok((contraction, shape))
+        })
+        .collect::<Result<_, _>>()
+        .map_err(&about)?;
+    let frames: Vec<_> = shapes
+        .iter()
+        .map(|(contraction, shape)| (100.0 * contraction, bulge(muscle, shape, None, None)))
+        .collect();
+    let folder =
+        if several { folder.join(format!("{}-Pa", isobar.pressure_pa)) } else { folder.to_path_buf() };
+    Ok(write_series(folder, "bulge", &frames)?)
+}
+
+/// What was asked for and doesn't exist, with one reason for each end of the range.
+fn left_out(isobars: &[Isobar]) -> String {
+    let mut text = String::new();
+    for isobar in isobars {
+        let (beyond, before): (Vec<_>, Vec<_>) =
+            isobar.without.iter().partition(|(contraction, _)| *contraction > isobar.contraction_limit);
+        for part in [before, beyond] {
+            if let Some((_, why)) = part.first() {
+                let pressure = Pressure::pa(isobar.pressure_pa);
+                let plural = if part.len() == 1 { "contraction is" } else { "contractions are" };
+                let _ = writeln!(text, "  at {pressure}, {} {plural} left out: {why}", part.len());
+            }
+        }
+    }
+    text
+}
+
+fn document(muscle: &Muscle, isobars: &[Isobar]) -> serde_json::Value {
+    let curves: Vec<_> = isobars
+        .iter()
+        .map(|isobar| {
+            let without: Vec<_> = isobar
+                .without
+                .iter()
+                .map(|(contraction, why)| json!({"contraction": contraction, "why": why.to_string()}))
+                .collect();
+            json!({
+                "pressure_pa": isobar.pressure_pa,
+                "contraction_limit": isobar.contraction_limit,
+                "points": isobar.points,
+                "without_equilibrium": without,
+            })
+        })
+        .collect();
+    json!({"schema": "bulge.curve/1", "muscle": muscle.name(), "curves": curves})
+}

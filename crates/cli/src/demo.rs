@@ -1,0 +1,189 @@
+//! `bulge demo`: the tour, on shipped muscles.
+
+use bulge_fibre::{Approach, FibreError, Given, Problem, Response, isobars};
+use bulge_muscles::{Bladder, Braided, Construction, Ends, Length, Muscle, MuscleError, Pressure, preset};
+use bulge_vtk::{write_series, write_vtp};
+use clap::Args;
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use crate::arguments::about;
+use crate::characteristics;
+use crate::failure::Failure;
+use crate::files;
+use crate::shape::bulge;
+use crate::sketch::sketch;
+use crate::text::{significant, table};
+
+/// Frames of the bulging in the time series.
+const FRAMES: u32 = 21;
+
+/// The tour, on shipped muscles.
+#[derive(Debug, Args)]
+pub(crate) struct Demo {
+    /// Folder for the files of the tour
+    #[arg(long, default_value = "bulge-demo")]
+    out: PathBuf,
+    /// One JSON document on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl Default for Demo {
+    fn default() -> Self {
+        Self { out: PathBuf::from("bulge-demo"), json: false }
+    }
+}
+
+/// One model of the braid and what it says.
+#[derive(Debug, Serialize)]
+struct Step {
+    model: &'static str,
+    #[serde(flatten)]
+    response: Response,
+}
+
+/// The JSON document.
+#[derive(Debug, Serialize)]
+struct Document {
+    schema: &'static str,
+    pleated: Response,
+    shooting_minus_closed_form: f64,
+    braid: Vec<Step>,
+    files: Vec<PathBuf>,
+}
+
+impl Demo {
+    pub(crate) fn run(&self) -> Result<String, Failure> {
+        files::folder(&self.out)?;
+        let mut text = String::from("A tour of Bulge\n\n");
+        let mut written = Vec::new();
+        let (pleated, difference) = pleated(&self.out, &mut text, &mut written)?;
+        let braid = braid(&self.out, &mut text, &mut written)?;
+        if self.json {
+            let document = Document {
+                schema: "bulge.demo/1",
+                pleated,
+                shooting_minus_closed_form: difference,
+                braid,
+                files: written,
+            };
+            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+        }
+        text.push_str("Files of this tour (open the .pvd or a .vtp in ParaView, the .svg in a browser):\n\n");
+        for path in &written {
+            let _ = writeln!(text, "  {}", path.display());
+        }
+        text.push_str("\nNext: `bulge muscle ppam-2-r16 > my.toml`, change it, then `bulge shape my.toml --pressure \"2 bar\" --force \"500 N\"`.\n");
+        Ok(text)
+    }
+}
+
+/// The pleated muscle: two methods that share no formula, the bulge, the characteristics.
+fn pleated(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result<(Response, f64), Failure> {
+    let muscle = preset("ppam-2-r16")?;
+    let pressure = Pressure::bar(2.0);
+    let about = about(&muscle, pressure);
+    let problem = Problem::new(&muscle, pressure).map_err(&about)?;
+    let given = Given::Contraction(0.2);
+    let shape = problem.shape(given, Approach::ClosedForm, 121).map_err(&about)?;
+    let shot = problem.solve(given, Approach::Shooting).map_err(&about)?;
+    let exact = shape.response;
+    let difference = shot.force_n / exact.force_n - 1.0;
+    let _ = writeln!(
+        text,
+        "1. The second-generation PPAM (110 mm, 40 fibres on R = 16 mm) at 2 bar, contracted by 20 %\n\n\
+         {}\n  It pulls {} N and holds {} ml. Closed form and shooting differ by {difference:.0e}.\n",
+        sketch(&shape.meridian, 48),
+        significant(exact.force_n, 5),
+        significant(1e6 * exact.volume_m3, 4),
+    );
+    let path = out.join("ppam.vtp");
+    write_vtp(&path, &bulge(&muscle, &shape, None, None))?;
+    written.push(path);
+
+    let pressures = [1.0, 2.0, 3.0].map(Pressure::bar);
+    let limit = problem.contraction_limit(Approach::Auto).map_err(&about)?;
+    let contractions: Vec<f64> = (0..=200).map(|i| 0.02 + (limit - 0.02) * f64::from(i) / 200.0).collect();
+    let curves = isobars(&muscle, &pressures, &contractions, Approach::Auto).map_err(&about)?;
+    for (name, content) in [
+        ("ppam-characteristics.csv", characteristics::csv(&curves)),
+        ("ppam-characteristics.svg", characteristics::svg(muscle.name(), &curves)?),
+    ] {
+        let path = out.join(name);
+        files::write(&path, content.as_bytes())?;
+        written.push(path);
+    }
+    let shapes: Vec<_> = (0..FRAMES)
+        .map(|i| {
+            let contraction = 0.01 + (0.99 * limit - 0.01) * f64::from(i) / f64::from(FRAMES - 1);
+            Ok((contraction, problem.shape(Given::Contraction(contraction), Approach::Auto, 61)?))
+        })
+        .collect::<Result<_, FibreError>>()
+        .map_err(&about)?;
+    let frames: Vec<_> =
+        shapes.iter().map(|(c, shape)| (100.0 * c, bulge(&muscle, shape, None, None))).collect();
+    written.push(write_series(out.join("ppam-series"), "ppam", &frames)?);
+    Ok((exact, difference))
+}
+
+/// The braided muscle: what the ends and the bladder do to the textbook formula.
+fn braid(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result<Vec<Step>, Failure> {
+    let textbook = preset("dmsp-20-250")?;
+    let pressure = Pressure::bar(3.0);
+    let about = about(&textbook, pressure);
+    let given = Given::Contraction(0.2);
+    // 0.3 MPa is what Festo muscles show when a neo-Hookean bladder is fitted to their forces (0.28 to 0.39 MPa).
+    let models = models(&textbook, Bladder::new(Pressure::mpa(0.3), Pressure::pa(0.0), Length::mm(2.0)));
+    let models = models.map_err(|error| Failure::Value { option: "demo", what: error.to_string() })?;
+    let mut steps = Vec::new();
+    for (model, muscle) in &models {
+        let problem = Problem::new(muscle, pressure).map_err(&about)?;
+        let shape = problem.shape(given, Approach::Auto, 161).map_err(&about)?;
+        steps.push(Step { model, response: shape.response });
+        if *model == "exact ends and rubber bladder" {
+            let path = out.join("dmsp-20-250.vtp");
+            write_vtp(&path, &bulge(muscle, &shape, None, None))?;
+            written.push(path);
+        }
+    }
+    let _ =
+        writeln!(text, "2. A Festo DMSP-20-250 at 3 bar, contracted by 20 %: what the textbook leaves out\n");
+    let mut rows = vec![
+        ["model", "force [N]", "mid radius [mm]", "slope at the fittings [deg]"].map(String::from).to_vec(),
+    ];
+    for step in &steps {
+        let r = &step.response;
+        rows.push(vec![
+            step.model.to_owned(),
+            significant(r.force_n, 4),
+            significant(1e3 * r.mid_radius_m, 4),
+            significant(r.end_slope_rad.to_degrees(), 3),
+        ]);
+    }
+    text.push_str(&table(&rows));
+    text.push('\n');
+    Ok(steps)
+}
+
+/// The same braid as a cylinder, with its ends clamped, and with its bladder.
+fn models(
+    textbook: &Muscle,
+    bladder: Result<Bladder, MuscleError>,
+) -> Result<[(&'static str, Muscle); 3], MuscleError> {
+    let Construction::Braided(braid) = *textbook.construction() else {
+        return Ok([
+            ("as shipped", textbook.clone()),
+            ("as shipped", textbook.clone()),
+            ("as shipped", textbook.clone()),
+        ]);
+    };
+    let with = |braid: Braided| Muscle::new(textbook.name(), textbook.length(), Construction::Braided(braid));
+    let clamped = with(braid.with_ends(Ends::Clamped))?;
+    Ok([
+        ("textbook cylinder", with(braid.with_ends(Ends::Cylinder))?),
+        ("exact clamped ends", clamped.clone()),
+        ("exact ends and rubber bladder", clamped.with_bladder(bladder?)?),
+    ])
+}

@@ -1,0 +1,62 @@
+//! What went wrong, as one message and an exit status.
+
+use bulge_fibre::FibreError;
+use bulge_muscles::{FileError, PresetError, UnitError};
+use bulge_report::PlotError;
+use bulge_vtk::VtkError;
+use std::path::PathBuf;
+
+/// Why a command gives up.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    #[error("{0}")]
+    File(Box<FileError>),
+    #[error("{0}")]
+    Preset(Box<PresetError>),
+    #[error("{option}: {source}")]
+    Option { option: &'static str, source: Box<UnitError> },
+    #[error("{option}: {what}")]
+    Value { option: &'static str, what: String },
+    #[error("{muscle} at {pressure}: {source}")]
+    Equilibrium { muscle: String, pressure: String, source: Box<FibreError> },
+    #[error("cannot write {}: {source}", path.display())]
+    Output { path: PathBuf, source: std::io::Error },
+    #[error("{0}")]
+    Vtk(Box<VtkError>),
+    #[error("cannot draw the plot: {0}")]
+    Plot(Box<PlotError>),
+    #[error("the result cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    #[error("{failed} of {all} checks failed:\n{table}")]
+    Checks { failed: usize, all: usize, table: String },
+}
+
+impl Failure {
+    /// 1 the input is wrong, 3 no solution exists, 4 it did not converge.
+    pub(crate) fn status(&self) -> u8 {
+        match self {
+            Self::Equilibrium { source, .. } => match source.as_ref() {
+                FibreError::NotConverged { .. } => 4,
+                FibreError::PressureNotPositive { .. }
+                | FibreError::NotFinite { .. }
+                | FibreError::NoClosedForm { .. }
+                | FibreError::NothingToShoot => 1,
+                _ => 3,
+            },
+            _ => 1,
+        }
+    }
+}
+
+/// Errors of the libraries become failures behind a box: they carry much, and are rare.
+macro_rules! boxed {
+    ($($variant:ident($error:ty)),*) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::$variant(Box::new(error))
+            }
+        })*
+    };
+}
+
+boxed!(File(FileError), Preset(PresetError), Vtk(VtkError), Plot(PlotError));

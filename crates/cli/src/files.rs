@@ -1,0 +1,41 @@
+//! Files that appear whole or not at all.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+
+use crate::failure::Failure;
+
+/// Writes to a temporary name in the same folder, forces it to the disk, and renames.
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    publish(path, bytes).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
+}
+
+fn publish(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if path.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; give the name of a file"));
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        let missing = format!("there is no folder {}; create it first", folder.display());
+        return Err(io::Error::new(io::ErrorKind::NotFound, missing));
+    }
+    let mut name = tempfile::Builder::new();
+    name.prefix(".bulge-").suffix(".part");
+    #[cfg(unix)]
+    {
+        // As any new file: readable by whom the user's mask allows, not by the owner alone.
+        use std::os::unix::fs::PermissionsExt;
+        name.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let mut file = name.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// Creates a folder with its parents, if it isn't there.
+pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(path).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
+}

@@ -1,0 +1,49 @@
+//! `bulge muscle`: the shipped muscles.
+
+use bulge_muscles::{PRESETS, preset};
+use clap::Args;
+use serde_json::json;
+use std::fmt::Write;
+
+use crate::failure::Failure;
+
+/// Shipped muscles: list them, or print one as a file to start from.
+#[derive(Debug, Args)]
+pub(crate) struct MuscleCommand {
+    /// Name of a shipped muscle; its file is printed
+    name: Option<String>,
+    /// One JSON document on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl MuscleCommand {
+    pub(crate) fn run(&self) -> Result<String, Failure> {
+        let Some(name) = &self.name else { return self.list() };
+        let muscle = preset(name)?;
+        let Some(shipped) = PRESETS.iter().find(|shipped| shipped.name == name) else {
+            return Ok(bulge_muscles::to_toml(&muscle));
+        };
+        if self.json {
+            let document = json!({"schema": "bulge.muscle/1", "name": name, "about": shipped.about, "toml": shipped.text});
+            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+        }
+        Ok(shipped.text.to_owned())
+    }
+
+    fn list(&self) -> Result<String, Failure> {
+        if self.json {
+            let muscles: Vec<_> = PRESETS.iter().map(|p| json!({"name": p.name, "about": p.about})).collect();
+            let document = json!({"schema": "bulge.muscles/1", "muscles": muscles});
+            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+        }
+        let mut text = String::from(
+            "Shipped muscles (`bulge muscle NAME > my-muscle.toml` gives a file to start from):\n\n",
+        );
+        let width = PRESETS.iter().map(|p| p.name.len()).max().unwrap_or(0);
+        for shipped in PRESETS {
+            let _ = writeln!(text, "  {:<width$}  {}", shipped.name, shipped.about);
+        }
+        Ok(text)
+    }
+}

@@ -1,0 +1,264 @@
+//! `bulge shape`: one equilibrium.
+
+use bulge_fibre::{Given, MeridianPoint, PleatedNumbers, Problem, Response, Shape};
+use bulge_muscles::units::Quantity;
+use bulge_muscles::{Construction, Force, Length, Muscle, Pressure, Ratio, Volume};
+use bulge_vtk::{Bulge, Style, write_vtp};
+use clap::{ArgGroup, Args, ValueEnum};
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use crate::arguments::{MethodArgument, about, muscle, quantity};
+use crate::failure::Failure;
+use crate::sketch::sketch;
+use crate::text::significant;
+
+/// Most meridian points: a file of 100 MB is a mistake.
+const MAX_POINTS: usize = 100_001;
+
+/// One equilibrium: force, length, volume, fibre tension, stiffness, meridian.
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("given").required(true).args(["contraction", "length", "force", "volume"])))]
+pub(crate) struct ShapeCommand {
+    /// Muscle file, or name of a shipped muscle
+    muscle: String,
+    /// Gauge pressure, such as "2 bar"
+    #[arg(long, allow_hyphen_values = true)]
+    pressure: String,
+    /// Contraction (l0 - l)/l0, such as "20 %"
+    #[arg(long, allow_hyphen_values = true)]
+    contraction: Option<String>,
+    /// Distance between the fittings, such as "88 mm"
+    #[arg(long, allow_hyphen_values = true)]
+    length: Option<String>,
+    /// Axial force, such as "500 N"
+    #[arg(long, allow_hyphen_values = true)]
+    force: Option<String>,
+    /// Enclosed volume (circular cross-sections), such as "300 ml"
+    #[arg(long, allow_hyphen_values = true)]
+    volume: Option<String>,
+    #[arg(long, value_enum, default_value_t)]
+    method: MethodArgument,
+    /// Number of meridian points
+    #[arg(long, default_value_t = 101)]
+    points: usize,
+    /// Write the bulge as a VTK file (.vtp) for ParaView
+    #[arg(long, value_name = "FILE.vtp")]
+    vtk: Option<PathBuf>,
+    /// Surface in the VTK file: pleats between the fibres, or a surface of revolution [default: pleats for pleated muscles]
+    #[arg(long, value_enum)]
+    surface: Option<Surface>,
+    /// Circumference of the unfolded cloth for the pleats, such as "300 mm" [default: just unfolded at the largest radius]
+    #[arg(long)]
+    cloth: Option<String>,
+    /// One JSON document on standard output
+    #[arg(long)]
+    json: bool,
+    /// The meridian as CSV on standard output
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
+}
+
+/// The surface drawn in VTK files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Surface {
+    /// Pleats between the fibres
+    Pleats,
+    /// Surface of revolution
+    Revolution,
+}
+
+/// The JSON document.
+#[derive(Debug, Serialize)]
+struct Document<'a> {
+    schema: &'static str,
+    muscle: &'a str,
+    #[serde(flatten)]
+    response: &'a Response,
+    contraction_limit: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fibre_stress_pa: Option<f64>,
+    #[serde(flatten)]
+    pleated: Option<PleatedNumbers>,
+    meridian: &'a [MeridianPoint],
+}
+
+impl ShapeCommand {
+    pub(crate) fn run(&self) -> Result<String, Failure> {
+        let muscle = muscle(&self.muscle)?;
+        let pressure: Pressure = quantity("--pressure", &self.pressure)?;
+        let given = self.given()?;
+        if !(3..=MAX_POINTS).contains(&self.points) {
+            let what = format!("{} points: give 3 to {MAX_POINTS}", self.points);
+            return Err(Failure::Value { option: "--points", what });
+        }
+        let cloth = self.cloth.as_deref().map(|text| quantity::<Length>("--cloth", text)).transpose()?;
+        let about = about(&muscle, pressure);
+        let problem = Problem::new(&muscle, pressure).map_err(&about)?;
+        let approach = self.method.approach();
+        let shape = problem.shape(given, approach, self.points).map_err(&about)?;
+        let limit = problem.contraction_limit(approach).map_err(&about)?;
+        if let Some(path) = &self.vtk {
+            write_vtp(path, &bulge(&muscle, &shape, self.surface, cloth))?;
+        }
+        let stress = stress(&muscle, &shape.response);
+        if self.json {
+            let document = Document {
+                schema: "bulge.shape/1",
+                muscle: muscle.name(),
+                response: &shape.response,
+                contraction_limit: limit,
+                fibre_stress_pa: stress,
+                pleated: problem.pleated_numbers(&shape.response),
+                meridian: &shape.meridian,
+            };
+            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+        }
+        if self.csv {
+            return Ok(meridian_csv(&shape.meridian));
+        }
+        Ok(self.text(&muscle, &problem, &shape, limit, stress))
+    }
+
+    fn given(&self) -> Result<Given, Failure> {
+        if let Some(text) = &self.contraction {
+            Ok(Given::Contraction(quantity::<Ratio>("--contraction", text)?.si()))
+        } else if let Some(text) = &self.length {
+            Ok(Given::Length(quantity::<Length>("--length", text)?.si()))
+        } else if let Some(text) = &self.force {
+            Ok(Given::Force(quantity::<Force>("--force", text)?.si()))
+        } else {
+            // The group makes clap refuse a command line without any of the four.
+            let text = self.volume.as_deref().unwrap_or_default();
+            Ok(Given::Volume(quantity::<Volume>("--volume", text)?.si()))
+        }
+    }
+
+    fn text(
+        &self,
+        muscle: &Muscle,
+        problem: &Problem,
+        shape: &Shape,
+        limit: f64,
+        stress: Option<f64>,
+    ) -> String {
+        let r = &shape.response;
+        let mut text = String::new();
+        let mut line = |name: &str, value: String| {
+            let _ = writeln!(text, "{}", format!("  {name:<17} {value}").trim_end());
+        };
+        line("force", format!("{} N", significant(r.force_n, 6)));
+        line(
+            "contraction",
+            format!(
+                "{} %   (limit {} %)",
+                significant(100.0 * r.contraction, 5),
+                significant(100.0 * limit, 5)
+            ),
+        );
+        line("volume", format!("{} ml", significant(1e6 * r.volume_m3, 5)));
+        line("", String::new());
+        line("length", format!("{} mm", significant(1e3 * r.length_m, 5)));
+        line("largest radius", format!("{} mm", significant(1e3 * r.max_radius_m, 5)));
+        if r.volume_polygon_m3.to_bits() != r.volume_m3.to_bits() {
+            line(
+                "",
+                format!("(volume with polygonal sections {} ml)", significant(1e6 * r.volume_polygon_m3, 5)),
+            );
+        }
+        let count =
+            muscle.fibres().map_or("all fibres together".to_owned(), |n| format!("each of {n} fibres"));
+        line("fibre tension", format!("{} N   ({count}, at most)", significant(r.fibre_tension_n, 5)));
+        let strain = if muscle.fibre().is_some() {
+            format!("{} %", significant(100.0 * r.fibre_strain, 4))
+        } else {
+            "0 (inextensible: no `fibre.stiffness` in the muscle file)".to_owned()
+        };
+        line("fibre strain", strain);
+        if let Some(stress) = stress {
+            line("fibre stress", format!("{} MPa", significant(1e-6 * stress, 4)));
+        }
+        if let Some(largest) = largest_angle(&shape.meridian) {
+            line("braid angle", format!("{} deg at most", significant(largest.to_degrees(), 4)));
+        }
+        line("slope at fittings", format!("{} deg", significant(r.end_slope_rad.to_degrees(), 4)));
+        let stiffness = [r.stiffness_n_per_m, r.stiffness_isothermal_n_per_m, r.stiffness_adiabatic_n_per_m]
+            .map(|k| significant(1e-3 * k, 4));
+        line(
+            "stiffness dF/dl",
+            format!(
+                "{} N/mm at constant pressure; gas enclosed: {} isothermal, {} adiabatic",
+                stiffness[0], stiffness[1], stiffness[2]
+            ),
+        );
+        if let Some(numbers) = problem.pleated_numbers(r) {
+            let [m, phi, f, v] =
+                [numbers.m, numbers.phi_r, numbers.force_f, numbers.volume_v].map(|x| significant(x, 6));
+            line("dimensionless", format!("m {m}, phi_R {phi}, f {f}, v {v}"));
+        }
+        let c = &r.convergence;
+        line(
+            "method",
+            format!(
+                "{}: {} iterations, {} evaluations, residual {:.0e}, first integral kept to {:.0e}",
+                r.method, c.iterations, c.evaluations, c.residual, c.first_integral
+            ),
+        );
+        let pressure = Pressure::pa(r.pressure_pa);
+        let drawn = sketch(&shape.meridian, 64);
+        let vtk = self.vtk.as_ref().map_or(String::new(), |path| format!("\n  wrote {}\n", path.display()));
+        format!("{} at {pressure}\n\n{text}\n{drawn}{vtk}", muscle.name())
+    }
+}
+
+/// Tension over section, if the section is given.
+pub(crate) fn stress(muscle: &Muscle, response: &Response) -> Option<f64> {
+    let section = muscle.fibre()?.section()?;
+    Some(response.fibre_tension_n / section.si())
+}
+
+fn largest_angle(meridian: &[MeridianPoint]) -> Option<f64> {
+    let largest = meridian.iter().map(|point| point.braid_angle_rad).fold(0.0, f64::max);
+    (largest > 0.0).then_some(largest)
+}
+
+/// What to draw of a muscle.
+pub(crate) fn bulge<'a>(
+    muscle: &Muscle,
+    shape: &'a Shape,
+    surface: Option<Surface>,
+    cloth: Option<Length>,
+) -> Bulge<'a> {
+    // Enough fibres to see the net where the muscle file doesn't say how many there are.
+    let fibres = muscle.fibres().unwrap_or(32);
+    let pleated = matches!(muscle.construction(), Construction::Pleated(_)) && muscle.fibres().is_some();
+    let style = match surface {
+        Some(Surface::Revolution) => Style::Revolution,
+        None if !pleated => Style::Revolution,
+        _ => Style::Pleats { cloth_circumference: cloth.map(Length::si) },
+    };
+    Bulge { shape, fibres, style, facets: style.default_facets() }
+}
+
+fn meridian_csv(meridian: &[MeridianPoint]) -> String {
+    let mut text = String::from(
+        "x [m],r [m],slope [rad],braid_angle [rad],fibre_tension [N],fibre_strain [-],membrane_force [N/m],fibre_length [m],turn [rad]\n",
+    );
+    for p in meridian {
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{},{},{},{},{}",
+            p.x_m,
+            p.r_m,
+            p.slope_rad,
+            p.braid_angle_rad,
+            p.fibre_tension_n,
+            p.fibre_strain,
+            p.membrane_force_n_per_m,
+            p.fibre_length_m,
+            p.turn_rad
+        );
+    }
+    text
+}

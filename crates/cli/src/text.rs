@@ -1,0 +1,59 @@
+//! Numbers for people: four to six significant digits, and the unit that suits the size.
+
+/// `digits` significant digits, without an exponent for usual sizes.
+pub(crate) fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let exponent = value.abs().log10().floor();
+    if !(-4.0..9.0).contains(&exponent) {
+        return format!("{value:.*e}", usize::try_from(digits - 1).unwrap_or(0));
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "an exponent between -4 and 9")]
+    let decimals = usize::try_from(digits - 1 - exponent as i32).unwrap_or(0);
+    let rounded = format!("{value:.decimals$}");
+    // "-0.00" says nothing that "0.00" doesn't.
+    if rounded.trim_start_matches(['-', '0', '.']).is_empty() {
+        return rounded.trim_start_matches('-').to_owned();
+    }
+    rounded
+}
+
+/// A table; the first row is the heading. Columns of numbers are aligned to the right, others to the left.
+pub(crate) fn table(rows: &[Vec<String>]) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |c: usize| rows.iter().filter_map(|row| row.get(c)).map(|cell| cell.chars().count()).max();
+    let widths: Vec<usize> = (0..columns).map(|c| width(c).unwrap_or(0)).collect();
+    let is_number =
+        |c: usize| rows.last().and_then(|row| row.get(c)).is_none_or(|cell| cell.parse::<f64>().is_ok());
+    let mut text = String::new();
+    for row in rows {
+        let cells: Vec<String> = (row.iter().zip(&widths).enumerate())
+            .map(|(c, (cell, w))| if is_number(c) { format!("{cell:>w$}") } else { format!("{cell:<w$}") })
+            .collect();
+        text.push_str("  ");
+        text.push_str(cells.join("  ").trim_end());
+        text.push('\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn significant_digits() {
+        assert_eq!(significant(1438.0439, 5), "1438.0");
+        assert_eq!(significant(0.012_345, 3), "0.0123");
+        assert_eq!(significant(-0.0, 3), "-0");
+        assert_eq!(significant(1.5e12, 3), "1.50e12");
+        assert_eq!(significant(123_456.7, 4), "123457");
+    }
+
+    #[test]
+    fn columns_align() {
+        let rows = [vec!["a".into(), "bb".into()], vec!["100".into(), "2".into()]];
+        assert_eq!(table(&rows), "    a  bb\n  100   2\n");
+    }
+}

@@ -1,0 +1,266 @@
+//! The command as a user sees it: exit statuses, messages, JSON names, and what is left on the disk.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// A folder of its own for each test, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("bulge-cli-{name}-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn write(&self, name: &str, text: &str) -> String {
+        let path = self.0.join(name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).display().to_string()
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(&self.0).unwrap();
+        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn bulge(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_bulge")).args(arguments).output().unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = bulge(arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.stderr.is_empty());
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Exit status and message of a failing call, which says nothing on standard output.
+fn failure(arguments: &[&str]) -> (i32, String) {
+    let output = bulge(arguments);
+    assert!(output.stdout.is_empty(), "{arguments:?} printed {}", String::from_utf8_lossy(&output.stdout));
+    (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+}
+
+const PPAM: &str =
+    "name = \"test\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n";
+
+#[test]
+fn shape_as_json_has_the_names_others_rely_on() {
+    let folder = Folder::new("shape");
+    let muscle = folder.write("muscle.toml", PPAM);
+    let shape = json(&["shape", &muscle, "--pressure", "1 bar", "--contraction", "20 %", "--json"]);
+    // physics: 544.0 N, 376.9 ml at 1 bar and 20 %
+    assert!((shape["force_n"].as_f64().unwrap() - 544.0).abs() < 0.05);
+    assert!((shape["volume_m3"].as_f64().unwrap() - 376.9e-6).abs() < 0.05e-6);
+    for name in [
+        "length_m",
+        "contraction",
+        "max_radius_m",
+        "fibre_tension_n",
+        "fibre_strain",
+        "stiffness_n_per_m",
+        "contraction_limit",
+        "m",
+        "phi_r",
+        "force_f",
+        "volume_v",
+    ] {
+        assert!(shape[name].is_f64(), "{name} is {}", shape[name]);
+    }
+    assert_eq!(shape["method"], "closed-form");
+    let meridian = shape["meridian"].as_array().unwrap();
+    for name in ["x_m", "r_m", "slope_rad", "braid_angle_rad"] {
+        assert!(meridian.iter().all(|point| point[name].is_f64()), "{name}");
+    }
+    assert_eq!(meridian.len(), 101);
+}
+
+#[test]
+fn the_four_questions_agree() {
+    let ask = |option: &str, value: &str| {
+        json(&["shape", "dmsp-20-250", "--pressure", "3 bar", option, value, "--json"])
+    };
+    let by_contraction = ask("--contraction", "15 %");
+    let text = |name: &str, factor: f64, unit: &str| {
+        format!("{:.12} {unit}", by_contraction[name].as_f64().unwrap() * factor)
+    };
+    for (option, value) in [
+        ("--length", text("length_m", 1e3, "mm")),
+        ("--force", text("force_n", 1.0, "N")),
+        ("--volume", text("volume_m3", 1e6, "ml")),
+    ] {
+        let other = ask(option, &value);
+        let difference = other["contraction"].as_f64().unwrap() - 0.15;
+        assert!(difference.abs() < 1e-9, "{option} {value}: {difference:e}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_the_input_is_status_1() {
+    let folder = Folder::new("input");
+    let with = |from: &str, to: &str| folder.write("muscle.toml", &PPAM.replace(from, to));
+    let at = ["--pressure", "1 bar", "--force", "10 N"];
+    let cases = [
+        ("length", "lenght", ":3:1", "did you mean `length`"),
+        ("\"110 mm\"", "\"110 mn\"", ":3:", "mm"),
+        ("\"110 mm\"", "\"-110 mm\"", ":3:", "greater than 0"),
+        ("\"110 mm\"", "110", ":3:", "\"110 mm\""),
+        ("= 40", "= 2", ":5:", "at least 3"),
+        ("\"110 mm\"", "\"NaN mm\"", ":3:", "finite"),
+        ("radius = \"16 mm\"\n", "", "radius", "16 mm"),
+        (PPAM, "", "states nothing", "kind"),
+    ];
+    for (from, to, place, cure) in cases {
+        let muscle = with(from, to);
+        let (status, message) = failure(&[&["shape", &muscle], &at[..]].concat());
+        assert_eq!(status, 1, "{message}");
+        assert!(message.contains(place) && message.contains(cure), "{from} -> {to}: {message}");
+    }
+    let folder_path = folder.0.display().to_string();
+    for (muscle, says) in
+        [(folder_path.as_str(), "directory"), ("nowhere.toml", "no such file"), ("x", "ppam-1")]
+    {
+        let (status, message) = failure(&[&["shape", muscle], &at[..]].concat());
+        assert!(status == 1 && message.contains(says), "{message}");
+    }
+    for (pressure, says) in [
+        ("0 bar", "greater than 0"),
+        ("-1 bar", "greater than 0"),
+        ("1", "has no unit"),
+        ("1 Bar", "did you mean `bar`"),
+        ("1 mm", "is a length"),
+        ("NaN bar", "not finite"),
+    ] {
+        let (status, message) =
+            failure(&["shape", "ppam-2-r16", "--pressure", pressure, "--contraction", "20 %"]);
+        assert!(status == 1 && message.contains(says), "{pressure}: {message}");
+    }
+}
+
+#[test]
+fn usage_is_status_2() {
+    assert_eq!(failure(&["shape", "ppam-2-r16"]).0, 2);
+    assert_eq!(failure(&["shapes"]).0, 2);
+    assert_eq!(
+        failure(&["shape", "ppam-2-r16", "--pressure", "1 bar", "--force", "1 N", "--length", "1 m"]).0,
+        2
+    );
+}
+
+#[test]
+fn what_does_not_exist_is_status_3_with_the_limit() {
+    let ask = |muscle: &str, option: &str, value: &str| {
+        failure(&["shape", muscle, "--pressure", "2 bar", option, value])
+    };
+    for (muscle, option, value, says) in [
+        ("ppam-2-r16", "--contraction", "45 %", "41.8497 %"),
+        ("ppam-2-r16", "--contraction", "0 %", "greater than 0.0000 %"),
+        ("ppam-2-r16", "--force", "-5 N", "41.8497 %"),
+        ("ppam-2-r16", "--volume", "1 l", "435.8984 ml"),
+        ("ppam-2-r16", "--volume", "1 ml", "88.4672 ml"),
+        ("dmsp-20-250", "--contraction", "40 %", "35.4"),
+        ("dmsp-20-250", "--contraction", "-9.5 %", "greater than -8."),
+    ] {
+        let (status, message) = ask(muscle, option, value);
+        assert!(status == 3 && message.contains(says), "{muscle} {option} {value}: {status} {message}");
+    }
+    let folder = Folder::new("range");
+    let long = folder.write("long.toml", &PPAM.replace("110 mm", "20 m"));
+    let (status, message) = failure(&["shape", &long, "--pressure", "1 bar", "--contraction", "20 %"]);
+    assert!(status == 3 && message.contains("1250") && message.contains("1000"), "{message}");
+}
+
+#[test]
+fn files_appear_whole_or_not_at_all() {
+    let folder = Folder::new("files");
+    let curve = ["curve", "ppam-2-r16", "--pressure", "1 bar,2 bar", "--points", "21"];
+    let (csv, svg) = (folder.path("a.csv"), folder.path("a.svg"));
+    let written = bulge(&[&curve[..], &["--csv", &csv, "--plot", &svg]].concat());
+    assert!(written.status.success());
+    let text = std::fs::read_to_string(&csv).unwrap();
+    assert_eq!(text.lines().count(), 1 + 2 * 21);
+    assert!(text.starts_with("pressure [Pa],contraction [-],length [m],force [N],volume [m^3],"));
+    assert!(std::fs::read_to_string(&svg).unwrap().contains("<svg"));
+    assert_eq!(folder.names(), ["a.csv", "a.svg"]);
+    for (option, name, says) in [
+        ("--csv", "missing/a.csv", "no folder"),
+        ("--csv", "", "folder"),
+        ("--plot", "missing/a.svg", "no folder"),
+    ] {
+        let (status, message) = failure(&[&curve[..], &[option, &folder.path(name)]].concat());
+        assert!(status == 1 && message.contains(says), "{message}");
+    }
+    assert_eq!(folder.names(), ["a.csv", "a.svg"]);
+}
+
+#[test]
+fn curve_leaves_out_what_does_not_exist_and_says_so() {
+    let range =
+        ["curve", "ppam-2-r16", "--pressure", "1 bar", "--contraction", "0 %..45 %", "--points", "10"];
+    let output = bulge(&range);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("1 contraction is left out") && text.contains("41.8497 %"), "{text}");
+    let document = json(&[&range[..], &["--json"]].concat());
+    let curve = &document["curves"][0];
+    assert_eq!(curve["points"].as_array().unwrap().len(), 8);
+    assert_eq!(curve["without_equilibrium"].as_array().unwrap().len(), 2);
+    let (status, _) = failure(&["curve", "ppam-2-r16", "--pressure", "1 bar", "--contraction", "50 %..60 %"]);
+    assert_eq!(status, 3);
+    let (status, message) =
+        failure(&["curve", "ppam-2-r16", "--pressure", "1 bar", "--contraction", "30 %..20 %"]);
+    assert!(status == 1 && message.contains("smaller contraction first"), "{message}");
+}
+
+#[test]
+fn a_curve_is_the_same_bytes_on_any_number_of_threads() {
+    let run = |threads: &str| {
+        Command::new(env!("CARGO_BIN_EXE_bulge"))
+            .args(["curve", "dmsp-20-250", "--pressure", "1 bar,3 bar", "--points", "301", "--csv", "-"])
+            .env("RAYON_NUM_THREADS", threads)
+            .output()
+            .unwrap()
+            .stdout
+    };
+    let one = run("1");
+    assert!(one.len() > 10_000 && one == run("2") && one == run("7"));
+}
+
+#[test]
+fn the_series_for_paraview_lists_its_members() {
+    let folder = Folder::new("series");
+    let out = folder.path("vtk");
+    let arguments =
+        ["curve", "dmsp-20-250", "--pressure", "3 bar", "--points", "9", "--frames", "3", "--vtk", &out];
+    assert!(bulge(&arguments).status.success());
+    let list = std::fs::read_to_string(Path::new(&out).join("bulge.pvd")).unwrap();
+    assert_eq!(list.matches("<DataSet").count(), 3);
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 4);
+}
+
+#[test]
+fn a_shipped_muscle_is_a_file_to_start_from() {
+    let folder = Folder::new("shipped");
+    let shipped = String::from_utf8(bulge(&["muscle", "ppam-2-r16"]).stdout).unwrap();
+    let file = folder.write("my.toml", &shipped);
+    let ask = |muscle: &str| json(&["shape", muscle, "--pressure", "2 bar", "--force", "500 N", "--json"]);
+    assert_eq!(ask(&file), ask("ppam-2-r16"));
+}
