@@ -1,1 +1,88 @@
-//! Benchmarks of Bulge.
+//! Benchmarks of Bulge: the muscles that are measured, and the timing that the programs share.
+
+use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
+use bulge_muscles::{
+    Angle, Bladder, Braided, Construction, Ends, Length, Muscle, MuscleError, Parameter, Pressure, preset,
+};
+use std::error::Error;
+use std::time::Instant;
+
+/// Whatever stops a benchmark.
+pub type Failure = Box<dyn Error>;
+
+/// Slenderness l0/R of the pleated muscle of the benches (`ppam-2-r16`).
+pub const SLENDERNESS: f64 = 6.875;
+/// Contractions of the comparison with other programs: 1000 from 5 to 40 %.
+pub const CONTRACTIONS: usize = 1000;
+
+/// Contraction number `i` of the comparison with other programs.
+#[must_use]
+pub fn contraction(i: usize) -> f64 {
+    0.05 + 0.35 * i as f64 / (CONTRACTIONS - 1) as f64
+}
+
+/// The pleated muscle, l0/R = 6.875, n = 40, at 1 bar; with fibres of the given stiffness EA \[N\] if there is one.
+///
+/// # Errors
+/// Never: the numbers are valid.
+pub fn pleated(stiffness: Option<f64>) -> Result<Problem, Failure> {
+    let muscle = preset("ppam-2-r16")?;
+    let muscle = match stiffness {
+        Some(stiffness) => muscle.with(Parameter::FibreStiffness, stiffness)?,
+        None => muscle,
+    };
+    Ok(Problem::new(&muscle, Pressure::bar(1.0))?)
+}
+
+/// A braid with r0 = 10 mm and 25 degrees at rest.
+fn braid_muscle(length_over_radius: f64, ends: Ends) -> Result<Muscle, MuscleError> {
+    let braided = Braided::new(Length::mm(10.0), Angle::deg(25.0))?.with_ends(ends);
+    Muscle::new("braid", Length::mm(10.0 * length_over_radius), Construction::Braided(braided))
+}
+
+/// A clamped braid of the given l0/r0, at 3 bar.
+///
+/// # Errors
+/// If l0/r0 is out of range.
+pub fn braid(length_over_radius: f64) -> Result<Problem, Failure> {
+    Ok(Problem::new(&braid_muscle(length_over_radius, Ends::Clamped)?, Pressure::bar(3.0))?)
+}
+
+/// The clamped braid of l0/r0 = 25 with a rubber bladder of 1.5 mm, at 3 bar.
+///
+/// # Errors
+/// Never: the numbers are valid.
+pub fn bladder() -> Result<Problem, Failure> {
+    let rubber = Bladder::new(Pressure::kpa(200.0), Pressure::kpa(50.0), Length::mm(1.5))?;
+    let muscle = braid_muscle(25.0, Ends::Clamped)?.with_bladder(rubber)?;
+    Ok(Problem::new(&muscle, Pressure::bar(3.0))?)
+}
+
+/// The textbook cylinder, at 3 bar.
+///
+/// # Errors
+/// Never: the numbers are valid.
+pub fn cylinder() -> Result<Problem, Failure> {
+    Ok(Problem::new(&braid_muscle(25.0, Ends::Cylinder)?, Pressure::bar(3.0))?)
+}
+
+/// Force, volume and derivatives at a contraction, from a start of its own.
+///
+/// # Errors
+/// See [`FibreError`].
+pub fn solve(problem: &Problem, contraction: f64, approach: Approach) -> Result<Response, FibreError> {
+    problem.solve(Given::Contraction(contraction), approach)
+}
+
+/// Median over `rounds` of the time of one call of `run`, divided by `calls`, in microseconds.
+pub fn median_us(rounds: usize, calls: usize, mut run: impl FnMut()) -> f64 {
+    let mut times: Vec<f64> = (0..rounds)
+        .map(|_| {
+            let start = Instant::now();
+            run();
+            start.elapsed().as_secs_f64() * 1e6 / calls as f64
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[rounds / 2]
+}

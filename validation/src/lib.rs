@@ -1,1 +1,60 @@
 //! Verification of Bulge: every check with its error and its tolerance.
+//!
+//! A check compares what the crates compute with a closed form, an independent method, an identity of mechanics, the order of an
+//! error, or a published number. Run all of them as a table with `bulge validate`, or as tests with `cargo test -p bulge-validation`.
+
+mod braid;
+mod check;
+mod closed_form;
+mod derivative;
+mod difference;
+mod energy;
+mod limits;
+mod meridian;
+mod published;
+mod reference;
+pub mod sample;
+mod shooting;
+mod specimen;
+
+pub use check::Check;
+
+/// Every check, in the order of the table: from exact solutions to published numbers.
+pub const CHECKS: &[fn() -> Check] = &[
+    closed_form::elliptic_integrals,
+    closed_form::inelastic,
+    closed_form::elastic,
+    shooting::inextensible,
+    shooting::elastic,
+    shooting::along_the_fibre,
+    braid::clamped_net,
+    braid::tensions,
+    braid::limits,
+    braid::bladder,
+    energy::virtual_work,
+    energy::maxwell,
+    energy::potential,
+    derivative::gradients,
+    derivative::gradients_by_shooting,
+    derivative::stiffness,
+    meridian::first_integral,
+    meridian::fibre_length,
+    meridian::consistency,
+    limits::small_angle,
+    limits::long_braid,
+    limits::stiff_fibres,
+    limits::many_fibres,
+    limits::mylar_balloon,
+    limits::force_at_rest,
+    published::second_generation,
+    published::contraction_limits,
+    published::clamped_braids,
+    published::cylinder_formula,
+    published::measured,
+];
+
+/// Runs every check.
+#[must_use]
+pub fn all() -> Vec<Check> {
+    CHECKS.iter().map(|check| check()).collect()
+}

@@ -11,6 +11,7 @@ mod problem;
 mod shape;
 mod shooting;
 mod solve;
+mod start;
 pub use draw::PleatedNumbers;
 pub use error::FibreError;
 pub use isobars::{Isobar, isobars};

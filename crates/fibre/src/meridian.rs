@@ -33,8 +33,8 @@ pub(crate) const TENSION: usize = 5;
 pub(crate) const VOLUME: usize = 6;
 const STATES: usize = 7;
 
-/// Steps after which an integration is given up: a braid of l0/r0 = 100 and 50 degrees takes about 300.
-const MAX_STEPS: u32 = 4000;
+/// Steps after which an integration is given up: a braid of l0/r0 = 100 and 50 degrees takes about 500.
+const MAX_STEPS: u32 = 1500;
 
 /// Part of the way that one crossing step may cover: rho as the independent variable sees the square root at mid-length, and the step's
 /// error is about (this)^9.
@@ -134,16 +134,20 @@ impl<D: Real> Flow<D> {
 
 /// Why a trajectory does not exist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct NoTrajectory;
+pub(crate) struct NoTrajectory {
+    /// Evaluations spent on finding that out.
+    pub(crate) evaluations: u32,
+}
 
 /// Start of a trajectory: the state at mid-length, where the radius is `end_radius + bulge` and the meridian has the curvature `curvature`.
 fn start<D: Real>(net: &Net<D>, bulge: D, curvature: D) -> Result<(State<D>, D, D), NoTrajectory> {
     let mid_radius = net.end_radius + bulge;
+    let nothing = NoTrajectory { evaluations: 1 };
     if mid_radius.value() <= 0.0 {
-        return Err(NoTrajectory);
+        return Err(nothing);
     }
     let tension =
-        net.acting_at(mid_radius.value()).tension_at_equator(mid_radius, curvature).ok_or(NoTrajectory)?;
+        net.acting_at(mid_radius.value()).tension_at_equator(mid_radius, curvature).ok_or(nothing)?;
     let zero = D::from(0.0);
     let state = [zero, zero, zero, D::from(1.0), curvature, tension, zero];
     Ok((state, mid_radius, tension))
@@ -180,15 +184,14 @@ pub(crate) fn trajectory<D: Real>(
     loop {
         let target = kink.unwrap_or(bulge);
         let limit = D::from(flow.distance_to(&y, &slope, target.value()).map_or(far, |h| h.min(far)));
-        let h = run
-            .advance(
-                &mut |y: &State<D>| flow.slope(y),
-                |a, b| scale(a, b, mid_radius.value(), floor),
-                &mut y,
-                &mut slope,
-                limit,
-            )
-            .map_err(|_| NoTrajectory)?;
+        let stepped = run.advance(
+            &mut |y: &State<D>| flow.slope(y),
+            |a, b| scale(a, b, mid_radius.value(), floor),
+            &mut y,
+            &mut slope,
+            limit,
+        );
+        let Ok(h) = stepped else { return Err(NoTrajectory { evaluations: run.evaluations }) };
         fibre += h;
         let remaining = (target.value() - y[RHO].value()) * sign;
         // The last step aims at the target with a Taylor estimate; a remainder of a few per cent is then crossed in rho.
@@ -206,14 +209,14 @@ pub(crate) fn trajectory<D: Real>(
             slope = flow.slope(&y);
         }
         if run.accepted > MAX_STEPS || y[COS].value() < -0.999 {
-            return Err(NoTrajectory);
+            return Err(NoTrajectory { evaluations: run.evaluations });
         }
     }
     let end = flow.net.local(net.end_radius, y[TENSION]);
     let integral = end.force * y[COS] - net.area(net.end_radius) - force;
     let first_integral = (integral.value() / mid.force.value()).abs();
     if !first_integral.is_finite() {
-        return Err(NoTrajectory);
+        return Err(NoTrajectory { evaluations: run.evaluations });
     }
     Ok(Trajectory {
         half_fibre: fibre,
@@ -268,7 +271,7 @@ pub(crate) fn stations(
         while target - fibre > 1e-13 * half_fibre {
             fibre += run
                 .advance(&mut f, |a, b| scale(a, b, mid_radius, floor), &mut y, &mut slope, target - fibre)
-                .map_err(|_| NoTrajectory)?;
+                .map_err(|_| NoTrajectory { evaluations: run.evaluations })?;
         }
         let r = mid_radius - y[RHO];
         let integral = flow_at(&y).net.local(r, y[TENSION]).force * y[COS] - net.area(r) - force;

@@ -7,7 +7,7 @@ use crate::closed_form::{self, ClosedForm, Graded};
 use crate::cylinder;
 use crate::meridian::{COS, SIN, TENSION};
 use crate::net::Net;
-use crate::problem::{Problem, Variable};
+use crate::problem::Problem;
 use crate::shape::{Convergence, Method};
 use crate::shooting::{self, Total, Unknowns};
 
@@ -79,13 +79,13 @@ impl Problem {
         }
     }
 
-    /// The equilibrium at a contraction. `value` gives the variables, with their derivatives in the places 2 .. of the dual numbers;
+    /// The equilibrium at a contraction. `net` is the problem's, with derivatives by variables in the places 2 .. of the dual numbers;
     /// `from` is a start for the shooting, such as a neighbour's solution.
     pub(crate) fn outcome<const N: usize>(
         &self,
         method: Method,
         contraction: f64,
-        value: impl Fn(Variable) -> Dual<N>,
+        net: &Net<Dual<N>>,
         from: Option<Unknowns>,
     ) -> Result<Outcome<N>, FibreError> {
         if !contraction.is_finite() {
@@ -94,11 +94,10 @@ impl Problem {
         if self.net.turn == 0.0 && self.net.compliance == 0.0 && contraction <= 0.0 {
             return Err(FibreError::TooLong { contraction, limit: 0.0 });
         }
-        let net = self.net_of(value);
         match method {
-            _ if self.is_cylinder() => by_cylinder(&net, contraction),
-            Method::ClosedForm => by_closed_form(&net, contraction),
-            Method::Shooting => by_shooting(&self.net, &net, contraction, from),
+            _ if self.is_cylinder() => by_cylinder(net, contraction),
+            Method::ClosedForm => by_closed_form(net, contraction),
+            Method::Shooting => by_shooting(&self.net, net, contraction, from),
         }
     }
 }
@@ -157,14 +156,14 @@ fn by_closed_form<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Resul
     // N = T = pi a/(2 y^2); N cos(psi) - A - F at the fitting.
     let tension = std::f64::consts::FRAC_PI_2 * a / (found.y * found.y);
     let force = total(force_scale, &found.force);
-    let end = found.point(found.phi_r());
-    let integral = tension * end[2].cos() - std::f64::consts::PI * a * end[1] * end[1] - force.value;
+    let end_slope = found.end_slope();
+    let integral = tension * end_slope.cos() - std::f64::consts::PI * a - force.value;
     Ok(Outcome {
         force,
         volume: total(volume_scale, &found.volume),
         mid_radius: found.max_radius(),
         tension,
-        end_slope: -end[2],
+        end_slope,
         method: Method::ClosedForm,
         convergence: Convergence {
             iterations: found.iterations,
@@ -195,8 +194,8 @@ fn by_shooting<const N: usize>(
         force: found.force,
         volume,
         mid_radius: found.mid_radius,
-        tension: run.mid_tension.value().max(run.end[TENSION].value()),
-        end_slope: run.end[SIN].value().atan2(run.end[COS].value()),
+        tension: found.corrected(run.mid_tension).max(found.corrected(run.end[TENSION])),
+        end_slope: found.corrected(run.end[SIN]).atan2(found.corrected(run.end[COS])),
         method: Method::Shooting,
         convergence: Convergence {
             iterations: effort.iterations + 1,

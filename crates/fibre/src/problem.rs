@@ -52,6 +52,8 @@ pub struct Problem {
     /// Gauge pressure \[Pa\].
     pub(crate) pressure: f64,
     pub(crate) net: Net<f64>,
+    /// Whether the fittings of a braid have the radius of the braid because nothing else is stated.
+    fitting_follows: bool,
 }
 
 impl Problem {
@@ -69,7 +71,10 @@ impl Problem {
             return Err(FibreError::PressureNotPositive { pressure_pa: pressure });
         }
         check_ranges(muscle)?;
-        let mut problem = Self { muscle: muscle.clone(), pressure, net: Net::plain() };
+        // Found once: to ask the muscle copies it, which a solve must not (it would allocate).
+        let doubled = muscle.with(Parameter::Radius, 2.0 * muscle.radius().si());
+        let fitting_follows = doubled.is_ok_and(|doubled| doubled.end_radius() != muscle.end_radius());
+        let mut problem = Self { muscle: muscle.clone(), pressure, net: Net::plain(), fitting_follows };
         problem.net = problem.net_of(|variable| problem.value(variable));
         Ok(problem)
     }
@@ -120,7 +125,7 @@ impl Problem {
                 let (sin, cos) = get(Parameter::BraidAngle).sin_cos();
                 // Where the fitting's radius isn't stated separately it is the braid's, and follows it.
                 net.end_radius =
-                    if self.fitting_follows() { one } else { get(Parameter::FittingRadius) / radius };
+                    if self.fitting_follows { one } else { get(Parameter::FittingRadius) / radius };
                 net.half_fibre = half_length / cos;
                 net.cos_rest = cos;
                 net.turn = sin;
@@ -158,13 +163,7 @@ impl Problem {
 
     /// Whether the radius of the fittings is a variable of its own: a clamped braid where it is stated.
     pub(crate) fn has_own_fitting(&self) -> bool {
-        !self.muscle.is_pleated() && !self.is_cylinder() && !self.fitting_follows()
-    }
-
-    /// Whether the fittings of a braid have the radius of the braid because nothing else is stated.
-    fn fitting_follows(&self) -> bool {
-        let doubled = self.muscle.with(Parameter::Radius, 2.0 * self.muscle.radius().si());
-        doubled.is_ok_and(|doubled| doubled.end_radius() != self.muscle.end_radius())
+        !self.muscle.is_pleated() && !self.is_cylinder() && !self.fitting_follows
     }
 
     /// Whether the braid is the textbook cylinder.

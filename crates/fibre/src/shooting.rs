@@ -10,28 +10,35 @@
 //! In these variables the problem is nearly linear at both ends: for a shallow bulge S = sqrt(2 B/k), and in a long braid S grows with -ln k.
 //! Newton's method takes exact derivatives from the integration of dual numbers, loosely at first.
 
-use bulge_numerics::{Dual, Real, gauss, root::illinois};
+use bulge_numerics::{Dual, Real};
 
 use crate::FibreError;
 use crate::meridian::{SHORTENING, Trajectory, VOLUME, trajectory};
 use crate::net::Net;
+use crate::start::start;
 
 /// Tolerance of the last integrations, relative to the scale of each component.
 pub(crate) const TOLERANCE: f64 = 1e-11;
 /// Newton iterations after which the solve is given up.
 const MAX_ITERATIONS: u32 = 40;
+/// Evaluations of the right-hand side after which the search for an equilibrium that may not exist ends (some 20 ms). The longest braid takes
+/// under 10 000.
+const MOST_EVALUATIONS: u32 = 200_000;
 /// Largest steps of ln|B| and ln|k|.
 const MAX_STEP: [f64; 2] = [0.8, 4.0];
 /// Residual below which Newton's method is trusted not to need backtracking (early residuals are integrated loosely).
 const NEAR: f64 = 1e-2;
 /// Largest step of the last integration: what the derivatives are exact to.
-const DERIVATIVES: f64 = 1e-8;
-/// Difference of the contraction from that of a straight meridian up to which the start is taken from the linear solution.
-const SHALLOW: f64 = 1e-4;
+const DERIVATIVES: f64 = 1e-9;
 /// Smallest difference of the contraction from that of a straight meridian.
 const STRAIGHT: f64 = 1e-7;
-/// After a step of this size the quadratic convergence has done its work.
-const LAST_STEP: f64 = 1e-6;
+/// Largest step after which a solution is one; [`finish`] corrects the values by it to second order.
+const ACCEPTED: f64 = 1e-6;
+/// After a step of this size, with a trajectory integrated to [`LAST_TOLERANCE`], the next one is usually below [`DERIVATIVES`]: [`finish`],
+/// which has to integrate once anyway, takes it (a third of the time of a braid saved), and one more where it is not.
+const LAST_STEP: f64 = 1e-4;
+/// Looser than this, the next step would be the error of the integration.
+const LAST_TOLERANCE: f64 = 1e-7;
 
 /// Which side of the fitting's radius the middle lies on, and the two logarithms.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,7 +74,7 @@ impl Unknowns {
 }
 
 /// Bound on the curvature of a waist of inextensible fibres, q^2 r/sigma^2.
-fn steepest<D: Real>(net: &Net<D>, r: D) -> D {
+pub(crate) fn steepest<D: Real>(net: &Net<D>, r: D) -> D {
     let angle2 = (net.turn * r).squared();
     angle2 / (r * (-angle2 + 1.0))
 }
@@ -158,10 +165,11 @@ fn newton(
         effort.iterations += 1;
         let [bulge, curvature] = at.seeded(&lifted);
         let run = trajectory(&lifted, bulge, curvature, tolerance);
-        let found = run.map(|run| {
-            effort.evaluations += run.evaluations;
-            residuals(&lifted, Dual::from(contraction), &run)
-        });
+        effort.evaluations += run.as_ref().map_or_else(|none| none.evaluations, |run| run.evaluations);
+        if effort.evaluations > MOST_EVALUATIONS {
+            break;
+        }
+        let found = run.map(|run| residuals(&lifted, Dual::from(contraction), &run));
         let size = found.as_ref().map_or(f64::INFINITY, |g| g[0].value().abs().max(g[1].value().abs()));
         // Worse than before, or no trajectory at all: go back half-way.
         if !size.is_finite() || (size > 2.0 * previous && size > NEAR) {
@@ -188,7 +196,7 @@ fn newton(
         if !moved.is_finite() {
             break;
         }
-        if moved < LAST_STEP {
+        if moved < LAST_STEP && tolerance <= LAST_TOLERANCE {
             return Ok(at);
         }
         // The next residual will be about the square of this step: no point in integrating it more exactly than that.
@@ -212,7 +220,7 @@ fn continuation(net: &Net<f64>, contraction: f64, effort: &mut Effort) -> Result
             break found;
         }
         part *= 0.2;
-        if part < 1e-7 {
+        if part < 1e-7 || effort.evaluations > MOST_EVALUATIONS {
             return Err(failed);
         }
     };
@@ -230,7 +238,7 @@ fn continuation(net: &Net<f64>, contraction: f64, effort: &mut Effort) -> Result
             }
             Err(error) => {
                 grow = 1.0 + (grow - 1.0) * 0.4;
-                if grow < 1.002 {
+                if grow < 1.002 || effort.evaluations > MOST_EVALUATIONS {
                     return Err(match error {
                         FibreError::NotConverged { residual, iterations, .. } => {
                             FibreError::NotConverged { contraction, residual, iterations }
@@ -261,123 +269,6 @@ pub(crate) fn straight_contraction(net: &Net<f64>) -> Option<f64> {
     Some(1.0 - net.sigma(net.end_radius, tension) / net.cos_rest)
 }
 
-/// Values to start from, some per cent to some ten per cent off.
-pub(crate) fn start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
-    // Fibres that hardly turn bulge as straight ones do.
-    let straight = net.turn == 0.0
-        || (straight_contraction(net)? < contraction - SHALLOW
-            && net.turn * net.turn * net.half_fibre < 0.02);
-    if straight { arc_start(net, contraction) } else { net_start(net, contraction) }
-}
-
-/// Straight fibres: a circular arc of the stretched fibre length, half-angle K: `sin(K)/K` is the end distance over the fibre length,
-/// and the tension that its curvature asks for stretches the fibres.
-fn arc_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
-    let arc = |angle: f64| {
-        let straight = net.half_fibre;
-        let radius = |length: f64| net.end_radius + length * (1.0 - angle.cos()) / angle;
-        let mut strain: f64 = 0.0;
-        if net.compliance > 0.0 {
-            // T = A'/k; A' grows with the stretched length: a contraction unless the fibres balloon.
-            for _ in 0..6 {
-                let length = straight * (1.0 + strain);
-                strain = (net.compliance * net.area_r(radius(length)) * length / angle).min(2.0);
-            }
-        }
-        let length = straight * (1.0 + strain);
-        let end_distance =
-            (1.0 + strain) * if angle < 1e-4 { 1.0 - angle * angle / 6.0 } else { angle.sin() / angle };
-        (end_distance, length, strain)
-    };
-    let angle = if net.compliance > 0.0 {
-        let mismatch = |ln: f64| arc(ln.exp()).0 - (1.0 - contraction);
-        illinois(mismatch, 1e-7_f64.ln(), 2.6_f64.ln(), 1e-3).exp()
-    } else if contraction > 0.0 {
-        let x = 6.0 * contraction; // K^2 = 6 eps (1 + 3 eps/10 + ...), bent up towards the Mylar balloon
-        (x * (1.0 + 0.3 * contraction + 1.2 * contraction * contraction)).sqrt()
-    } else {
-        return None;
-    };
-    let (_, length, _) = arc(angle);
-    Some(Unknowns {
-        side: 1.0,
-        logs: [(length * 0.5 * angle * (1.0 - angle * angle / 12.0)).ln(), (angle / length).ln()],
-    })
-}
-
-/// Nets with an angle: the trial meridian `r = r_mid - B (cosh(kappa S) - 1)/(cosh(kappa S_half) - 1)` of the linearised equation about
-/// the mid radius, with the bulge that gives the asked end distance.
-fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
-    let straight = straight_contraction(net)?;
-    let side = if contraction >= straight { 1.0 } else { -1.0 };
-    let asked = (1.0 - contraction) * net.cos_rest * net.half_fibre;
-    let half = net.half_fibre;
-    // kappa^2 = 3 q^4 r^2/sigma^2 of the plain net; bladder and strain change it little enough for a start.
-    let rate = |r: f64| {
-        let angle = (net.turn * r).min(0.98);
-        3.0_f64.sqrt() * net.turn * angle / (1.0 - angle * angle).sqrt()
-    };
-    let strain = net
-        .acting_at(net.end_radius)
-        .tension_at_equator(net.end_radius, 0.0)
-        .map_or(0.0, |t| net.compliance * t);
-    let end_distance = |bulge: f64| {
-        let mid = net.end_radius + side * bulge;
-        let kappa = rate(mid);
-        let whole = shape(kappa * half);
-        gauss::integrate(|tau| {
-            let r = mid - side * bulge * shape(kappa * half * tau) / whole;
-            let slope = bulge * shape_slope(kappa * half * tau) * kappa / whole;
-            let square = (1.0 + strain).powi(2) - (net.turn * r).powi(2) - slope * slope;
-            square.max(1e-4).sqrt() * half
-        }) - asked
-    };
-    let most = if side > 0.0 { (0.999 / net.turn - net.end_radius).min(half) } else { 0.9 * net.end_radius };
-    // The square root of the bulge is nearer to linear in the end distance than the bulge itself is for a shallow one. A waist first
-    // lengthens the muscle, then its slope shortens it again: the root is on the first branch.
-    let (mut low, mut high) = (1e-9, most.max(1e-8).sqrt());
-    if side < 0.0 {
-        let mut probe = low;
-        while probe < high && end_distance(probe * probe) < 0.0 {
-            low = probe;
-            probe *= 2.0;
-        }
-        high = probe.min(high);
-    }
-    let bulge = if (contraction - straight).abs() < SHALLOW {
-        // First order in the bulge: d(sigma)/dr = -q^2 r/sigma.
-        let kappa = rate(net.end_radius);
-        let mean = gauss::integrate(|tau| 1.0 - shape(kappa * half * tau) / shape(kappa * half));
-        let sigma = net.cos_rest * (1.0 - straight);
-        (contraction - straight).abs() * net.cos_rest * sigma / (net.turn * net.turn * net.end_radius * mean)
-    } else {
-        illinois(|b| end_distance(b * b), low, high, 1e-4 * high).powi(2)
-    };
-    let mid = net.end_radius + side * bulge;
-    let kappa = rate(mid);
-    let sigma2 = ((1.0 + strain).powi(2) - (net.turn * mid).powi(2)).max(1e-3);
-    let ln_curvature = bulge.ln() + 2.0 * kappa.ln() - sigma2.ln() - ln_shape(kappa * half);
-    let second = if side > 0.0 {
-        ln_curvature
-    } else {
-        let share = (ln_curvature.exp() / steepest(net, mid)).min(0.98);
-        (share / (1.0 - share)).ln()
-    };
-    Some(Unknowns { side, logs: [bulge.ln(), second] })
-}
-
-/// cosh(x) - 1, scaled by exp(-x) for large x (ratios and logarithms only).
-fn shape(x: f64) -> f64 {
-    let s = (0.5 * x.min(600.0)).sinh();
-    2.0 * s * s
-}
-fn shape_slope(x: f64) -> f64 {
-    x.min(600.0).sinh()
-}
-fn ln_shape(x: f64) -> f64 {
-    if x > 30.0 { x - 2.0_f64.ln() } else { shape(x).ln() }
-}
-
 /// The solution at the unknowns with exact derivatives.
 pub(crate) struct Solved<const N: usize> {
     pub(crate) force: Total<N>,
@@ -387,6 +278,16 @@ pub(crate) struct Solved<const N: usize> {
     pub(crate) evaluations: u32,
     pub(crate) trajectory: Trajectory<Dual<N>>,
     pub(crate) residual: f64,
+    /// The last Newton step, by which the trajectory misses the solution.
+    step: [f64; 2],
+}
+
+impl<const N: usize> Solved<N> {
+    /// A value of the trajectory, corrected by the last Newton step.
+    pub(crate) fn corrected(&self, out: Dual<N>) -> f64 {
+        let o = out.gradient();
+        out.value() - o[0] * self.step[0] - o[1] * self.step[1]
+    }
 }
 
 /// A value with its total derivatives: with respect to the contraction, and to the parameters that are the variables 2 .. of the net
@@ -423,6 +324,10 @@ pub(crate) fn finish<const N: usize>(
         }
         at.logs = [at.logs[0] - step[0], at.logs[1] - step[1]];
     };
+    let residual = g[0].value().abs().max(g[1].value().abs());
+    if step[0].abs().max(step[1].abs()) > ACCEPTED {
+        return Err(FibreError::NotConverged { contraction: asked, residual, iterations: MAX_ITERATIONS });
+    }
     let follow: [[f64; 2]; N] = std::array::from_fn(|i| solve_two(jacobian, g.map(|g| g.gradient()[i])));
     let by_contraction = solve_two(jacobian, [0.0, residual_by_contraction(net, contraction, &run)]);
     let total = |out: Dual<N>| {
@@ -440,47 +345,16 @@ pub(crate) fn finish<const N: usize>(
         mid_radius: net.end_radius.value() + bulge.value() * (1.0 - step[0]),
         unknowns: Unknowns { logs: [at.logs[0] - step[0], at.logs[1] - step[1]], ..at },
         evaluations,
-        residual: g[0].value().abs().max(g[1].value().abs()),
+        residual,
         trajectory: run,
+        step,
     })
-}
-
-/// The contraction towards which a braid of inextensible fibres can be drawn out, where the tension has no limit.
-///
-/// The pressure then no longer counts and the end distance is the largest one, `integral of sqrt(1 - q^2 r^2 - r'^2) dS`. With the radius
-/// `r_m cosh(w)` its first integral gives, from the middle to the fitting,
-///
-/// ```text
-/// S = sqrt(1 - q^2 r_m^2)/q  integral dw/sqrt(1 - q^2 r_m^2 cosh^2 w)        x = 1/q  integral sqrt(1 - q^2 r_m^2 cosh^2 w) dw
-/// ```
-pub(crate) fn longest(net: &Net<f64>) -> f64 {
-    let q = net.turn.abs();
-    let drawn = |ln_mid: f64| {
-        let mid = ln_mid.exp();
-        let end = (net.end_radius / mid).acosh();
-        let panels = end.ceil().max(1.0);
-        let (mut fibre, mut distance, mut left) = (0.0, 0.0, 0.0);
-        while left < panels {
-            let root = |part: f64| {
-                let r = mid * (end * (left + part) / panels).cosh();
-                (1.0 - q * q * r * r).max(0.0).sqrt()
-            };
-            fibre += gauss::integrate(|part| 1.0 / root(part)) * end / panels;
-            distance += gauss::integrate(root) * end / panels;
-            left += 1.0;
-        }
-        (fibre * (1.0 - q * q * mid * mid).sqrt() / q, distance / q)
-    };
-    let top = net.end_radius.ln();
-    let mismatch = |ln_mid: f64| drawn(ln_mid).0 - net.half_fibre;
-    // S grows by 1/q for every factor e of the radius.
-    let ln_mid = illinois(mismatch, top - q * net.half_fibre - 3.0, top, 1e-13);
-    1.0 - drawn(ln_mid).1 / (net.cos_rest * net.half_fibre)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::start::longest;
 
     fn braid(length: f64, degrees: f64) -> Net<f64> {
         let (sin, cos) = degrees.to_radians().sin_cos();

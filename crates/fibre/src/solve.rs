@@ -1,14 +1,15 @@
 //! The questions: given the pressure and one of contraction, length, force or volume, the rest; the contraction limit; exact derivatives.
 
 use bulge_muscles::{Parameter, Quantity};
+use bulge_numerics::Dual;
 use bulge_numerics::root::{RootError, newton_bracketed};
-use bulge_numerics::{Dual, Real};
 
 use crate::FibreError;
 use crate::outcome::{Approach, Outcome, Solution};
 use crate::problem::{Problem, Variable};
 use crate::shape::{Method, Response};
-use crate::shooting::{self, Unknowns};
+use crate::shooting::{Total, Unknowns};
+use crate::start::longest;
 
 /// Ambient pressure for the stiffness at constant gas amount \[Pa\] (standard atmosphere).
 pub const AMBIENT_PRESSURE: f64 = 101_325.0;
@@ -92,7 +93,7 @@ impl Problem {
     pub fn gradient(&self, contraction: f64, approach: Approach) -> Result<Gradient, FibreError> {
         const N: usize = 2 + Variable::COUNT;
         let seeded = |variable: Variable| Dual::<N>::variable(self.value(variable), 2 + variable.index());
-        let outcome = self.outcome(self.method(approach)?, contraction, seeded, None)?;
+        let outcome = self.outcome(self.method(approach)?, contraction, &self.net_of(seeded), None)?;
         let [force, volume] = physical(&outcome, seeded);
         let by_variable = Variable::all()
             .filter(|variable| match variable {
@@ -297,7 +298,7 @@ impl Problem {
         if self.is_cylinder() {
             return Some(1.0 - 1.0 / self.net.cos_rest);
         }
-        Some(shooting::longest(&self.net))
+        Some(longest(&self.net))
     }
 
     /// The equilibrium at a contraction with everything that is reported.
@@ -307,49 +308,37 @@ impl Problem {
         contraction: f64,
         from: Option<Unknowns>,
     ) -> Result<Found, FibreError> {
-        let constant = |variable| self.value(variable);
         if self.is_scale_free() {
-            let value = |variable| Dual::<2>::from(constant(variable));
-            let outcome = self.outcome(method, contraction, value, from)?;
-            // F ~ p, V independent of p.
-            return Ok(self.found(contraction, &outcome, value, |force, _| [force / self.pressure, 0.0]));
+            let outcome = self.outcome(method, contraction, &self.net.lift::<2>(), from)?;
+            return Ok(self.found(contraction, &outcome));
         }
-        let seeded = |variable: Variable| match variable {
-            Variable::Pressure => Dual::<3>::variable(self.pressure, 2),
-            Variable::Parameter(_) => Dual::from(constant(variable)),
-        };
-        let outcome = self.outcome(method, contraction, seeded, from)?;
-        let [force, volume] = physical(&outcome, seeded);
-        let by_pressure = [force.gradient()[2], volume.gradient()[2]];
-        Ok(self.found(contraction, &outcome, seeded, |_, _| by_pressure))
+        let outcome = self.outcome(method, contraction, &self.net.with_pressure(self.pressure), from)?;
+        Ok(self.found(contraction, &outcome))
     }
 
-    fn found<const N: usize>(
-        &self,
-        contraction: f64,
-        outcome: &Outcome<N>,
-        value: impl Fn(Variable) -> Dual<N>,
-        by_pressure: impl Fn(f64, f64) -> [f64; 2],
-    ) -> Found {
-        let [force, volume] = physical(outcome, &value);
+    /// The response in SI. The place 2 of the derivatives, if there is one, is by the pressure at constant p R^2 (see [`Net::with_pressure`]).
+    fn found<const N: usize>(&self, contraction: f64, outcome: &Outcome<N>) -> Found {
         let p = self.pressure;
         let radius = self.muscle.radius().si();
         let l0 = self.muscle.length().si();
+        let [unit_force, unit_volume] = [p * radius * radius, radius * radius * radius];
+        let [force, volume] = [unit_force * outcome.force.value, unit_volume * outcome.volume.value];
+        let by_pressure = |total: &Total<N>| total.by_parameter.get(2).copied().unwrap_or(0.0);
         let a = self.net.area_factor;
         // Per length: l = l0 (1 - eps).
-        let stiffness = -force.gradient()[0] / l0;
-        let volume_slope = -a * volume.gradient()[0] / l0;
-        let [force_p, volume_p] = by_pressure(force.value(), volume.value());
-        let polygon = a * volume.value();
+        let stiffness = -unit_force * outcome.force.by_contraction / l0;
+        let volume_slope = -a * unit_volume * outcome.volume.by_contraction / l0;
+        let polygon = a * volume;
+        let force_p = force / p + unit_force * by_pressure(&outcome.force);
+        let volume_p = unit_volume * by_pressure(&outcome.volume);
         let closed = |g| closed_stiffness(g, p, [stiffness, force_p], [polygon, volume_slope, a * volume_p]);
-        let unit_force = p * radius * radius;
         let end_radius = self.net.end_radius;
         let response = Response {
             pressure_pa: p,
-            force_n: force.value(),
+            force_n: force,
             length_m: l0 * (1.0 - contraction),
             contraction,
-            volume_m3: volume.value(),
+            volume_m3: volume,
             volume_polygon_m3: polygon,
             max_radius_m: radius * outcome.mid_radius.max(if self.is_cylinder() { 0.0 } else { end_radius }),
             mid_radius_m: radius * outcome.mid_radius,

@@ -1,0 +1,110 @@
+//! The muscles that the checks use, and how they are asked.
+
+use bulge_fibre::{Approach, Given, Problem, Response};
+use bulge_muscles::{
+    Angle, Bladder, Braided, Construction, Ends, Fibre, FibreCount, Force, Length, LineStiffness, Muscle,
+    Parameter, Pleated, Pressure, Unfolding,
+};
+
+use crate::check::Trouble;
+
+/// Pleated muscle with straight inextensible fibres; no count: continuous.
+pub(crate) fn pleated(length: Length, radius: Length, fibres: Option<u32>) -> Result<Muscle, Trouble> {
+    let count = fibres.map_or(FibreCount::Continuous, FibreCount::Discrete);
+    Ok(Muscle::new("pleated", length, Construction::Pleated(Pleated::new(radius, count)?))?)
+}
+
+/// Pleated muscle of S1: l0 = 110 mm, R = 16 mm, n = 40.
+pub(crate) fn ppam() -> Result<Muscle, Trouble> {
+    pleated(Length::mm(110.0), Length::mm(16.0), Some(40))
+}
+
+/// Braid with clamped ends.
+pub(crate) fn braid(length: Length, radius: Length, angle: Angle) -> Result<Muscle, Trouble> {
+    Ok(Muscle::new("braid", length, Construction::Braided(Braided::new(radius, angle)?))?)
+}
+
+/// Braid of r0 = 10 mm and 25 degrees, with clamped ends.
+pub(crate) fn braid_25(length: Length) -> Result<Muscle, Trouble> {
+    braid(length, Length::mm(10.0), Angle::deg(25.0))
+}
+
+/// The same as the textbook cylinder.
+pub(crate) fn cylinder_25(length: Length) -> Result<Muscle, Trouble> {
+    let braided = Braided::new(Length::mm(10.0), Angle::deg(25.0))?.with_ends(Ends::Cylinder);
+    Ok(Muscle::new("cylinder", length, Construction::Braided(braided))?)
+}
+
+/// Braid of r0 = 10 mm and 25 degrees with 60 fibres, 250 mm or shorter, on fittings of another radius.
+fn counted(length: Length, fitting: Length) -> Result<Muscle, Trouble> {
+    let braided =
+        Braided::new(Length::mm(10.0), Angle::deg(25.0))?.with_fibres(60)?.with_fitting_radius(fitting)?;
+    Ok(Muscle::new("braid", length, Construction::Braided(braided))?)
+}
+
+/// Muscles of inextensible fibres with pressure alone, with a contraction within the range of each.
+pub(crate) fn pressure_only() -> Result<Vec<(&'static str, Muscle, f64)>, Trouble> {
+    let (length, radius) = (Length::mm(110.0), Length::mm(16.0));
+    Ok(vec![
+        ("pleated, n = 40", ppam()?, 0.2),
+        ("pleated, n = 3", pleated(length, radius, Some(3))?, 0.1),
+        ("pleated, continuous", pleated(length, radius, None)?, 0.3),
+        ("pleated, l0/R = 1", pleated(radius, radius, Some(12))?, 0.05),
+        ("pleated, l0/R = 200", pleated(Length::m(2.0), Length::mm(10.0), Some(60))?, 0.4),
+        ("misaligned by 6 deg", ppam()?.with(Parameter::Misalignment, 6.0_f64.to_radians())?, 0.2),
+        ("pleats 3 mm deep", ppam()?.with(Parameter::PleatDepth, 0.003)?, 0.15),
+        ("braid, 250 mm", braid_25(Length::mm(250.0))?, 0.2),
+        ("braid, 30 mm", braid_25(Length::mm(30.0))?, 0.1),
+        ("braid, l0/r0 = 90", braid_25(Length::m(0.9))?, 0.25),
+        ("braid, drawn out", braid_25(Length::mm(100.0))?, -0.02),
+        ("braid, 40 deg", braid(Length::mm(150.0), Length::mm(12.0), Angle::deg(40.0))?, 0.15),
+        ("braid on thin fittings", counted(Length::mm(120.0), Length::mm(7.0))?, 0.15),
+        ("cylinder", cylinder_25(Length::mm(250.0))?, 0.2),
+    ])
+}
+
+/// Muscles in which fibres, bladder or cloth store energy, with a contraction within the range of each.
+pub(crate) fn storing() -> Result<Vec<(&'static str, Muscle, f64)>, Trouble> {
+    let rubber = Bladder::new(Pressure::mpa(0.2), Pressure::mpa(0.05), Length::mm(1.5))?;
+    let cloth = |radius| Unfolding::new(LineStiffness::kn_per_m(8.0), Length::mm(radius));
+    let fibre = |stiffness| Fibre::new(Force::n(stiffness));
+    let everything = ppam()?
+        .with_fibre(fibre(4e3)?)?
+        .with_unfolding(cloth(34.0)?)
+        .with(Parameter::Misalignment, 4.0_f64.to_radians())?
+        .with(Parameter::PleatDepth, 0.002)?;
+    let (length, fitting) = (Length::mm(120.0), Length::mm(9.0));
+    Ok(vec![
+        ("pleated, elastic", ppam()?.with_fibre(fibre(3e3)?)?, 0.1),
+        ("pleated, elastic, stretched", ppam()?.with_fibre(fibre(3e3)?)?, -0.01),
+        ("pleated, taut cloth", ppam()?.with_unfolding(cloth(36.0)?), 0.2),
+        ("pleated, everything", everything, 0.15),
+        ("braid, elastic", counted(length, fitting)?.with_fibre(fibre(200.0)?)?, 0.12),
+        ("braid, bladder", braid_25(Length::mm(250.0))?.with_bladder(rubber)?, 0.2),
+        ("braid, bladder, short", braid_25(Length::mm(50.0))?.with_bladder(rubber)?, 0.1),
+        ("braid, taut cloth", braid_25(length)?.with_unfolding(cloth(12.0)?), 0.1),
+        (
+            "braid, everything",
+            counted(length, fitting)?
+                .with_fibre(fibre(300.0)?)?
+                .with_bladder(rubber)?
+                .with_unfolding(cloth(13.0)?),
+            0.12,
+        ),
+    ])
+}
+
+/// Both lists.
+pub(crate) fn every_kind() -> Result<Vec<(&'static str, Muscle, f64)>, Trouble> {
+    Ok(pressure_only()?.into_iter().chain(storing()?).collect())
+}
+
+/// A muscle at a pressure and a contraction, by whichever method applies.
+pub(crate) fn at(muscle: &Muscle, pressure: Pressure, contraction: f64) -> Result<Response, Trouble> {
+    Ok(Problem::new(muscle, pressure)?.follow(contraction, Approach::Auto)?)
+}
+
+/// The same by shooting.
+pub(crate) fn shot(muscle: &Muscle, pressure: Pressure, contraction: f64) -> Result<Response, Trouble> {
+    Ok(Problem::new(muscle, pressure)?.solve(Given::Contraction(contraction), Approach::Shooting)?)
+}
