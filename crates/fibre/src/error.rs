@@ -40,6 +40,12 @@ pub enum FibreError {
         /// Contraction at which the force is zero.
         limit: f64,
     },
+    /// Nothing is left between the fittings.
+    #[error("no equilibrium at contraction {:.4} %: a muscle that contracts by 100 % has no length", 100.0 * contraction)]
+    NoLength {
+        /// Asked contraction.
+        contraction: f64,
+    },
     /// The muscle would have to be longer than its inextensible fibres allow.
     #[error(
         "no equilibrium at contraction {:.4} %: it must be greater than {:.4} %, where the inextensible fibres are drawn straight (give `fibre.stiffness` to let them stretch)",

@@ -91,7 +91,10 @@ impl Problem {
         if !contraction.is_finite() {
             return Err(FibreError::NotFinite { what: "contraction", value: contraction });
         }
-        if self.net.turn == 0.0 && self.net.compliance == 0.0 && contraction <= 0.0 {
+        if contraction >= 1.0 {
+            return Err(FibreError::NoLength { contraction });
+        }
+        if self.is_singular() && contraction <= 0.0 {
             return Err(FibreError::TooLong { contraction, limit: 0.0 });
         }
         match method {

@@ -18,7 +18,7 @@ use crate::net::Net;
 use crate::start::start;
 
 /// Tolerance of the last integrations, relative to the scale of each component.
-pub(crate) const TOLERANCE: f64 = 1e-11;
+pub(crate) const TOLERANCE: f64 = 4e-12;
 /// Newton iterations after which the solve is given up.
 const MAX_ITERATIONS: u32 = 40;
 /// Evaluations of the right-hand side after which the search for an equilibrium that may not exist ends (some 20 ms). The longest braid takes
@@ -31,7 +31,7 @@ const NEAR: f64 = 1e-2;
 /// Largest step of the last integration: what the derivatives are exact to.
 const DERIVATIVES: f64 = 1e-9;
 /// Smallest difference of the contraction from that of a straight meridian.
-const STRAIGHT: f64 = 1e-7;
+const STRAIGHT: f64 = 1e-9;
 /// Largest step after which a solution is one; [`finish`] corrects the values by it to second order.
 const ACCEPTED: f64 = 1e-6;
 /// After a step of this size, with a trajectory integrated to [`LAST_TOLERANCE`], the next one is usually below [`DERIVATIVES`]: [`finish`],
@@ -141,7 +141,9 @@ pub(crate) fn solve(
 /// moved that far, and [`finish`] comes back along the derivatives (an error of the second order).
 fn beside_straight(net: &Net<f64>, contraction: f64) -> f64 {
     match straight_contraction(net) {
-        Some(straight) if (contraction - straight).abs() < STRAIGHT => straight + STRAIGHT,
+        Some(straight) if (contraction - straight).abs() < STRAIGHT => {
+            straight + STRAIGHT.copysign(contraction - straight)
+        }
         _ => contraction,
     }
 }

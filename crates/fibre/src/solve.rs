@@ -16,7 +16,7 @@ pub const AMBIENT_PRESSURE: f64 = 101_325.0;
 /// Exponent of adiabatic air.
 pub const ADIABATIC: f64 = 1.4;
 
-/// Roots in the contraction are found to this; the last Newton step squares it.
+/// Roots in the contraction are found to a Newton step of this size, whose end is exact to its square.
 const ROOT_TOLERANCE: f64 = 1e-9;
 /// Beyond this contraction no muscle pulls (the slender limit is 0.5431, a braid's 1 - 1/sqrt(3)).
 const FAR: f64 = 0.6;
@@ -165,7 +165,7 @@ impl Problem {
         }
         let limit = self.contraction_limit(approach)?;
         let fullest = self.at(method, limit, None)?.response.volume_m3;
-        let low = if self.net.turn == 0.0 && self.net.compliance == 0.0 {
+        let low = if self.is_singular() {
             std::f64::consts::PI * self.muscle.radius().si().powi(2) * self.muscle.length().si()
         } else {
             self.strongest(method).map_or(0.0, |most| most.volume_m3)
@@ -195,6 +195,8 @@ impl Problem {
             Ok::<_, FibreError>(found)
         };
         let (mut low, first) = self.bracket_below(&mut evaluate, start, &excess)?;
+        // The force of straight inextensible fibres is infinite at 0, and large forces belong to tiny contractions.
+        let tolerance = if self.is_singular() { [0.0, ROOT_TOLERANCE] } else { [ROOT_TOLERANCE, 0.0] };
         // An equilibrium that doesn't exist any more lies beyond the root: walk back towards the last one that did.
         let mut high = FAR;
         let mut x = first;
@@ -211,7 +213,7 @@ impl Problem {
                 }
                 Ok((y, slope))
             };
-            match newton_bracketed(value, low, high, x, ROOT_TOLERANCE) {
+            match newton_bracketed(value, low, high, x, tolerance) {
                 Ok(root) => return evaluate(root),
                 Err(RootError::Function(error)) => {
                     // The failing point is somewhere above the last good one: halve the bracket from above.
@@ -240,7 +242,7 @@ impl Problem {
         start: f64,
         excess: &impl Fn(&Found) -> f64,
     ) -> Result<(f64, f64), FibreError> {
-        if self.net.turn == 0.0 && self.net.compliance == 0.0 {
+        if self.is_singular() {
             return Ok((0.0, start));
         }
         let mut good = None;
@@ -287,12 +289,17 @@ impl Problem {
         best
     }
 
+    /// Whether the force grows without bound as the contraction goes to 0: straight inextensible fibres.
+    pub(crate) fn is_singular(&self) -> bool {
+        self.net.turn == 0.0 && self.net.compliance == 0.0
+    }
+
     /// The contraction at which inextensible fibres are drawn straight, if the muscle has one.
     fn longest(&self) -> Option<f64> {
         if self.net.compliance != 0.0 {
             return None;
         }
-        if self.net.turn == 0.0 {
+        if self.is_singular() {
             return Some(0.0);
         }
         if self.is_cylinder() {

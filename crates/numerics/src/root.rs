@@ -22,8 +22,8 @@ pub enum RootError<E> {
 
 /// Root of a function that is positive at `low` and negative at `high`, from `start`, by Newton steps that fall back to bisection.
 ///
-/// `f` returns value and derivative. Neither end is evaluated: the caller vouches for the signs there. Ends when a step is shorter than
-/// `tolerance` (absolute, in the variable) or the value is zero; the quadratic step makes the result far more exact than that.
+/// `f` returns value and derivative. Neither end is evaluated: the caller vouches for the signs there. Ends when a Newton step is shorter than
+/// `absolute + relative |x|`, which makes its end far more exact than that, or when the value is zero or the bracket has no number inside.
 ///
 /// # Errors
 /// [`RootError::Function`] with the error of `f`, or [`RootError::Budget`] after 100 evaluations.
@@ -32,7 +32,7 @@ pub fn newton_bracketed<E>(
     mut low: f64,
     mut high: f64,
     start: f64,
-    tolerance: f64,
+    [absolute, relative]: [f64; 2],
 ) -> Result<f64, RootError<E>> {
     let mut x = start.clamp(low, high);
     let mut value = f64::NAN;
@@ -48,12 +48,15 @@ pub fn newton_bracketed<E>(
             high = x;
         }
         let newton = x - y / dy;
-        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        // The function falls, so a step the other way means that the derivative is noise: the root is as good as it gets.
-        if (next - x).abs() <= tolerance || high - low <= tolerance {
-            return Ok(next);
+        let inside = newton > low && newton < high;
+        if (newton - x).abs() <= absolute + relative * x.abs() {
+            return Ok(if inside { newton } else { x });
         }
-        x = next;
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return Ok(middle);
+        }
+        x = if inside { newton } else { middle };
     }
     Err(RootError::Budget { low, high, at: x, value })
 }
@@ -100,7 +103,7 @@ mod tests {
             seen.push(x);
             Ok::<_, Infallible>((1.0 / x.sqrt() - 10.0, -0.5 * x.powf(-1.5)))
         };
-        let root = newton_bracketed(f, 0.0, 1.0, 0.9, 1e-12).unwrap();
+        let root = newton_bracketed(f, 0.0, 1.0, 0.9, [1e-12, 0.0]).unwrap();
         assert!((root - 0.01).abs() < 1e-15);
         assert!(seen.iter().all(|x| *x > 0.0 && *x < 1.0) && seen.len() < 30);
     }
@@ -108,7 +111,7 @@ mod tests {
     #[test]
     fn newton_passes_errors_on() {
         let failing = |_: f64| Err::<(f64, f64), _>("no");
-        assert_eq!(newton_bracketed(failing, 0.0, 1.0, 0.5, 1e-9), Err(RootError::Function("no")));
+        assert_eq!(newton_bracketed(failing, 0.0, 1.0, 0.5, [1e-9, 0.0]), Err(RootError::Function("no")));
     }
 
     #[test]
