@@ -1,11 +1,11 @@
 //! The clamped braid, without and with bladder, against an independent energy method.
 
 use bulge_fibre::{Approach, Problem, Response};
-use bulge_muscles::{Angle, Bladder, Braided, Construction, Ends, Length, Muscle, Pressure};
+use bulge_muscles::{Angle, Bladder, Braided, Construction, Ends, Length, Muscle, Parameter, Pressure};
 
 use crate::check::{Check, Claim};
 use crate::reference::{self, CLAMPED_NET, NET_BLADDER, NET_LIMITS, NET_TENSIONS};
-use crate::specimen::{at, braid, braid_25, cylinder_25};
+use crate::specimen::{at, braid, braid_25, cylinder_25, pleated};
 
 const PRESSURE: Pressure = Pressure::mpa(0.3);
 
@@ -115,6 +115,30 @@ pub(crate) fn bladder() -> Check {
         for [l0, contraction, force, mid, volume] in reference::rows(NET_BLADDER)? {
             let muscle = braid_25(Length::mm(l0.value))?.with_bladder(rubber)?;
             let found: Response = at(&muscle, PRESSURE, contraction.value)?;
+            let case =
+                |what: &str| format!("{what} at l0 = {} mm, contraction {}", l0.value, contraction.value);
+            tally.add(force.unexplained(found.force_n), || case("force"));
+            tally.add(mid.unexplained(1e3 * found.mid_radius_m), || case("mid radius"));
+            tally.add(volume.unexplained(1e9 * found.volume_m3), || case("volume"));
+        }
+        Ok(())
+    })
+}
+
+/// A pleated muscle whose fibres are misaligned by 25 degrees is that braid.
+pub(crate) fn misaligned() -> Check {
+    Claim {
+        group: "braid",
+        name: "force, radius and volume of a pleated membrane misaligned by 25 deg: the same net",
+        source: "reference/braided_net_tensions.csv",
+        tolerance: 1e-9,
+        why: "beyond one unit of the last printed digit",
+    }
+    .run(|tally| {
+        for [l0, contraction, force, _, mid, volume, ..] in reference::rows::<9>(NET_TENSIONS)? {
+            let straight = pleated(Length::mm(l0.value), Length::mm(10.0), None)?;
+            let muscle = straight.with(Parameter::Misalignment, 25.0_f64.to_radians())?;
+            let found = at(&muscle, PRESSURE, contraction.value)?;
             let case =
                 |what: &str| format!("{what} at l0 = {} mm, contraction {}", l0.value, contraction.value);
             tally.add(force.unexplained(found.force_n), || case("force"));

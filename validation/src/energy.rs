@@ -70,7 +70,7 @@ pub(crate) fn potential() -> Check {
     }
     .run(|tally| {
         for (name, muscle, contraction) in every_kind()? {
-            // A cylinder has no stored energy here and its ends are not clamped: virtual work covers it.
+            // Points equally spaced in fibre length, as Simpson's rule asks: by shooting, or along the straight cylinder.
             let problem = Problem::new(&muscle, PRESSURE)?;
             let approach = if name == "cylinder" { Approach::Auto } else { Approach::Shooting };
             let energy = |eps| -> Result<[f64; 2], Trouble> {

@@ -9,6 +9,7 @@ mod closed_form;
 mod derivative;
 mod difference;
 mod energy;
+mod isobars;
 mod limits;
 mod meridian;
 mod published;
@@ -31,12 +32,14 @@ pub const CHECKS: &[fn() -> Check] = &[
     braid::tensions,
     braid::limits,
     braid::bladder,
+    braid::misaligned,
     energy::virtual_work,
     energy::maxwell,
     energy::potential,
     derivative::gradients,
     derivative::gradients_by_shooting,
     derivative::stiffness,
+    isobars::one_by_one,
     meridian::first_integral,
     meridian::fibre_length,
     meridian::consistency,
@@ -50,7 +53,8 @@ pub const CHECKS: &[fn() -> Check] = &[
     published::contraction_limits,
     published::clamped_braids,
     published::cylinder_formula,
-    published::measured,
+    published::measured_force,
+    published::computed_volume,
 ];
 
 /// Runs every check.

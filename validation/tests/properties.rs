@@ -242,7 +242,7 @@ fn edges() -> Vec<Muscle> {
     }
     for step in near {
         muscles.push(braid(0.12, r, 25.0, Some(r * (1.0 + step))));
-        // Cloth that becomes taut at the fitting's radius and at the largest one (23.2 mm at 10 %).
+        // Cloth that becomes taut at the fitting's radius and at the largest one (23.13 mm at 10 %).
         for radius in [r, 0.023_134_545_911_4] {
             let cloth =
                 Unfolding::new(LineStiffness::kn_per_m(8.0), Length::m(radius * (1.0 + step))).unwrap();
