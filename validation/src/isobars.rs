@@ -22,7 +22,9 @@ pub(crate) fn one_by_one() -> Check {
             for isobar in isobars(&muscle, &pressures, &contractions, Approach::Auto)? {
                 let problem = Problem::new(&muscle, Pressure::pa(isobar.pressure_pa))?;
                 let limit = problem.contraction_limit(Approach::Auto)?;
-                tally.relative(isobar.contraction_limit, limit, || format!("limit, {name}"));
+                tally.relative(isobar.contraction_limit.unwrap_or(f64::NAN), limit, || {
+                    format!("limit, {name}")
+                });
                 for point in &isobar.points {
                     let alone = problem.solve(Given::Contraction(point.contraction), Approach::Auto)?;
                     for (what, read) in OUTPUTS {

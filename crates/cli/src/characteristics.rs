@@ -46,9 +46,12 @@ pub(crate) fn summary(isobars: &[Isobar]) -> String {
     for isobar in isobars {
         let _ = writeln!(
             text,
-            "{}   (force vanishes at {} %)\n",
+            "{}   ({})\n",
             Pressure::pa(isobar.pressure_pa),
-            significant(100.0 * isobar.contraction_limit, 5)
+            isobar.contraction_limit.map_or("contraction limit not found".to_owned(), |limit| format!(
+                "force vanishes at {} %",
+                significant(100.0 * limit, 5)
+            ))
         );
         let heading = ["contraction", "force", "volume", "largest radius", "fibre tension", "stiffness"];
         let units = ["%", "N", "ml", "mm", "N", "N/mm"];

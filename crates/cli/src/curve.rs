@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::shape::bulge;
 
-/// Most points per pressure.
+/// Most points of all isobars together.
 const MAX_POINTS: usize = 1_000_000;
 /// Most members of a VTK series: each is about a megabyte.
 const MAX_FRAMES: usize = 1000;
@@ -60,6 +60,20 @@ impl CurveCommand {
         let muscle = muscle(&self.muscle)?;
         let pressures: Vec<Pressure> = list("--pressure", &self.pressure)?;
         self.check()?;
+        if self.points.saturating_mul(pressures.len()) > MAX_POINTS {
+            let what = format!(
+                "{} points at {} pressures: at most {MAX_POINTS} in all",
+                self.points,
+                pressures.len()
+            );
+            return Err(Failure::Value { option: "--points", what });
+        }
+        if let Some((_, twice)) = pressures.iter().enumerate().find(|(i, p)| pressures[..*i].contains(p)) {
+            return Err(Failure::Value {
+                option: "--pressure",
+                what: format!("{twice} stands twice in the list"),
+            });
+        }
         let first = pressures.first().copied().unwrap_or(Pressure::pa(0.0));
         let contractions = self.contractions(&muscle, first)?;
         let isobars = isobars(&muscle, &pressures, &contractions, self.method.approach())
@@ -170,8 +184,10 @@ fn series(
 fn left_out(isobars: &[Isobar]) -> String {
     let mut text = String::new();
     for isobar in isobars {
-        let (beyond, before): (Vec<_>, Vec<_>) =
-            isobar.without.iter().partition(|(contraction, _)| *contraction > isobar.contraction_limit);
+        let (beyond, before): (Vec<_>, Vec<_>) = isobar
+            .without
+            .iter()
+            .partition(|(contraction, _)| isobar.contraction_limit.is_some_and(|limit| *contraction > limit));
         for part in [before, beyond] {
             if let Some((_, why)) = part.first() {
                 let pressure = Pressure::pa(isobar.pressure_pa);

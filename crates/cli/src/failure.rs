@@ -36,9 +36,11 @@ impl Failure {
     pub(crate) fn status(&self) -> u8 {
         match self {
             Self::Equilibrium { source, .. } => match source.as_ref() {
-                FibreError::NotConverged { .. } => 4,
+                FibreError::NotConverged { .. } | FibreError::VolumeNotFound { .. } => 4,
                 FibreError::PressureNotPositive { .. }
                 | FibreError::NotFinite { .. }
+                | FibreError::NotPositive { .. }
+                | FibreError::ClothTooNarrow { .. }
                 | FibreError::NoClosedForm { .. }
                 | FibreError::NothingToShoot => 1,
                 _ => 3,

@@ -37,5 +37,9 @@ fn publish(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 /// Creates a folder with its parents, if it isn't there.
 pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
+    if path.exists() && !path.is_dir() {
+        let source = io::Error::new(io::ErrorKind::NotADirectory, "it is a file; give the name of a folder");
+        return Err(Failure::Output { path: path.to_path_buf(), source });
+    }
     fs::create_dir_all(path).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
 }

@@ -40,17 +40,17 @@ pub(crate) struct ShapeCommand {
     volume: Option<String>,
     #[arg(long, value_enum, default_value_t)]
     method: MethodArgument,
-    /// Number of meridian points
+    /// Number of meridian points (an even number is raised by one: the middle is a point)
     #[arg(long, default_value_t = 101)]
     points: usize,
     /// Write the bulge as a VTK file (.vtp) for ParaView
     #[arg(long, value_name = "FILE.vtp")]
     vtk: Option<PathBuf>,
     /// Surface in the VTK file: pleats between the fibres, or a surface of revolution [default: pleats for pleated muscles]
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, requires = "vtk")]
     surface: Option<Surface>,
     /// Circumference of the unfolded cloth for the pleats, such as "300 mm" [default: just unfolded at the largest radius]
-    #[arg(long)]
+    #[arg(long, requires = "vtk")]
     cloth: Option<String>,
     /// One JSON document on standard output
     #[arg(long)]
@@ -76,7 +76,7 @@ struct Document<'a> {
     muscle: &'a str,
     #[serde(flatten)]
     response: &'a Response,
-    contraction_limit: f64,
+    contraction_limit: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     fibre_stress_pa: Option<f64>,
     #[serde(flatten)]
@@ -98,7 +98,7 @@ impl ShapeCommand {
         let problem = Problem::new(&muscle, pressure).map_err(&about)?;
         let approach = self.method.approach();
         let shape = problem.shape(given, approach, self.points).map_err(&about)?;
-        let limit = problem.contraction_limit(approach).map_err(&about)?;
+        let limit = problem.contraction_limit(approach).ok();
         if let Some(path) = &self.vtk {
             write_vtp(path, &bulge(&muscle, &shape, self.surface, cloth))?;
         }
@@ -140,7 +140,7 @@ impl ShapeCommand {
         muscle: &Muscle,
         problem: &Problem,
         shape: &Shape,
-        limit: f64,
+        limit: Option<f64>,
         stress: Option<f64>,
     ) -> String {
         let r = &shape.response;
@@ -152,9 +152,12 @@ impl ShapeCommand {
         line(
             "contraction",
             format!(
-                "{} %   (limit {} %)",
+                "{} %   ({})",
                 significant(100.0 * r.contraction, 5),
-                significant(100.0 * limit, 5)
+                limit.map_or("limit not found".to_owned(), |limit| format!(
+                    "limit {} %",
+                    significant(100.0 * limit, 5)
+                ))
             ),
         );
         line("volume", format!("{} ml", significant(1e6 * r.volume_m3, 5)));
@@ -232,7 +235,9 @@ pub(crate) fn bulge<'a>(
 ) -> Bulge<'a> {
     // Enough fibres to see the net where the muscle file doesn't say how many there are.
     let fibres = muscle.fibres().unwrap_or(32);
-    let pleated = matches!(muscle.construction(), Construction::Pleated(_)) && muscle.fibres().is_some();
+    let turns = shape.meridian.last().is_some_and(|end| end.turn_rad != 0.0);
+    let pleated =
+        matches!(muscle.construction(), Construction::Pleated(_)) && muscle.fibres().is_some() && !turns;
     let style = match surface {
         Some(Surface::Revolution) => Style::Revolution,
         None if !pleated => Style::Revolution,

@@ -85,9 +85,9 @@ impl Problem {
                     .collect()
             }
             Solution::Shooting(unknowns) => {
-                let start = unknowns.bulge_and_curvature(&self.net, |value, _| value);
-                let (half, departure) =
-                    stations(&self.net, start, self.net.half_fibre, TOLERANCE, pieces).map_err(|_| failed)?;
+                let middle = unknowns.middle(&self.net, |value, _| value).ok_or_else(|| failed.clone())?;
+                let (half, departure) = stations(&self.net, middle, self.net.half_fibre, TOLERANCE, pieces)
+                    .map_err(|_| failed)?;
                 response.convergence.first_integral = departure.max(response.convergence.first_integral);
                 half
             }

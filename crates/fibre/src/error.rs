@@ -17,6 +17,14 @@ pub enum FibreError {
         /// Its value.
         value: f64,
     },
+    /// A number that must be positive isn't.
+    #[error("the {what} is {value}: it must be greater than 0")]
+    NotPositive {
+        /// Which number.
+        what: &'static str,
+        /// Its value in SI.
+        value: f64,
+    },
     /// A dimension outside the range for which the solver is verified.
     #[error("the {what} of this muscle is {value:.6}: meridians are computed from {low} to {high}")]
     OutOfRange {
@@ -28,6 +36,14 @@ pub enum FibreError {
         low: f64,
         /// Largest value.
         high: f64,
+    },
+    /// The cloth would be taut before the muscle bulges.
+    #[error("the cloth is unfolded at a radius of {:.4} mm, less than the {:.4} mm of the fibres at the fittings: it must not be narrower than these", 1e3 * taut_m, 1e3 * end_m)]
+    ClothTooNarrow {
+        /// Radius at which the cloth is unfolded \[m\].
+        taut_m: f64,
+        /// Radius at the fittings \[m\].
+        end_m: f64,
     },
     /// The contraction lies beyond the one at which the force vanishes.
     #[error(
@@ -41,7 +57,7 @@ pub enum FibreError {
         limit: f64,
     },
     /// Nothing is left between the fittings.
-    #[error("no equilibrium at contraction {:.4} %: a muscle that contracts by 100 % has no length", 100.0 * contraction)]
+    #[error("no equilibrium at contraction {:.4} %: a muscle that contracts by 100 % has no length (a contraction without unit is a fraction: write \"20 %\" or 0.2)", 100.0 * contraction)]
     NoLength {
         /// Asked contraction.
         contraction: f64,
@@ -67,15 +83,15 @@ pub enum FibreError {
         /// Its limit for a slender muscle.
         limit: f64,
     },
-    /// The force can't be reached at this pressure.
-    #[error("no equilibrium with a force of {force_n:.6} N: at this pressure the muscle pulls at most {largest_n:.6} N (at contraction {:.4} %)", 100.0 * contraction)]
-    ForceTooLarge {
-        /// Asked force \[N\].
-        force_n: f64,
-        /// Largest force found \[N\].
-        largest_n: f64,
-        /// The contraction there.
+    /// The muscle would have to push, and the contraction at which its force vanishes was not found.
+    #[error(
+        "no equilibrium with a pulling force at contraction {:.4} %: the muscle would push with {:.6} N", 100.0 * contraction, -force_n
+    )]
+    WouldPush {
+        /// Asked contraction.
         contraction: f64,
+        /// Force there \[N\], negative.
+        force_n: f64,
     },
     /// A muscle pulls; it can't push.
     #[error("no equilibrium with a force of {force_n:.6} N: a muscle only pulls, from 0 N at its contraction limit of {:.4} %", 100.0 * limit)]
@@ -85,15 +101,27 @@ pub enum FibreError {
         /// Contraction at which the force is zero.
         limit: f64,
     },
-    /// The volume can't be reached at this pressure.
-    #[error("no equilibrium with a volume of {:.4} ml: this muscle holds {:.4} ml to {:.4} ml", 1e6 * volume_m3, 1e6 * low_m3, 1e6 * high_m3)]
-    VolumeOutOfReach {
+    /// More than the muscle holds where its force vanishes.
+    #[error("no equilibrium with a volume of {:.4} ml: this muscle holds at most {:.4} ml, where its force vanishes", 1e6 * volume_m3, 1e6 * high_m3)]
+    VolumeTooLarge {
         /// Asked volume \[m^3\].
         volume_m3: f64,
-        /// Smallest volume \[m^3\].
-        low_m3: f64,
         /// Volume at the contraction limit \[m^3\].
         high_m3: f64,
+    },
+    /// Less than the muscle holds when it is as long as its fibres.
+    #[error("no equilibrium with a volume of {:.4} ml: it must be greater than the {:.4} ml of the straight muscle", 1e6 * volume_m3, 1e6 * low_m3)]
+    VolumeTooSmall {
+        /// Asked volume \[m^3\].
+        volume_m3: f64,
+        /// Volume of the straight muscle \[m^3\].
+        low_m3: f64,
+    },
+    /// No contraction with this volume was found at which the muscle pulls.
+    #[error("no pulling equilibrium with a volume of {:.4} ml was found; `bulge curve` shows the volumes of this muscle", 1e6 * volume_m3)]
+    VolumeNotFound {
+        /// Asked volume \[m^3\].
+        volume_m3: f64,
     },
     /// The closed form was asked for a muscle that has none.
     #[error("there is no closed form for this muscle: {why}; use the method `shooting` or `auto`")]
@@ -107,7 +135,7 @@ pub enum FibreError {
     )]
     NothingToShoot,
     /// Newton's method did not converge.
-    #[error("the equilibrium at contraction {:.4} % did not converge: residual {residual:.2e} after {iterations} iterations; try a contraction nearer to the middle of the range, or stiffer fibres", 100.0 * contraction)]
+    #[error("the equilibrium at contraction {:.4} % did not converge: residual {residual:.2e} after {iterations} iterations; try a contraction nearer to the middle of the muscle's range", 100.0 * contraction)]
     NotConverged {
         /// Asked contraction.
         contraction: f64,

@@ -19,8 +19,8 @@ const CHUNK: usize = 64;
 pub struct Isobar {
     /// Gauge pressure \[Pa\].
     pub pressure_pa: f64,
-    /// Contraction at which the force vanishes.
-    pub contraction_limit: f64,
+    /// Contraction at which the force vanishes, if it was found.
+    pub contraction_limit: Option<f64>,
     /// Equilibria in the order of the contractions asked for; those that don't exist are left out.
     pub points: Vec<Response>,
     /// What was left out, and why.
@@ -33,7 +33,7 @@ pub struct Isobar {
 /// Where nothing but pressure acts on inextensible fibres, the shape doesn't depend on the pressure and is computed once.
 ///
 /// # Errors
-/// What [`Problem::new`] says, an approach that doesn't fit the muscle, or a contraction limit that doesn't converge. A contraction without
+/// What [`Problem::new`] says, or an approach that doesn't fit the muscle. A contraction without
 /// equilibrium is no error: it is listed in [`Isobar::without`].
 pub fn isobars(
     muscle: &Muscle,
@@ -58,19 +58,23 @@ impl Problem {
     /// # Errors
     /// See [`isobars`].
     pub fn isobar(&self, contractions: &[f64], approach: Approach) -> Result<Isobar, FibreError> {
-        let limit = self.contraction_limit(approach)?;
+        let limit = self.contraction_limit(approach).ok();
         let method = self.method(approach)?;
         let solve = |chunk: &[f64]| {
             let mut last = [None, None];
             let solved = chunk.iter().map(|&contraction| {
-                if contraction > limit {
+                if let Some(limit) = limit.filter(|limit| contraction > *limit) {
                     return (contraction, Err(FibreError::BeyondLimit { contraction, limit }));
                 }
                 let found = self.at(method, contraction, extrapolate(last, contraction));
                 if let Ok(found) = &found {
                     last = [last[1], found.unknowns().map(|unknowns| (contraction, unknowns))];
                 }
-                (contraction, found.map(|found| found.response))
+                let pulling = found.and_then(|found| match found.response {
+                    response if self.pulls(&response) => Ok(response),
+                    response => Err(FibreError::WouldPush { contraction, force_n: response.force_n }),
+                });
+                (contraction, pulling)
             });
             solved.collect::<Vec<_>>()
         };

@@ -139,30 +139,33 @@ pub(crate) struct NoTrajectory {
     pub(crate) evaluations: u32,
 }
 
-/// Start of a trajectory: the state at mid-length, where the radius is `end_radius + bulge` and the meridian has the curvature `curvature`.
-fn start<D: Real>(net: &Net<D>, bulge: D, curvature: D) -> Result<(State<D>, D, D), NoTrajectory> {
-    let mid_radius = net.end_radius + bulge;
-    let nothing = NoTrajectory { evaluations: 1 };
-    if mid_radius.value() <= 0.0 {
-        return Err(nothing);
-    }
-    let tension =
-        net.acting_at(mid_radius.value()).tension_at_equator(mid_radius, curvature).ok_or(nothing)?;
-    let zero = D::from(0.0);
-    let state = [zero, zero, zero, D::from(1.0), curvature, tension, zero];
-    Ok((state, mid_radius, tension))
+/// The middle of a meridian: what a trajectory starts from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Middle<D> {
+    /// r_mid - r_fitting, positive for a bulge, negative for a waist.
+    pub(crate) bulge: D,
+    /// Curvature of the meridian, of the same sign and not zero.
+    pub(crate) curvature: D,
+    /// Tension of all fibres; it belongs to the curvature by [`Net::tension_at_equator`].
+    pub(crate) tension: D,
 }
 
-/// Integrates from mid-length until the radius is that of the fitting.
-///
-/// `bulge` = r_mid - r_fitting and `curvature` at mid-length have the same sign (positive: bulge, negative: waist) and are not zero.
+impl<D: Real> Middle<D> {
+    fn state(&self) -> State<D> {
+        let zero = D::from(0.0);
+        [zero, zero, zero, D::from(1.0), self.curvature, self.tension, zero]
+    }
+}
+
+/// Integrates from the middle until the radius is that of the fitting.
 pub(crate) fn trajectory<D: Real>(
     net: &Net<D>,
-    bulge: D,
-    curvature: D,
+    middle: Middle<D>,
     tolerance: f64,
 ) -> Result<Trajectory<D>, NoTrajectory> {
-    let (mut y, mid_radius, mid_tension) = start(net, bulge, curvature)?;
+    let Middle { bulge, curvature, tension: mid_tension } = middle;
+    let mid_radius = net.end_radius + bulge;
+    let mut y = middle.state();
     // Where the meridian crosses the radius at which the cloth becomes taut, the law has a kink: one smooth law on either side, and the
     // crossing hit exactly.
     let at_middle = net.acting_at(mid_radius.value());
@@ -246,12 +249,12 @@ pub(crate) struct Station {
 /// from the first integral over all of them, relative to N at mid-length.
 pub(crate) fn stations(
     net: &Net<f64>,
-    [bulge, curvature]: [f64; 2],
+    middle: Middle<f64>,
     half_fibre: f64,
     tolerance: f64,
     pieces: usize,
 ) -> Result<(Vec<Station>, f64), NoTrajectory> {
-    let (mut y, mid_radius, tension) = start(net, bulge, curvature)?;
+    let (mut y, mid_radius, tension) = (middle.state(), net.end_radius + middle.bulge, middle.tension);
     let flows = [net.acting_at(0.0), *net].map(|net| Flow { net, mid_radius });
     let flow_at = |y: &State<f64>| {
         let taut = net.cloth.is_some_and(|cloth| mid_radius - y[RHO] > cloth.radius);
@@ -261,7 +264,7 @@ pub(crate) fn stations(
     let mut slope = f(&y);
     let mid_force = flow_at(&y).net.local(mid_radius, tension).force;
     let force = mid_force - net.area(mid_radius);
-    let floor = shortening_floor(net, bulge.abs(), half_fibre);
+    let floor = shortening_floor(net, middle.bulge.abs(), half_fibre);
     let mut run = Dop853::new(half_fibre / pieces as f64, tolerance);
     let mut departure: f64 = 0.0;
     let mut found = Vec::with_capacity(pieces + 1);

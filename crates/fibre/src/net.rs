@@ -208,7 +208,7 @@ impl<D: Real> Net<D> {
 
     /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis at radius `r`: A' - h = k N.
     ///
-    /// Linear in T for inextensible fibres; else Newton's method on the value and one more step for the derivatives.
+    /// Linear in T for inextensible fibres; else a bracketed Newton's method on the values and one step more for the derivatives.
     /// `None` if there is none with a positive tension, or the fibres can't reach that radius.
     pub(crate) fn tension_at_equator(&self, r: D, curvature: D) -> Option<D> {
         let gap = |tension: D| {
@@ -217,24 +217,35 @@ impl<D: Real> Net<D> {
             (gap, local.hoop_t + curvature * local.force_t)
         };
         let (at_zero, slope) = gap(D::from(0.0));
-        let mut tension = at_zero / slope;
-        if self.compliance.value() != 0.0 {
-            // Stretching makes the true tension smaller than the linear estimate by up to a power of the stretch.
-            tension = tension / (tension.value().abs() * self.compliance.value() + 1.0);
-            for _ in 0..60 {
-                let (residual, slope) = gap(tension);
-                let step = residual / slope;
-                let damped = step.value().abs() > 0.5 * tension.value().abs();
-                tension += if damped { tension * 0.5_f64.copysign(step.value()) } else { step };
-                if step.value().abs() <= 1e-9 * tension.value().abs() {
-                    // The quadratic step from here also settles the derivatives.
-                    let (residual, slope) = gap(tension);
-                    tension += residual / slope;
-                    break;
-                }
+        let linear = at_zero / slope;
+        if self.compliance.value() == 0.0 {
+            return (linear.value() > 0.0 && linear.value().is_finite()).then_some(linear);
+        }
+        // Stretching makes the true tension smaller than the linear estimate by up to a power of the stretch.
+        let mut tension = linear.value().abs() / (linear.value().abs() * self.compliance.value() + 1.0);
+        let (mut low, mut high) = (0.0, f64::INFINITY);
+        for _ in 0..200 {
+            let (residual, slope) = gap(D::from(tension));
+            let newton = tension + (residual / slope).value();
+            if residual.value() > 0.0 {
+                low = tension;
+            } else {
+                high = tension;
+            }
+            if (newton - tension).abs() <= 1e-9 * tension {
+                // The quadratic step from here also settles the derivatives.
+                return Some(residual / slope + tension);
+            }
+            tension = match (newton > low && newton < high, high.is_finite()) {
+                (true, _) => newton.min(4.0 * tension),
+                (false, true) => 0.5 * (low + high),
+                (false, false) => 4.0 * tension,
+            };
+            if !tension.is_finite() || tension <= 0.0 {
+                break;
             }
         }
-        (tension.value() > 0.0 && tension.value().is_finite()).then_some(tension)
+        None
     }
 }
 

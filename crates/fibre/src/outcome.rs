@@ -11,6 +11,10 @@ use crate::problem::Problem;
 use crate::shape::{Convergence, Method};
 use crate::shooting::{self, Total, Unknowns};
 
+/// The group of [`FibreError::TooSoft`] beyond which straight fibres balloon: `F(phi_R|m)/(L y) = 1 + kappa/y^2` has a solution in y up to
+/// kappa L^2 = F^2/4, and F is at most 1.854 where the force vanishes (m = 1/2).
+const BALLOONING: f64 = 0.859;
+
 /// Which method computes an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Approach {
@@ -97,11 +101,32 @@ impl Problem {
         if self.is_singular() && contraction <= 0.0 {
             return Err(FibreError::TooLong { contraction, limit: 0.0 });
         }
-        match method {
+        let outcome = match method {
             _ if self.is_cylinder() => by_cylinder(net, contraction),
             Method::ClosedForm => by_closed_form(net, contraction),
             Method::Shooting => by_shooting(&self.net, net, contraction, from),
+        };
+        let group = self.elastic_group();
+        match outcome {
+            Err(FibreError::NotConverged { .. }) if group > 0.7 * BALLOONING => {
+                Err(FibreError::TooSoft { group, limit: BALLOONING })
+            }
+            Ok(outcome)
+                if group > 0.0 && self.net.compliance * outcome.tension > 1.0 && contraction > -0.5 =>
+            {
+                Err(FibreError::TooSoft { group, limit: BALLOONING })
+            }
+            other => other,
         }
+    }
+
+    /// p sin(2 pi/n) l0^2/(4 EA) of one straight fibre; 0 for a net.
+    fn elastic_group(&self) -> f64 {
+        let net = &self.net;
+        if net.turn != 0.0 {
+            return 0.0;
+        }
+        net.area_factor * net.compliance * std::f64::consts::TAU * net.half_fibre * net.half_fibre
     }
 }
 

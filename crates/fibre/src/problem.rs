@@ -110,7 +110,8 @@ impl Problem {
         match self.muscle.construction() {
             Construction::Pleated(pleated) => {
                 net.depth = get(Parameter::PleatDepth) / radius;
-                // Misaligned fibres make the unpressurised muscle a braid of radius R and angle gamma, of one family.
+                // Misaligned fibres make the unpressurised muscle a braid of radius R and angle gamma. The law
+                // of pinned crossings needs a second family, or cloth that takes the torque: a lone family would follow geodesics.
                 let (sin, cos) = get(Parameter::Misalignment).sin_cos();
                 net.half_fibre = half_length / cos;
                 net.cos_rest = cos;
@@ -173,6 +174,12 @@ impl Problem {
 }
 
 fn check_ranges(muscle: &Muscle) -> Result<(), FibreError> {
+    if let Some(cloth) = muscle.unfolding() {
+        let (taut, end) = (cloth.unfolded_radius().si(), muscle.end_radius().si());
+        if taut < end {
+            return Err(FibreError::ClothTooNarrow { taut_m: taut, end_m: end });
+        }
+    }
     let inside = |what, value: f64, [low, high]: [f64; 2]| {
         // A ratio of two decimal lengths may miss a round limit by rounding.
         let slack = 1e-9 * high;

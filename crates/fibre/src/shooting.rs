@@ -13,7 +13,7 @@
 use bulge_numerics::{Dual, Real};
 
 use crate::FibreError;
-use crate::meridian::{SHORTENING, Trajectory, VOLUME, trajectory};
+use crate::meridian::{Middle, NoTrajectory, SHORTENING, Trajectory, VOLUME, trajectory};
 use crate::net::Net;
 use crate::start::start;
 
@@ -32,6 +32,8 @@ const NEAR: f64 = 1e-2;
 const DERIVATIVES: f64 = 1e-9;
 /// Smallest difference of the contraction from that of a straight meridian.
 const STRAIGHT: f64 = 1e-9;
+/// Largest departure from the first integral of a solution: far above what the integration leaves, far below what matters.
+const FIRST_INTEGRAL: f64 = 1e-8;
 /// Largest step after which a solution is one; [`finish`] corrects the values by it to second order.
 const ACCEPTED: f64 = 1e-6;
 /// After a step of this size, with a trajectory integrated to [`LAST_TOLERANCE`], the next one is usually below [`DERIVATIVES`]: [`finish`],
@@ -50,33 +52,47 @@ pub(crate) struct Unknowns {
 }
 
 impl Unknowns {
-    /// B and k, with the unknowns as variables number 0 and 1 if `D` carries derivatives.
+    /// The middle of the meridian, with the unknowns as variables number 0 and 1 if `D` carries derivatives; `None` if the fibres can't be
+    /// there with a positive tension.
     ///
-    /// The curvature of a waist is bounded: as k -> -q^2 r/sigma^2 the tension grows without limit. There the second unknown is the
-    /// logarithm of k only for a shallow waist, and of the distance to that bound for a deep one.
-    pub(crate) fn bulge_and_curvature<D: Real>(
+    /// The curvature of a waist is bounded: towards -q^2 r/sigma^2 the tension grows without limit. There the second unknown is that of the
+    /// tension, T = T_c (1 + exp(..)), with T_c the tension of a cylinder of this radius; for a shallow waist it is ln|k| up to a constant.
+    pub(crate) fn middle<D: Real>(
         &self,
         net: &Net<D>,
         variable: impl Fn(f64, usize) -> D,
-    ) -> [D; 2] {
+    ) -> Option<Middle<D>> {
         let bulge = variable(self.logs[0], 0).exp() * self.side;
-        let second = variable(self.logs[1], 1);
-        if self.side > 0.0 {
-            return [bulge, second.exp()];
+        let second = variable(self.logs[1], 1).exp();
+        let r = net.end_radius + bulge;
+        if r.value() <= 0.0 {
+            return None;
         }
-        let share = D::from(1.0) / ((-second).exp() + 1.0);
-        [bulge, -(share * steepest(net, net.end_radius + bulge))]
+        let net = net.acting_at(r.value());
+        if self.side > 0.0 {
+            let tension = net.tension_at_equator(r, second)?;
+            return Some(Middle { bulge, curvature: second, tension });
+        }
+        let cylinder = net.tension_at_equator(r, D::from(0.0))?;
+        let excess = cylinder * second;
+        let tension = cylinder + excess;
+        let (at_cylinder, local) = (net.local(r, cylinder), net.local(r, tension));
+        // k = (A' - h)/N = -(h(T) - h(T_c))/N; the difference is linear for inextensible fibres, and to first order for a small excess.
+        let linear = net.compliance.value() == 0.0 || second.value() < 1e-6;
+        let hoop = if linear { at_cylinder.hoop_t * excess } else { local.hoop - at_cylinder.hoop };
+        let curvature = -(hoop / local.force);
+        (curvature.value() < 0.0).then_some(Middle { bulge, curvature, tension })
     }
 
-    fn seeded<const N: usize>(&self, net: &Net<Dual<N>>) -> [Dual<N>; 2] {
-        self.bulge_and_curvature(net, Dual::variable)
+    fn seeded<const N: usize>(&self, net: &Net<Dual<N>>) -> Option<Middle<Dual<N>>> {
+        self.middle(net, Dual::variable)
     }
 }
 
-/// Bound on the curvature of a waist of inextensible fibres, q^2 r/sigma^2.
-pub(crate) fn steepest<D: Real>(net: &Net<D>, r: D) -> D {
-    let angle2 = (net.turn * r).squared();
-    angle2 / (r * (-angle2 + 1.0))
+/// Curvature of a waist of inextensible fibres at infinite tension, q^2 r/sigma^2.
+pub(crate) fn steepest(net: &Net<f64>, r: f64) -> f64 {
+    let angle2 = (net.turn * r).powi(2);
+    angle2 / (r * (1.0 - angle2))
 }
 
 /// Counters of a solve.
@@ -165,8 +181,8 @@ fn newton(
     let mut halvings = 0;
     for iteration in 1..=MAX_ITERATIONS {
         effort.iterations += 1;
-        let [bulge, curvature] = at.seeded(&lifted);
-        let run = trajectory(&lifted, bulge, curvature, tolerance);
+        let nothing = NoTrajectory { evaluations: 1 };
+        let run = at.seeded(&lifted).ok_or(nothing).and_then(|middle| trajectory(&lifted, middle, tolerance));
         effort.evaluations += run.as_ref().map_or_else(|none| none.evaluations, |run| run.evaluations);
         if effort.evaluations > MOST_EVALUATIONS {
             break;
@@ -314,8 +330,9 @@ pub(crate) fn finish<const N: usize>(
     let mut at = unknowns;
     let mut evaluations = 0;
     let (run, g, jacobian, step, bulge) = loop {
-        let [bulge, curvature] = at.seeded(net);
-        let run = trajectory(net, bulge, curvature, TOLERANCE).map_err(|_| failed.clone())?;
+        let middle = at.seeded(net).ok_or_else(|| failed.clone())?;
+        let run = trajectory(net, middle, TOLERANCE).map_err(|_| failed.clone())?;
+        let bulge = middle.bulge;
         let g = residuals(net, Dual::from(contraction), &run);
         let jacobian = g.map(|g| [g.gradient()[0], g.gradient()[1]]);
         let step = solve_two(jacobian, g.map(Real::value));
@@ -327,7 +344,7 @@ pub(crate) fn finish<const N: usize>(
         at.logs = [at.logs[0] - step[0], at.logs[1] - step[1]];
     };
     let residual = g[0].value().abs().max(g[1].value().abs());
-    if step[0].abs().max(step[1].abs()) > ACCEPTED {
+    if step[0].abs().max(step[1].abs()) > ACCEPTED || run.first_integral > FIRST_INTEGRAL {
         return Err(FibreError::NotConverged { contraction: asked, residual, iterations: MAX_ITERATIONS });
     }
     let follow: [[f64; 2]; N] = std::array::from_fn(|i| solve_two(jacobian, g.map(|g| g.gradient()[i])));

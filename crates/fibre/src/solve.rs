@@ -8,7 +8,7 @@ use crate::FibreError;
 use crate::outcome::{Approach, Outcome, Solution};
 use crate::problem::{Problem, Variable};
 use crate::shape::{Method, Response};
-use crate::shooting::{Total, Unknowns};
+use crate::shooting::{self, Total, Unknowns};
 use crate::start::longest;
 
 /// Ambient pressure for the stiffness at constant gas amount \[Pa\] (standard atmosphere).
@@ -112,7 +112,10 @@ impl Problem {
         match given {
             Given::Contraction(contraction) => self.pulling(method, approach, contraction),
             Given::Length(length) => {
-                if !(length.is_finite() && length > 0.0) {
+                if length <= 0.0 {
+                    return Err(FibreError::NotPositive { what: "length", value: length });
+                }
+                if !length.is_finite() {
                     return Err(FibreError::NotFinite { what: "length", value: length });
                 }
                 self.pulling(method, approach, (l0 - length) / l0)
@@ -123,21 +126,27 @@ impl Problem {
     }
 
     fn pulling(&self, method: Method, approach: Approach, contraction: f64) -> Result<Found, FibreError> {
-        let found = self.at(method, contraction, None);
-        // Near the limit the force is small against p R^2: rounding may make it negative there.
-        let rounding = -1e-9 * self.pressure * self.muscle.radius().si().powi(2);
-        match found {
-            Ok(found) if found.response.force_n >= rounding => Ok(found),
-            Ok(_) => Err(FibreError::BeyondLimit { contraction, limit: self.contraction_limit(approach)? }),
-            Err(error @ FibreError::NotConverged { .. }) => match self.contraction_limit(approach) {
-                Ok(limit) if contraction > limit => Err(FibreError::BeyondLimit { contraction, limit }),
-                _ => match self.longest() {
-                    Some(limit) if contraction < limit => Err(FibreError::TooLong { contraction, limit }),
-                    _ => Err(error),
-                },
-            },
-            Err(error) => Err(error),
+        let error = match self.at(method, contraction, None) {
+            Ok(found) if self.pulls(&found.response) => return Ok(found),
+            Ok(found) => FibreError::WouldPush { contraction, force_n: found.response.force_n },
+            Err(error @ FibreError::NotConverged { .. }) => error,
+            Err(error) => return Err(error),
+        };
+        // Say where the limit is, if that can be found.
+        if let Ok(limit) = self.contraction_limit(approach)
+            && contraction > limit
+        {
+            return Err(FibreError::BeyondLimit { contraction, limit });
         }
+        match self.longest() {
+            Some(limit) if contraction <= limit => Err(FibreError::TooLong { contraction, limit }),
+            _ => Err(error),
+        }
+    }
+
+    /// Whether the force is not negative: near the limit it is small against p R^2, and rounding may make it negative there.
+    pub(crate) fn pulls(&self, response: &Response) -> bool {
+        response.force_n >= -1e-9 * self.pressure * self.muscle.radius().si().powi(2)
     }
 
     fn with_force(&self, method: Method, approach: Approach, force: f64) -> Result<Found, FibreError> {
@@ -147,90 +156,93 @@ impl Problem {
         if force < 0.0 {
             return Err(FibreError::Pushes { force_n: force, limit: self.contraction_limit(approach)? });
         }
-        self.root(method, self.contraction_start(), |found| found.response.force_n - force).map_err(|error| {
-            match self.strongest(method) {
-                Some(most) if most.force_n < force => FibreError::ForceTooLarge {
-                    force_n: force,
-                    largest_n: most.force_n,
-                    contraction: most.contraction,
-                },
-                _ => error,
-            }
-        })
+        self.root(method, self.contraction_start(), |found| found.response.force_n - force)
     }
 
     fn with_volume(&self, method: Method, approach: Approach, volume: f64) -> Result<Found, FibreError> {
-        if !(volume.is_finite() && volume > 0.0) {
+        if volume <= 0.0 {
+            return Err(FibreError::NotPositive { what: "volume", value: volume });
+        }
+        if !volume.is_finite() {
             return Err(FibreError::NotFinite { what: "volume", value: volume });
         }
-        let limit = self.contraction_limit(approach)?;
-        let fullest = self.at(method, limit, None)?.response.volume_m3;
-        let low = if self.is_singular() {
-            std::f64::consts::PI * self.muscle.radius().si().powi(2) * self.muscle.length().si()
-        } else {
-            self.strongest(method).map_or(0.0, |most| most.volume_m3)
-        };
-        let out_of_reach =
-            || FibreError::VolumeOutOfReach { volume_m3: volume, low_m3: low, high_m3: fullest };
-        if volume > fullest || volume <= low {
-            return Err(out_of_reach());
+        let least = std::f64::consts::PI * self.muscle.radius().si().powi(2) * self.muscle.length().si();
+        if self.is_singular() && volume <= least {
+            return Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: least });
         }
-        self.root(method, 0.5 * limit, |found| volume - found.response.volume_m3).map_err(|_| out_of_reach())
+        if self.is_scale_free() {
+            // F = -p dV/dl: the volume is largest where the force vanishes.
+            let limit = self.contraction_limit(approach)?;
+            let high = self.at(method, limit, None)?.response.volume_m3;
+            if volume > high {
+                return Err(FibreError::VolumeTooLarge { volume_m3: volume, high_m3: high });
+            }
+        }
+        match self.root(method, self.contraction_start(), |found| volume - found.response.volume_m3) {
+            Ok(found) if self.pulls(&found.response) => Ok(found),
+            _ => Err(FibreError::VolumeNotFound { volume_m3: volume }),
+        }
     }
 
     /// A contraction inside the range of this muscle to start a search from.
     fn contraction_start(&self) -> f64 {
         let net = &self.net;
         let ends = (net.half_fibre / (1.0 + net.half_fibre)).powi(2);
-        0.12 * ends
+        // On fittings of another radius the range of a short braid may lie far from 0.
+        let straight = if self.has_own_fitting() { shooting::straight_contraction(net) } else { None };
+        straight.unwrap_or(0.0) + 0.12 * ends
     }
 
     /// The contraction at which `excess`, which falls with the contraction, is zero. Its derivative is taken from the response.
     fn root(&self, method: Method, start: f64, excess: impl Fn(&Found) -> f64) -> Result<Found, FibreError> {
         let l0 = self.muscle.length().si();
-        let mut near: Option<(f64, Unknowns)> = None;
+        let mut near: Option<Unknowns> = None;
         let mut evaluate = |contraction: f64| {
-            let found = self.at(method, contraction, near.map(|(_, unknowns)| unknowns))?;
-            near = found.unknowns().map(|unknowns| (contraction, unknowns));
+            let found = self.at(method, contraction, near)?;
+            near = found.unknowns();
             Ok::<_, FibreError>(found)
         };
-        let (mut low, first) = self.bracket_below(&mut evaluate, start, &excess)?;
+        let (mut low, mut x) = self.bracket_below(&mut evaluate, start, &excess)?;
         // The force of straight inextensible fibres is infinite at 0, and large forces belong to tiny contractions.
         let tolerance = if self.is_singular() { [0.0, ROOT_TOLERANCE] } else { [ROOT_TOLERANCE, 0.0] };
-        // An equilibrium that doesn't exist any more lies beyond the root: walk back towards the last one that did.
-        let mut high = FAR;
-        let mut x = first;
-        loop {
-            let mut reached = low;
-            let value = |x: f64| {
-                let found = evaluate(x)?;
-                let y = excess(&found);
-                // dF/d(eps) = -l0 dF/dl; for the volume the same with the opposite sign of the excess.
-                let step = 1e-6 * x.abs().max(1e-3);
-                let slope = slope_of(&found, y, &excess, step * l0) * l0;
-                if y > 0.0 {
-                    reached = reached.max(x);
-                }
-                Ok((y, slope))
-            };
-            match newton_bracketed(value, low, high, x, tolerance) {
-                Ok(root) => return evaluate(root),
-                Err(RootError::Function(error)) => {
-                    // The failing point is somewhere above the last good one: halve the bracket from above.
-                    low = reached;
-                    high = 0.5 * (low + high);
-                    x = 0.5 * (low + high);
-                    if high - low < 1e-6 {
-                        return Err(error);
+        let mut value = |x: f64| {
+            let found = evaluate(x)?;
+            let y = excess(&found);
+            let step = 1e-6 * x.abs().max(1e-3);
+            Ok((y, slope_of(&found, y, &excess, step * l0) * l0))
+        };
+        // Upwards by Newton steps until the sign changes. Where there is no equilibrium any more, half-way back.
+        let mut barrier = FAR;
+        let high = loop {
+            match value(x) {
+                Ok((y, slope)) if y > 0.0 => {
+                    low = x;
+                    let step = -y / slope;
+                    if step.abs() <= tolerance[0] + tolerance[1] * x.abs() {
+                        return evaluate(x + step);
                     }
+                    x = if step > 0.0 && x + step < barrier { x + step } else { 0.5 * (x + barrier) };
                 }
-                Err(RootError::Budget { at, value, .. }) => {
-                    return Err(FibreError::NotConverged {
-                        contraction: at,
-                        residual: value,
-                        iterations: 100,
-                    });
+                Ok(_) => break x,
+                Err(error) if barrier - low < 1e-9 => return Err(error),
+                Err(_) => {
+                    barrier = x;
+                    x = 0.5 * (low + barrier);
                 }
+            }
+            if barrier - low < 1e-9 {
+                return Err(FibreError::NotConverged {
+                    contraction: x,
+                    residual: f64::INFINITY,
+                    iterations: 0,
+                });
+            }
+        };
+        match newton_bracketed(value, low, high, x, tolerance) {
+            Ok(root) => evaluate(root),
+            Err(RootError::Function(error)) => Err(error),
+            Err(RootError::Budget { at, value, .. }) => {
+                Err(FibreError::NotConverged { contraction: at, residual: value, iterations: 100 })
             }
         }
     }
@@ -272,21 +284,6 @@ impl Problem {
             x = good.unwrap_or(x) - stride;
         }
         Err(FibreError::NotConverged { contraction: x, residual: f64::INFINITY, iterations: 80 })
-    }
-
-    /// The strongest equilibrium that can be found at small (negative) contractions: what an error message tells.
-    fn strongest(&self, method: Method) -> Option<Response> {
-        let lowest = self.longest().unwrap_or(-0.5);
-        let mut best: Option<Response> = None;
-        for i in 1..=20 {
-            let contraction = lowest * (1.0 - 0.5_f64.powi(i));
-            if let Ok(found) = self.at(method, contraction, None)
-                && best.is_none_or(|b| found.response.force_n > b.force_n)
-            {
-                best = Some(found.response);
-            }
-        }
-        best
     }
 
     /// Whether the force grows without bound as the contraction goes to 0: straight inextensible fibres.

@@ -65,7 +65,8 @@ pub fn preset(name: &str) -> Result<Muscle, PresetError> {
         return Ok(from_toml(preset.text, preset.name)?);
     }
     let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
-    let question = nearest(name, &names).map(|near| format!("did you mean `{near}`? otherwise ")).unwrap_or_default();
+    let question =
+        nearest(name, &names).map(|near| format!("did you mean `{near}`? otherwise ")).unwrap_or_default();
     let instead = format!("{question}there are {}", names.join(", "));
     Err(PresetError::Unknown { name: shortened(name), instead })
 }
