@@ -266,7 +266,11 @@ const PRESSURE: Pressure = Pressure::bar(2.0);
 fn nearly_equal_inputs() {
     let mut log = Log::default();
     for muscle in edges() {
-        let problem = Problem::new(&muscle, PRESSURE).unwrap();
+        let problem = match Problem::new(&muscle, PRESSURE) {
+            // Cloth a hair narrower than the fittings.
+            Err(FibreError::ClothTooNarrow { .. }) => continue,
+            other => other.unwrap(),
+        };
         let mut asked = contractions(&problem, &mut log);
         asked.push(0.1);
         // Where the meridian is straight at the fitting's radius: a cylinder of inextensible fibres.

@@ -289,6 +289,13 @@ impl Net<f64> {
         self.lift_to()
     }
 
+    /// The same net with a part of the stiffness of bladder and cloth.
+    pub(crate) fn with_walls(&self, part: f64) -> Self {
+        let bladder = self.bladder.map(|b| Bladder { c10: part * b.c10, c01: part * b.c01 });
+        let cloth = self.cloth.map(|c| Cloth { stiffness: part * c.stiffness, ..c });
+        Self { bladder, cloth, ..*self }
+    }
+
     /// The same net at a pressure that is the variable number 2: what the dimensionless groups make of it.
     pub(crate) fn with_pressure(&self, pressure: f64) -> Net<Dual<3>> {
         let ratio = Dual::<3>::variable(pressure, 2) / pressure;

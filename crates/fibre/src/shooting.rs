@@ -146,11 +146,13 @@ pub(crate) fn solve(
         return Ok((found, effort));
     }
     let direct = start(net, contraction).and_then(|start| newton(net, contraction, start, &mut effort).ok());
-    if let Some(found) = direct {
-        return Ok((found, effort));
-    }
-    let found = continuation(net, contraction, &mut effort)?;
-    Ok((found, effort))
+    let found = match direct {
+        Some(found) => Ok(found),
+        None if net.cloth.is_some() || net.bladder.is_some() => stiffening(net, contraction, &mut effort)
+            .or_else(|_| continuation(net, contraction, &mut Effort::default())),
+        None => continuation(net, contraction, &mut effort),
+    };
+    Ok((found?, effort))
 }
 
 /// Where the meridian is exactly straight, bulge and curvature are zero and their logarithms don't exist: a contraction within `STRAIGHT` of it is
@@ -221,6 +223,46 @@ fn newton(
         tolerance = (1e-2 * moved * moved).clamp(TOLERANCE, 1e-5);
     }
     Err(FibreError::NotConverged { contraction, residual: previous, iterations: MAX_ITERATIONS })
+}
+
+/// The same contraction with a bladder and a cloth that are soft at first and stiffen, by steps that adapt: the starts know nothing of them.
+fn stiffening(net: &Net<f64>, contraction: f64, effort: &mut Effort) -> Result<Unknowns, FibreError> {
+    let failed = |effort: &Effort| FibreError::NotConverged {
+        contraction,
+        residual: f64::INFINITY,
+        iterations: effort.iterations,
+    };
+    let mut part = 1e-2;
+    let mut at = loop {
+        let soft = net.with_walls(part);
+        if let Some(start) = start(&soft, contraction)
+            && let Ok(found) = newton(&soft, contraction, start, effort)
+        {
+            break found;
+        }
+        part *= 0.1;
+        if part < 1e-9 || effort.evaluations > MOST_EVALUATIONS {
+            return Err(failed(effort));
+        }
+    };
+    let mut rate = [0.0, 0.0]; // d(unknowns)/d ln(part)
+    let mut grow: f64 = 3.0;
+    while part < 1.0 {
+        let next = (part * grow).min(1.0);
+        let jump = (next / part).ln();
+        let guess = Unknowns { logs: [at.logs[0] + rate[0] * jump, at.logs[1] + rate[1] * jump], ..at };
+        if let Ok(found) = newton(&net.with_walls(next), contraction, guess, effort) {
+            rate = [(found.logs[0] - at.logs[0]) / jump, (found.logs[1] - at.logs[1]) / jump];
+            (at, part) = (found, next);
+            grow = (1.0 + (grow - 1.0) * 1.5).min(10.0);
+        } else {
+            grow = 1.0 + (grow - 1.0) * 0.4;
+            if grow < 1.005 || effort.evaluations > MOST_EVALUATIONS {
+                return Err(failed(effort));
+            }
+        }
+    }
+    Ok(at)
 }
 
 /// From a shallow bulge (or waist), where the start is good, towards the asked contraction in steps that adapt.

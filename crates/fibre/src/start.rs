@@ -10,11 +10,15 @@ const SHALLOW: f64 = 1e-4;
 
 /// Values to start from, some per cent to some ten per cent off.
 pub(crate) fn start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
-    // Fibres that hardly turn bulge as straight ones do.
-    let straight = net.turn == 0.0
-        || (straight_contraction(net)? < contraction - SHALLOW
-            && net.turn * net.turn * net.half_fibre < 0.02);
-    if straight { arc_start(net, contraction) } else { net_start(net, contraction) }
+    // Fibres that hardly turn bulge as straight ones do, and so does a net that has no cylinder at the fitting's radius.
+    match straight_contraction(net) {
+        Some(straight)
+            if straight >= contraction - SHALLOW || net.turn * net.turn * net.half_fibre >= 0.02 =>
+        {
+            net_start(net, contraction)
+        }
+        _ => arc_start(net, contraction),
+    }
 }
 
 /// Straight fibres: a circular arc of the stretched fibre length, half-angle K: `sin(K)/K` is the end distance over the fibre length,
@@ -113,7 +117,7 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     Some(Unknowns { side, logs: [bulge.ln(), second] })
 }
 
-/// cosh(x) - 1, scaled by exp(-x) for large x (ratios and logarithms only).
+/// cosh(x) - 1, with x kept below where it would overflow (for ratios at the same x).
 fn shape(x: f64) -> f64 {
     let s = (0.5 * x.min(600.0)).sinh();
     2.0 * s * s
