@@ -33,7 +33,7 @@ const DERIVATIVES: f64 = 1e-9;
 /// Smallest difference of the contraction from that of a straight meridian.
 const STRAIGHT: f64 = 1e-9;
 /// Largest departure from the first integral of a solution: far above what the integration leaves, far below what matters.
-const FIRST_INTEGRAL: f64 = 1e-8;
+const FIRST_INTEGRAL: f64 = 1e-9;
 /// Largest step after which a solution is one; [`finish`] corrects the values by it to second order.
 const ACCEPTED: f64 = 1e-6;
 /// After a step of this size, with a trajectory integrated to [`LAST_TOLERANCE`], the next one is usually below [`DERIVATIVES`]: [`finish`],
