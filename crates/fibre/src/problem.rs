@@ -71,9 +71,7 @@ impl Problem {
             return Err(FibreError::PressureNotPositive { pressure_pa: pressure });
         }
         check_ranges(muscle)?;
-        // Found once: to ask the muscle copies it, which a solve must not (it would allocate).
-        let doubled = muscle.with(Parameter::Radius, 2.0 * muscle.radius().si());
-        let fitting_follows = doubled.is_ok_and(|doubled| doubled.end_radius() != muscle.end_radius());
+        let fitting_follows = !muscle.is_stated(Parameter::FittingRadius);
         let mut problem = Self { muscle: muscle.clone(), pressure, net: Net::plain(), fitting_follows };
         problem.net = problem.net_of(|variable| problem.value(variable));
         Ok(problem)

@@ -290,8 +290,10 @@ impl Muscle {
         if let Construction::Braided(braided) = &self.construction { braided.wall() } else { None }
     }
 
-    /// Whether the parameter has a place in the muscle's file, where a width can be written.
-    fn is_stated(&self, parameter: Parameter) -> bool {
+    /// Whether the parameter has a place of its own in the muscle's file, where a width can be written. A fitting radius that is not stated
+    /// follows the radius.
+    #[must_use]
+    pub fn is_stated(&self, parameter: Parameter) -> bool {
         match (parameter, &self.construction) {
             (Parameter::FittingRadius, Construction::Pleated(pleated)) => pleated.end_radius.is_some(),
             (Parameter::FittingRadius, Construction::Braided(braided)) => braided.fitting_radius.is_some(),
