@@ -214,16 +214,21 @@ pub fn solve(contraction: f64, slenderness: f64, kappa: f64) -> Result<ClosedFor
 fn start(contraction: f64, slenderness: f64, kappa: f64) -> Option<(f64, f64)> {
     if kappa == 0.0 {
         (contraction > 0.0).then(|| inextensible_start(contraction, slenderness))
-    } else if contraction >= 0.0 {
+    } else if -contraction < 0.5 * natural_strain(slenderness, kappa) {
         Some(contracted_start(contraction, slenderness, kappa))
     } else {
         stretched_start(contraction, slenderness, kappa)
     }
 }
 
-/// Elastic fibres, contracted muscle: the strain by fixed-point iteration on the inextensible muscle with the stretched length.
+/// Size of the fibre strain at zero contraction (shallow arc, T^3 ~ EA (p l0)^2).
+fn natural_strain(slenderness: f64, kappa: f64) -> f64 {
+    kappa.cbrt() * slenderness.powf(2.0 / 3.0)
+}
+
+/// Elastic fibres, muscle contracted or hardly stretched: the strain by fixed-point iteration on the inextensible muscle with the stretched length.
 fn contracted_start(contraction: f64, slenderness: f64, kappa: f64) -> (f64, f64) {
-    let mut strain = kappa.cbrt() * slenderness.powf(2.0 / 3.0);
+    let mut strain = natural_strain(slenderness, kappa);
     let mut inner = (contraction, slenderness);
     for _ in 0..6 {
         inner = (((contraction + strain) / (1.0 + strain)).clamp(1e-12, 0.6), slenderness * (1.0 + strain));
