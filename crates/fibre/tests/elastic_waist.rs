@@ -1,0 +1,19 @@
+//! Elastic braids drawn out to a waist: the tension at mid-length is an unknown of its own, since two tensions can have one curvature.
+
+use bulge_fibre::{Approach, Problem};
+use bulge_muscles::{Angle, Braided, Construction, Fibre, Force, Length, Muscle, Pressure};
+
+/// Forces of a braid of l0 = 55.8 mm, r0 = 10 mm, 7.22 degrees, 60 fibres of EA = 11 840 N at 32 676 Pa, from an independent integration of the
+/// equilibrium in Hamiltonian form from the fitting inwards (SciPy, relative tolerance 3e-13), 8 digits.
+#[test]
+fn force_agrees_with_an_independent_integration() {
+    let braid = Braided::new(Length::mm(10.0), Angle::deg(7.22)).unwrap().with_fibres(60).unwrap();
+    let muscle = Muscle::new("waist", Length::mm(55.8), Construction::Braided(braid)).unwrap();
+    let muscle = muscle.with_fibre(Fibre::new(Force::n(11_840.0)).unwrap()).unwrap();
+    let problem = Problem::new(&muscle, Pressure::pa(32_676.0)).unwrap();
+    for (contraction, force) in [(-0.0022, 1461.5701), (-0.0025, 1635.6432)] {
+        let found = problem.follow(contraction, Approach::Auto).unwrap();
+        assert!(found.mid_radius_m < 0.01, "no waist: {} m", found.mid_radius_m);
+        assert!((found.force_n / force - 1.0).abs() < 1e-7, "{} N instead of {force} N", found.force_n);
+    }
+}
