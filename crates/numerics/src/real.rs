@@ -35,6 +35,18 @@ pub trait Real:
     /// Natural logarithm.
     #[must_use]
     fn ln(self) -> Self;
+    /// Hyperbolic tangent.
+    #[must_use]
+    fn tanh(self) -> Self;
+    /// Inverse tangent, in radians.
+    #[must_use]
+    fn atan(self) -> Self;
+    /// Absolute value; its derivative at 0 is taken as 0.
+    #[must_use]
+    fn abs(self) -> Self;
+    /// A whole power; `0^0` is 1.
+    #[must_use]
+    fn powi(self, exponent: i32) -> Self;
     /// `self * a + b` with a plain factor: the inner operation of a Runge-Kutta stage.
     #[must_use]
     fn scale_add(self, a: f64, b: Self) -> Self;
@@ -66,6 +78,22 @@ impl Real for f64 {
     #[inline]
     fn ln(self) -> Self {
         Self::ln(self)
+    }
+    #[inline]
+    fn tanh(self) -> Self {
+        Self::tanh(self)
+    }
+    #[inline]
+    fn atan(self) -> Self {
+        Self::atan(self)
+    }
+    #[inline]
+    fn abs(self) -> Self {
+        Self::abs(self)
+    }
+    #[inline]
+    fn powi(self, exponent: i32) -> Self {
+        Self::powi(self, exponent)
     }
     #[inline]
     fn scale_add(self, a: f64, b: Self) -> Self {

@@ -1,0 +1,1 @@
+//! The catalogue of physical effects of pneumatic muscles: equations, parameters, sources, signatures and laws.

@@ -1,0 +1,1 @@
+//! Model against measurement: fits with intervals and warnings, and the ladder of errors.
