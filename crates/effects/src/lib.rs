@@ -1,1 +1,23 @@
 //! The catalogue of physical effects of pneumatic muscles: equations, parameters, sources, signatures and laws.
+//!
+//! An effect is one file and one entry of the list of its group. It is called at one [`Stage`]: it changes the muscle whose equilibrium is
+//! solved ([`Stage::Shape`]), what reaches that muscle ([`Stage::Input`]), adds a force ([`Stage::Load`]) or changes what the load cell
+//! reads ([`Stage::Output`]). Everything that a fit, a ranking, the help or a report says about it comes from its [`Card`].
+//!
+//! Deliberately absent: data. An effect sees one [`Moment`] after the other, never a data set.
+
+mod card;
+mod catalogue;
+mod effect;
+mod geometry;
+mod load;
+mod material;
+#[cfg(test)]
+mod probe;
+mod rig;
+mod specimen;
+mod unit;
+
+pub use card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+pub use catalogue::{Catalogue, CatalogueError};
+pub use effect::{Balance, Effect, Input, Jet, LANES, Moment, Place, Reshaped, Setting};

@@ -1,0 +1,315 @@
+//! The card of an effect: what a person, a fit, a ranking and a report need to know about it.
+
+use bulge_muscles::{Kind, Muscle, Parameter};
+use serde::Serialize;
+
+/// Where in the chain from reading to reading an effect acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stage {
+    /// It changes the muscle whose equilibrium is solved: geometry and material.
+    Shape,
+    /// It changes what reaches the muscle: the true pressure and contraction behind the readings, or how the equilibrium is taken.
+    Input,
+    /// It adds a force to that of the equilibrium.
+    Load,
+    /// It changes what the load cell reads.
+    Output,
+}
+
+/// What kind of thing it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Group {
+    /// Dimensions and directions.
+    Geometry,
+    /// Elasticity of fibres, bladder and cloth.
+    Material,
+    /// Friction, rate, time, temperature, thresholds.
+    Load,
+    /// Sensors and frame.
+    Rig,
+    /// Differences between muscles of the same make.
+    Specimen,
+}
+
+impl Group {
+    /// All groups in the order in which they are listed.
+    pub const ALL: [Self; 5] = [Self::Geometry, Self::Material, Self::Load, Self::Rig, Self::Specimen];
+
+    /// The heading.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Geometry => "geometry",
+            Self::Material => "material",
+            Self::Load => "load",
+            Self::Rig => "rig",
+            Self::Specimen => "specimen",
+        }
+    }
+}
+
+/// How far the source can be relied on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Evidence {
+    /// Printed in one of the five source papers S1 to S5, with the errata corrected.
+    Paper,
+    /// Derived from the equilibrium equations and checked numerically.
+    Derived,
+    /// Read in a public source other than the five papers.
+    LookedUp,
+    /// From the literature by memory: the formula was derived again where possible, constants were not read again.
+    Literature,
+    /// Stated by the user.
+    User,
+}
+
+impl Evidence {
+    /// In words.
+    #[must_use]
+    pub const fn says(self) -> &'static str {
+        match self {
+            Self::Paper => "printed in a source paper",
+            Self::Derived => "derived, checked numerically",
+            Self::LookedUp => "read in a public source",
+            Self::Literature => "known from the literature, constants not read again",
+            Self::User => "stated by the user",
+        }
+    }
+}
+
+/// Parity in the direction of motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Parity {
+    /// The same while shortening and lengthening.
+    Even,
+    /// Changes sign with the direction.
+    Odd,
+    /// Neither.
+    Mixed,
+}
+
+/// How the effect shows in a residual F - F_model(p, eps, direction).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Signature<'a> {
+    /// Power of the pressure, in words: "0", "1", "2", "0 and 1".
+    pub pressure: &'a str,
+    /// Parity in the direction of motion.
+    pub parity: Parity,
+    /// Dependence on the contraction (and time, rate, temperature) in words.
+    pub shape: &'a str,
+}
+
+/// An effect that data may not tell from this one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Twin<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// How near it is: "identical", "0.98 after calibration".
+    pub how: &'a str,
+}
+
+/// A card without its parameters (those are [`crate::Effect::parameters`]).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Card<'a> {
+    /// Name in commands, files and reports: lower-case words with hyphens.
+    pub name: &'a str,
+    /// The family it counts under; its own name if it is the family's first member.
+    pub family: &'a str,
+    /// A heading.
+    pub title: &'a str,
+    /// What happens physically, in two or three sentences.
+    pub about: &'a str,
+    /// The equation, in plain text.
+    pub equation: &'a str,
+    /// Where the equation comes from.
+    pub source: &'a str,
+    /// How reliable that is.
+    pub evidence: Evidence,
+    /// What kind of thing it is.
+    pub group: Group,
+    /// Where it acts.
+    pub stage: Stage,
+    /// The family of muscle that has it; both if none.
+    pub kind: Option<Kind>,
+    /// How it shows.
+    pub signature: Signature<'a>,
+    /// What it is confused with.
+    pub twins: &'a [Twin<'a>],
+    /// The experiment that separates it from its twins.
+    pub separate: &'a str,
+    /// Columns beyond pressure, contraction and force without which the effect cannot be seen.
+    pub needs: Needs,
+}
+
+/// What the data must have for an effect to show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Needs {
+    /// Nothing: a static map will do.
+    Nothing,
+    /// A path: rows in the order of measurement, shortening and lengthening.
+    Path,
+    /// A path with time.
+    Time,
+    /// Time or cycles.
+    Cycles,
+    /// A column `temperature` that changes.
+    Temperature,
+    /// Two specimens or more.
+    Specimens,
+}
+
+impl Needs {
+    /// In words.
+    #[must_use]
+    pub const fn says(self) -> &'static str {
+        match self {
+            Self::Nothing => "any force map",
+            Self::Path => "a path: rows in the order of measurement, both directions",
+            Self::Time => "a path with a column `time`",
+            Self::Cycles => "several cycles of the same path",
+            Self::Temperature => "a column `temperature` that changes",
+            Self::Specimens => "a column `specimen` with two or more specimens",
+        }
+    }
+}
+
+/// One number of an effect.
+///
+/// `low`, `high`, `typical`, `off` and `prior` are in SI, or multiples of the muscle's own value where `relative_to` names one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ParameterCard<'a> {
+    /// Name in results.
+    pub name: &'a str,
+    /// Key in a muscle file's table `[effects.NAME]`; the name, if not stated otherwise.
+    pub key: &'a str,
+    /// Unit in which it is shown and written, such as "MPa".
+    pub unit: &'a str,
+    /// Size of that unit in SI.
+    pub factor: f64,
+    /// Bounds of a fit.
+    pub low: f64,
+    /// Bounds of a fit.
+    pub high: f64,
+    /// A usual value, from which a fit starts.
+    pub typical: f64,
+    /// The value at which the effect does nothing.
+    pub off: f64,
+    /// Mean and standard deviation on the scale of the literature.
+    pub prior: Option<(f64, f64)>,
+    /// The range outside which the value is no cure but a symptom; the bounds if not stated.
+    pub plausible: Option<(f64, f64)>,
+    /// The muscle's number of which the others are multiples.
+    pub relative_to: Option<Parameter>,
+    /// Whether a fit runs over its logarithm: positive numbers that may differ by orders of magnitude.
+    pub logarithmic: bool,
+    /// Whether a result is also shown as its reciprocal: name and unit with its size in SI.
+    pub reciprocal: Option<(&'a str, &'a str, f64)>,
+    /// What it is.
+    pub about: &'a str,
+}
+
+impl<'a> ParameterCard<'a> {
+    /// A number with its unit (and the size of the unit in SI), bounds and usual value in that unit, switched off at 0.
+    #[must_use]
+    pub const fn new(
+        name: &'a str,
+        (unit, factor): (&'a str, f64),
+        (low, high): (f64, f64),
+        typical: f64,
+        about: &'a str,
+    ) -> Self {
+        Self {
+            name,
+            key: name,
+            unit,
+            factor,
+            low: low * factor,
+            high: high * factor,
+            typical: typical * factor,
+            off: 0.0,
+            prior: None,
+            plausible: None,
+            relative_to: None,
+            logarithmic: false,
+            reciprocal: None,
+            about,
+        }
+    }
+
+    /// A multiple of one of the muscle's own numbers, switched off at 1; shown in `unit`.
+    #[must_use]
+    pub const fn multiple(
+        name: &'a str,
+        (unit, factor): (&'a str, f64),
+        parameter: Parameter,
+        (low, high): (f64, f64),
+        about: &'a str,
+    ) -> Self {
+        let base = Self::new(name, (unit, factor), (0.0, 0.0), 0.0, about);
+        Self { low, high, typical: 1.0, off: 1.0, relative_to: Some(parameter), ..base }
+    }
+
+    /// Mean and standard deviation, in the shown unit (or as multiples).
+    #[must_use]
+    pub const fn prior(self, mean: f64, sd: f64) -> Self {
+        let factor = if self.relative_to.is_some() { 1.0 } else { self.factor };
+        Self { prior: Some((mean * factor, sd * factor)), ..self }
+    }
+
+    /// The range outside which a fitted value is a wrong cure, in the shown unit (or as multiples).
+    #[must_use]
+    pub const fn plausible(self, low: f64, high: f64) -> Self {
+        let factor = if self.relative_to.is_some() { 1.0 } else { self.factor };
+        Self { plausible: Some((low * factor, high * factor)), ..self }
+    }
+
+    /// The same, fitted over its logarithm.
+    #[must_use]
+    pub const fn logarithmic(self) -> Self {
+        Self { logarithmic: true, ..self }
+    }
+
+    /// The same under another key in muscle files.
+    #[must_use]
+    pub const fn key(self, key: &'a str) -> Self {
+        Self { key, ..self }
+    }
+
+    /// The same with another value, in the shown unit (or as a multiple), at which the effect does nothing.
+    #[must_use]
+    pub const fn off_at(self, off: f64) -> Self {
+        let factor = if self.relative_to.is_some() { 1.0 } else { self.factor };
+        Self { off: off * factor, ..self }
+    }
+
+    /// The same, with its reciprocal shown beside it.
+    #[must_use]
+    pub const fn reciprocal(self, name: &'a str, unit: &'a str, factor: f64) -> Self {
+        Self { reciprocal: Some((name, unit, factor)), ..self }
+    }
+
+    /// The card for one muscle: multiples become SI values.
+    ///
+    /// A multiple of a number that the muscle doesn't have stays a multiple of 1.
+    #[must_use]
+    pub fn of(self, muscle: &Muscle) -> Self {
+        let Some(parameter) = self.relative_to else { return self };
+        let scale = muscle.get(parameter).unwrap_or(1.0);
+        let pair = |(a, b): (f64, f64)| (a * scale, b * scale);
+        Self {
+            low: self.low * scale,
+            high: self.high * scale,
+            typical: self.typical * scale,
+            off: self.off * scale,
+            prior: self.prior.map(pair),
+            plausible: self.plausible.map(pair),
+            relative_to: None,
+            ..self
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! The list: every effect that fits, rankings, help and reports know, built in or added by the user.
+
+use std::sync::Arc;
+
+use crate::effect::Effect;
+use crate::{geometry, load, material, rig, specimen};
+
+/// Why an effect is not in the catalogue, or can't enter it.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum CatalogueError {
+    /// A name that nobody knows.
+    #[error("there is no effect `{name}`; {instead}")]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// What to write instead.
+        instead: String,
+    },
+    /// A name that is taken.
+    #[error("an effect `{name}` is in the catalogue already; give yours another name")]
+    Taken {
+        /// The name.
+        name: String,
+    },
+}
+
+/// Effects by name.
+#[derive(Debug, Clone)]
+pub struct Catalogue {
+    effects: Vec<Arc<dyn Effect>>,
+}
+
+impl Default for Catalogue {
+    fn default() -> Self {
+        Self::builtin()
+    }
+}
+
+impl Catalogue {
+    /// All built-in effects, in the order of their groups.
+    #[must_use]
+    pub fn builtin() -> Self {
+        let groups = [geometry::all(), material::all(), load::all(), rig::all(), specimen::all()];
+        Self { effects: groups.into_iter().flatten().collect() }
+    }
+
+    /// The same with one more effect.
+    ///
+    /// # Errors
+    /// If its name is taken.
+    pub fn with(mut self, effect: impl Effect + 'static) -> Result<Self, CatalogueError> {
+        let name = effect.card().name.to_owned();
+        if self.effects.iter().any(|other| other.card().name == name) {
+            return Err(CatalogueError::Taken { name });
+        }
+        self.effects.push(Arc::new(effect));
+        Ok(self)
+    }
+
+    /// All effects.
+    pub fn iter(&self) -> impl Iterator<Item = &Arc<dyn Effect>> {
+        self.effects.iter()
+    }
+
+    /// The effect of that name.
+    ///
+    /// # Errors
+    /// If there is none; the message names the nearest ones.
+    pub fn find(&self, name: &str) -> Result<&Arc<dyn Effect>, CatalogueError> {
+        self.effects.iter().find(|effect| effect.card().name == name).ok_or_else(|| {
+            let plain = |text: &str| text.to_lowercase().replace(['_', ' '], "-");
+            let slips = |other: &str| strsim::damerau_levenshtein(other, &plain(name));
+            let names = || self.effects.iter().map(|effect| effect.card().name);
+            let near = names().min_by_key(|other| slips(other)).filter(|other| slips(other) <= name.len() / 3);
+            let part = || names().filter(|other| plain(name).len() >= 3 && other.contains(&plain(name)));
+            let instead = match near {
+                Some(near) => format!("did you mean `{near}`?"),
+                None if part().next().is_some() => {
+                    format!("did you mean {}?", part().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(" or "))
+                }
+                None => "`bulge effects` lists them all".to_owned(),
+            };
+            CatalogueError::Unknown { name: name.chars().take(40).collect(), instead }
+        })
+    }
+}

@@ -1,0 +1,279 @@
+//! What an effect does: the public trait, and the states it reads and changes along a measured history.
+
+use bulge_muscles::{Kind, Muscle, MuscleError, Parameter, Quantity};
+use bulge_numerics::Dual;
+use std::fmt::Debug;
+
+use crate::card::{Card, ParameterCard};
+
+/// Derivatives carried in one pass over the rows.
+pub const LANES: usize = 8;
+
+/// A number with its derivatives by [`LANES`] of the model's inputs and parameters.
+pub type Jet = Dual<LANES>;
+
+/// One measured moment: what is known of a row before any model is asked. SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moment {
+    /// Gauge pressure, as read \[Pa\].
+    pub pressure: f64,
+    /// Contraction, as read \[-\].
+    pub contraction: f64,
+    /// +1 while shortening, -1 while lengthening, 0 at rest or in a static map.
+    pub direction: f64,
+    /// d(contraction)/dt \[1/s\]; 0 without time.
+    pub rate: f64,
+    /// d(pressure)/dt \[Pa/s\]; 0 without time.
+    pub pressure_rate: f64,
+    /// Time since the sweep began \[s\]; 0 without time.
+    pub time: f64,
+    /// Time since the first row of the file \[s\]; 0 without time.
+    pub clock: f64,
+    /// Time since the row before \[s\]; 0 for the first of a sweep and without time.
+    pub since: f64,
+    /// Change of the contraction since the row before; 0 for the first of a sweep.
+    pub step: f64,
+    /// Temperature above that of the first row \[K\]; 0 without the column.
+    pub temperature: f64,
+    /// Number of the cycle, from 0.
+    pub cycle: f64,
+    /// Largest contraction so far in the sweep, this row included.
+    pub largest: f64,
+    /// Whether the row begins a sweep: memory starts anew.
+    pub begins: bool,
+    /// Number of the specimen, from 0.
+    pub specimen: u32,
+}
+
+impl Moment {
+    /// A moment at rest: a point of a static map.
+    #[must_use]
+    pub const fn at_rest(pressure: f64, contraction: f64) -> Self {
+        Self {
+            pressure,
+            contraction,
+            direction: 0.0,
+            rate: 0.0,
+            pressure_rate: 0.0,
+            time: 0.0,
+            clock: 0.0,
+            since: 0.0,
+            step: 0.0,
+            temperature: 0.0,
+            cycle: 0.0,
+            largest: contraction,
+            begins: true,
+            specimen: 0,
+        }
+    }
+}
+
+/// The muscle's numbers that effects need. SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting {
+    /// Family of the muscle.
+    pub kind: Kind,
+    /// Unpressurised length l0 \[m\].
+    pub length: f64,
+    /// Pleated: fibre radius at the fittings; braided: braid radius r0 \[m\].
+    pub radius: f64,
+    /// Braid angle alpha0 \[rad\]; 0 if pleated.
+    pub braid_angle: f64,
+    /// Number of fibres, if known.
+    pub fibres: Option<u32>,
+    /// Whether the equilibrium holds a bladder.
+    pub has_bladder: bool,
+}
+
+impl Setting {
+    /// Of a muscle.
+    #[must_use]
+    pub fn of(muscle: &Muscle) -> Self {
+        Self {
+            kind: muscle.kind(),
+            length: muscle.length().si(),
+            radius: muscle.radius().si(),
+            braid_angle: muscle.get(Parameter::BraidAngle).unwrap_or(0.0),
+            fibres: muscle.fibres(),
+            has_bladder: muscle.bladder().is_some(),
+        }
+    }
+}
+
+/// What reaches the muscle: input effects change it before the equilibrium is taken.
+///
+/// ```text
+/// F = wall B(pressure area/wall, e),    e = contraction + give_force F + give_tension N,    averaged over e + spread z
+/// ```
+/// with B the base law, N the meridional force at mid-length and z a standard normal number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Input {
+    /// True gauge pressure in the muscle \[Pa\].
+    pub pressure: Jet,
+    /// True contraction \[-\].
+    pub contraction: Jet,
+    /// Factor on the area on which the pressure acts; 1.
+    pub area: Jet,
+    /// Factor on the moduli of bladder and cloth (and of fibres that stretch); 1.
+    pub wall: Jet,
+    /// Standard deviation of the fibres' lengths over l0; 0.
+    pub spread: Jet,
+    /// Contraction hidden from the displacement sensor per force \[1/N\]; 0.
+    pub give_force: Jet,
+    /// Contraction of the muscle per meridional force at mid-length \[1/N\]; 0.
+    pub give_tension: Jet,
+}
+
+impl Input {
+    /// The readings taken as they are.
+    #[must_use]
+    pub fn of(pressure: Jet, contraction: Jet) -> Self {
+        let [zero, one] = [0.0, 1.0].map(Jet::from);
+        Self {
+            pressure,
+            contraction,
+            area: one,
+            wall: one,
+            spread: zero,
+            give_force: zero,
+            give_tension: zero,
+        }
+    }
+}
+
+/// The equilibrium that the input leads to: load effects read it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Balance {
+    /// True gauge pressure in the muscle \[Pa\].
+    pub pressure: Jet,
+    /// True contraction \[-\].
+    pub contraction: Jet,
+    /// Axial force of the equilibrium \[N\].
+    pub force: Jet,
+    /// Meridional force at mid-length, F + p A(r) \[N\].
+    pub tension: Jet,
+    /// Radius at mid-length \[m\].
+    pub mid_radius: Jet,
+    /// Enclosed volume \[m^3\].
+    pub volume: Jet,
+    /// dF/d(contraction) of the equilibrium \[N\], without derivatives.
+    pub slope: f64,
+}
+
+/// The place in the chain at which an effect is called, with what it may read and change there.
+#[derive(Debug)]
+pub enum Place<'a> {
+    /// Before the equilibrium.
+    Input(&'a mut Input),
+    /// After it: the force added to that of the equilibrium \[N\].
+    Load(&'a Balance, &'a mut Jet),
+    /// At the load cell: what it reads \[N\].
+    Output(&'a Balance, &'a mut Jet),
+}
+
+/// A muscle changed by an effect of the stage [`crate::Stage::Shape`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reshaped {
+    /// The muscle to solve.
+    pub muscle: Muscle,
+    /// For each parameter of the effect that moves a number of the muscle: which moves which, and d(number)/d(parameter).
+    pub moves: Vec<(usize, Parameter, f64)>,
+}
+
+impl Reshaped {
+    /// The muscle with numbers set, the parameter i of the effect being the i-th number itself. A number that stays what it is leaves the
+    /// muscle as it is, to the bit.
+    ///
+    /// # Errors
+    /// If a number is out of range or the muscle can't have it.
+    pub fn setting(muscle: &Muscle, numbers: &[(Parameter, f64)]) -> Result<Self, MuscleError> {
+        let mut reshaped = muscle.clone();
+        for &(parameter, value) in numbers {
+            if muscle.get(parameter) != Some(value) {
+                reshaped = reshaped.with(parameter, value)?;
+            }
+        }
+        let moves = numbers.iter().enumerate().map(|(i, (parameter, _))| (i, *parameter, 1.0)).collect();
+        Ok(Self { muscle: reshaped, moves })
+    }
+}
+
+/// A physical effect.
+///
+/// Built-in effects are one file each in this crate; any Rust value can be one too, and enters the same list
+/// ([`crate::Catalogue::with`]), so that help, fits, rankings and reports treat it alike.
+///
+/// ```
+/// use bulge_effects::{Card, Catalogue, Effect, Evidence, Group, Jet, Moment, Needs, ParameterCard, Parity, Place, Setting, Signature, Stage};
+///
+/// /// A hose that pulls like a spring.
+/// #[derive(Debug)]
+/// struct Hose;
+///
+/// impl Effect for Hose {
+///     fn card(&self) -> Card<'_> {
+///         Card {
+///             name: "hose",
+///             family: "hose",
+///             title: "A hose that pulls like a spring",
+///             about: "The supply hose is stretched when the muscle shortens.",
+///             equation: "dF = -k eps",
+///             source: "our rig",
+///             evidence: Evidence::User,
+///             group: Group::Rig,
+///             stage: Stage::Load,
+///             kind: None,
+///             signature: Signature { pressure: "0", parity: Parity::Even, shape: "-eps" },
+///             twins: &[],
+///             separate: "take the hose off",
+///             needs: Needs::Nothing,
+///         }
+///     }
+///     fn parameters(&self) -> Vec<ParameterCard<'_>> {
+///         vec![ParameterCard::new("stiffness", ("N", 1.0), (0.0, 500.0), 50.0, "force per unit contraction")]
+///     }
+///     fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
+///         if let Place::Load(balance, force) = place {
+///             *force = *force - theta[0] * balance.contraction;
+///         }
+///     }
+/// }
+///
+/// let catalogue = Catalogue::builtin().with(Hose)?;
+/// assert_eq!(catalogue.find("hose")?.card().title, "A hose that pulls like a spring");
+/// # Ok::<(), bulge_effects::CatalogueError>(())
+/// ```
+pub trait Effect: Debug + Send + Sync {
+    /// The card.
+    fn card(&self) -> Card<'_>;
+
+    /// The numbers of the effect; their order is that of `theta`.
+    fn parameters(&self) -> Vec<ParameterCard<'_>>;
+
+    /// Acts at its stage: changes what `place` holds. `theta` are the parameters in SI, `memory` keeps [`Effect::memory`] numbers
+    /// from row to row of a sweep (0 when a sweep begins). Called once per row, in order.
+    ///
+    /// With the parameters at their `off` values nothing may change, bit for bit.
+    fn act(
+        &self,
+        moment: &Moment,
+        setting: &Setting,
+        theta: &[Jet],
+        memory: &mut [Jet],
+        place: Place<'_>,
+    );
+
+    /// How many numbers it keeps along a sweep.
+    fn memory(&self) -> usize {
+        0
+    }
+
+    /// The muscle as the effect changes it, for the stage [`crate::Stage::Shape`]; with the parameters `off` it must be the same muscle.
+    ///
+    /// # Errors
+    /// If the muscle can't have the effect, or not with these values.
+    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
+        let _ = theta;
+        Ok(Reshaped { muscle: muscle.clone(), moves: Vec::new() })
+    }
+}

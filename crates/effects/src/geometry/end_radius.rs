@@ -1,0 +1,72 @@
+//! End radius: the fibres leave the fittings at another radius than stated (S1, section 3.1).
+
+use bulge_muscles::{Muscle, MuscleError, Parameter};
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::unit::MILLIMETRE;
+
+/// `R -> radius` in the end condition r = R of the equilibrium.
+#[derive(Debug)]
+pub(crate) struct EndRadius;
+
+impl Effect for EndRadius {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "end-radius",
+            family: "end-radius",
+            title: "Radius at the end fittings",
+            about: "Under pressure the fibres are held at another radius than the drawing says. In the second-generation PPAM the epoxy \
+                    ends a centimetre inside the fitting, and the fibres move from 11.5 mm out to the rim of the basin at 16 mm.",
+            equation: "r = radius at both fittings, in the equilibrium of the fibre net",
+            source: "S1, eqs. 15 and 24 to 28 and the discussion of figure 12",
+            evidence: Evidence::Paper,
+            group: Group::Geometry,
+            stage: Stage::Shape,
+            kind: None,
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Even,
+                shape: "more force at small contractions, less at large ones (PPAM: crossing near 24 %)",
+            },
+            twins: &[
+                Twin { name: "pleat-depth", how: "identical in force; only a photograph of the fibres tells" },
+                Twin { name: "displacement-gain", how: "0.997 (PPAM)" },
+            ],
+            separate: "photograph the fibres at the fitting under pressure; measure a second slenderness l0/R",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "radius of the fibres at the fittings";
+        vec![
+            ParameterCard::multiple("radius", MILLIMETRE, Parameter::FittingRadius, (0.5, 2.0), about)
+                .prior(1.0, 0.2)
+                .plausible(0.65, 1.5),
+        ]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+
+    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
+        Reshaped::setting(muscle, &[(Parameter::FittingRadius, theta[0])])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_muscles::preset;
+
+    #[test]
+    fn the_radius_moves_and_nothing_else() {
+        let muscle = preset("ppam-2-r11.5").unwrap();
+        let same = EndRadius.reshape(&muscle, &[0.0115]).unwrap();
+        assert_eq!(same.muscle, muscle);
+        let wide = EndRadius.reshape(&muscle, &[0.016]).unwrap();
+        assert_eq!(wide.muscle.get(Parameter::FittingRadius), Some(0.016));
+        assert_eq!(wide.moves, [(0, Parameter::FittingRadius, 1.0)]);
+        assert!(EndRadius.reshape(&muscle, &[-0.016]).is_err());
+    }
+}

@@ -1,0 +1,88 @@
+//! For the tests of effects: one call, or a path, on made-up equilibria.
+
+use bulge_muscles::Kind;
+use bulge_numerics::Real;
+
+use crate::effect::{Balance, Effect, Input, Jet, Moment, Place, Setting};
+
+/// A braid of 250 mm.
+pub(crate) const SETTING: Setting = Setting {
+    kind: Kind::Braided,
+    length: 0.25,
+    radius: 0.01,
+    braid_angle: 0.436_332_312_998_582_4,
+    fibres: None,
+    has_bladder: false,
+};
+
+/// An equilibrium of round numbers: 2 bar, 10 %, 500 N with 800 N along the meridians.
+pub(crate) fn balance(contraction: f64) -> Balance {
+    let jet = Jet::from;
+    Balance {
+        pressure: jet(2e5),
+        contraction: jet(contraction),
+        force: jet(500.0),
+        tension: jet(800.0),
+        mid_radius: jet(0.015),
+        volume: jet(1e-4),
+        slope: -3000.0,
+    }
+}
+
+/// The force that an effect adds at 2 bar and 10 % in a moment changed by `change`.
+pub(crate) fn load(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&mut Moment)) -> f64 {
+    let mut moment = Moment::at_rest(2e5, 0.1);
+    change(&mut moment);
+    let theta: Vec<Jet> = theta.iter().map(|v| Jet::from(*v)).collect();
+    let mut memory = vec![Jet::from(0.0); effect.memory()];
+    let mut force = Jet::from(0.0);
+    effect.act(&moment, &SETTING, &theta, &mut memory, Place::Load(&balance(0.1), &mut force));
+    force.value()
+}
+
+/// The forces that an effect adds along a path of contractions, one second from row to row.
+pub(crate) fn path(effect: &dyn Effect, theta: &[f64], contractions: &[f64]) -> Vec<f64> {
+    let theta: Vec<Jet> = theta.iter().map(|v| Jet::from(*v)).collect();
+    let mut memory = vec![Jet::from(0.0); effect.memory()];
+    let mut last = contractions[0];
+    let mut forces = Vec::new();
+    for (i, &contraction) in contractions.iter().enumerate() {
+        let step = contraction - last;
+        let mut moment = Moment::at_rest(2e5, contraction);
+        moment.begins = i == 0;
+        moment.step = step;
+        moment.rate = step;
+        moment.direction = if step == 0.0 { 0.0 } else { step.signum() };
+        moment.since = if i == 0 { 0.0 } else { 1.0 };
+        moment.time = i as f64;
+        moment.clock = moment.time;
+        moment.largest = contractions[..=i].iter().copied().fold(f64::MIN, f64::max);
+        let mut force = Jet::from(0.0);
+        effect.act(&moment, &SETTING, &theta, &mut memory, Place::Load(&balance(contraction), &mut force));
+        forces.push(force.value());
+        last = contraction;
+    }
+    forces
+}
+
+/// The input that an effect makes of 2 bar and 10 % in a moment changed by `change`.
+pub(crate) fn input(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&mut Moment)) -> Input {
+    let mut moment = Moment::at_rest(2e5, 0.1);
+    change(&mut moment);
+    let theta: Vec<Jet> = theta.iter().map(|v| Jet::from(*v)).collect();
+    let mut memory = vec![Jet::from(0.0); effect.memory()];
+    let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
+    effect.act(&moment, &SETTING, &theta, &mut memory, Place::Input(&mut input));
+    input
+}
+
+/// What the load cell reads of 500 N at 2 bar and 10 % in a moment changed by `change`.
+pub(crate) fn reading(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&mut Moment)) -> f64 {
+    let mut moment = Moment::at_rest(2e5, 0.1);
+    change(&mut moment);
+    let theta: Vec<Jet> = theta.iter().map(|v| Jet::from(*v)).collect();
+    let mut memory = vec![Jet::from(0.0); effect.memory()];
+    let mut force = Jet::from(500.0);
+    effect.act(&moment, &SETTING, &theta, &mut memory, Place::Output(&balance(0.1), &mut force));
+    force.value()
+}

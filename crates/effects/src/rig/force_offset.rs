@@ -1,0 +1,45 @@
+//! Force offset: the load cell doesn't read zero without load (catalogue M3).
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::unit::NEWTON;
+
+/// `reading = F + F_z`.
+#[derive(Debug)]
+pub(crate) struct ForceOffset;
+
+impl Effect for ForceOffset {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "force-offset",
+            family: "force-offset",
+            title: "Zero of the load cell",
+            about: "The load cell reads something without load, or was set to zero with something hanging from it.",
+            equation: "reading = F + F_z",
+            source: "data sheets of load cells: 0 to 1 % of full scale",
+            evidence: Evidence::Derived,
+            group: Group::Rig,
+            stage: Stage::Output,
+            kind: None,
+            signature: Signature { pressure: "0", parity: Parity::Even, shape: "constant" },
+            twins: &[
+                Twin { name: "weight", how: "identical; turn the rig over" },
+                Twin { name: "bladder-prestrain", how: "1.000 at first order" },
+                Twin { name: "membrane-axial", how: "0.98 (PPAM)" },
+            ],
+            separate: "unload the cell and tare it; turn the rig over",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "what the cell reads without load";
+        vec![ParameterCard::new("offset", NEWTON, (-300.0, 300.0), 0.0, about).prior(0.0, 10.0).plausible(-50.0, 50.0)]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
+        if let Place::Output(_, reading) = place {
+            *reading += theta[0];
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Length zero error: the length at which the displacement sensor reads zero is not the stated one (catalogue M7).
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::unit::MILLIMETRE;
+
+/// `true contraction = measured + offset/l0`.
+#[derive(Debug)]
+pub(crate) struct LengthZeroError;
+
+impl Effect for LengthZeroError {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "length-zero-error",
+            family: "length-zero-error",
+            title: "Zero of the length",
+            about: "The muscle is shorter than the reading says, by the same amount everywhere: the sensor was set to zero at another \
+                    length. It counts most at small contractions, where the force changes fastest.",
+            equation: "true contraction = measured + offset/l0",
+            source: "geometry of the measurement; 4 mm of 300 mm found in a published force map",
+            evidence: Evidence::Derived,
+            group: Group::Rig,
+            stage: Stage::Input,
+            kind: None,
+            signature: Signature { pressure: "1", parity: Parity::Even, shape: "dF/d eps: largest at small contractions" },
+            twins: &[
+                Twin { name: "fibre-length", how: "0.98" },
+                Twin { name: "displacement-gain", how: "1.000 on a calibrated cylinder" },
+                Twin { name: "end-factor", how: "1.000 on a calibrated cylinder" },
+                Twin { name: "fibre-stretch", how: "0.966 (PPAM)" },
+            ],
+            separate: "a ruler; the length at which the vented muscle becomes slack",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "how much shorter the muscle is than the reading says";
+        vec![ParameterCard::new("offset", MILLIMETRE, (-20.0, 20.0), 0.0, about).prior(0.0, 2.0).plausible(-8.0, 8.0)]
+    }
+
+    fn act(&self, _: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
+        if let Place::Input(input) = place {
+            input.contraction += theta[0] / setting.length;
+        }
+    }
+}

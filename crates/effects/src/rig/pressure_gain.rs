@@ -1,0 +1,45 @@
+//! Pressure gain: the pressure sensor's scale is off (catalogue M2).
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::unit::PERCENT;
+
+/// `reading = p (1 + g)`, so that the muscle has `p = reading/(1 + g)`.
+#[derive(Debug)]
+pub(crate) struct PressureGain;
+
+impl Effect for PressureGain {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "pressure-gain",
+            family: "pressure-gain",
+            title: "Gain of the pressure sensor",
+            about: "The pressure sensor reads a fixed part too much or too little.",
+            equation: "reading = p (1 + g)",
+            source: "data sheets of pressure sensors: 0.1 to 1 %",
+            evidence: Evidence::Derived,
+            group: Group::Rig,
+            stage: Stage::Input,
+            kind: None,
+            signature: Signature { pressure: "1", parity: Parity::Even, shape: "as the force" },
+            twins: &[
+                Twin { name: "force-gain", how: "identical where the force is proportional to the pressure" },
+                Twin { name: "fibre-count", how: "identical" },
+                Twin { name: "line-drop", how: "identical" },
+                Twin { name: "fibre-misalignment", how: "0.999 (PPAM)" },
+            ],
+            separate: "calibrate the span of both sensors",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        vec![ParameterCard::new("gain", PERCENT, (-20.0, 20.0), 0.0, "relative error").prior(0.0, 1.0).plausible(-5.0, 5.0)]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
+        if let Place::Input(input) = place {
+            input.pressure = input.pressure / (theta[0] + 1.0);
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Specimen spread: muscles of the same make differ in their force (catalogue H1).
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::unit::PERCENT;
+
+/// `F -> F (1 + g_s)` with one number per specimen s, drawn from N(0, 1 %).
+#[derive(Debug)]
+pub(crate) struct SpecimenSpread;
+
+impl Effect for SpecimenSpread {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "specimen-spread",
+            family: "specimen-spread",
+            title: "Spread between specimens",
+            about: "Handmade muscles differ: each specimen has its own factor of force, which stands for small differences in radius, \
+                    length and rubber. What all specimens have in common is physics; what differs is this.",
+            equation: "F -> F (1 + g_s),   one g_s for each specimen, spread about 0",
+            source: "S1 (three handmade muscles, 'very satisfactory'); S2 table 2 against S4 table 1, the same type: 1.4 to 9.9 N rms",
+            evidence: Evidence::Paper,
+            group: Group::Specimen,
+            stage: Stage::Output,
+            kind: None,
+            signature: Signature { pressure: "any", parity: Parity::Even, shape: "differs from specimen to specimen" },
+            twins: &[Twin { name: "force-gain", how: "identical for a single specimen" }],
+            separate: "three specimens or more on the same rig",
+            needs: Needs::Specimens,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        vec![ParameterCard::new("factor", PERCENT, (-20.0, 20.0), 0.0, "relative difference of this specimen").prior(0.0, 1.0).plausible(-5.0, 5.0)]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
+        if let Place::Output(_, reading) = place {
+            *reading = *reading * (theta[0] + 1.0);
+        }
+    }
+}
