@@ -71,12 +71,16 @@ impl Catalogue {
             let plain = |text: &str| text.to_lowercase().replace(['_', ' '], "-");
             let slips = |other: &str| strsim::damerau_levenshtein(other, &plain(name));
             let names = || self.effects.iter().map(|effect| effect.card().name);
-            let near = names().min_by_key(|other| slips(other)).filter(|other| slips(other) <= name.len() / 3);
+            let near =
+                names().min_by_key(|other| slips(other)).filter(|other| slips(other) <= name.len() / 3);
             let part = || names().filter(|other| plain(name).len() >= 3 && other.contains(&plain(name)));
             let instead = match near {
                 Some(near) => format!("did you mean `{near}`?"),
                 None if part().next().is_some() => {
-                    format!("did you mean {}?", part().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(" or "))
+                    format!(
+                        "did you mean {}?",
+                        part().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(" or ")
+                    )
                 }
                 None => "`bulge effects` lists them all".to_owned(),
             };

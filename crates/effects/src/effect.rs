@@ -181,6 +181,12 @@ pub struct Reshaped {
 }
 
 impl Reshaped {
+    /// The muscle as it is: an effect that is off.
+    #[must_use]
+    pub fn unchanged(muscle: &Muscle) -> Self {
+        Self { muscle: muscle.clone(), moves: Vec::new() }
+    }
+
     /// The muscle with numbers set, the parameter i of the effect being the i-th number itself. A number that stays what it is leaves the
     /// muscle as it is, to the bit.
     ///
@@ -254,26 +260,27 @@ pub trait Effect: Debug + Send + Sync {
     /// from row to row of a sweep (0 when a sweep begins). Called once per row, in order.
     ///
     /// With the parameters at their `off` values nothing may change, bit for bit.
-    fn act(
-        &self,
-        moment: &Moment,
-        setting: &Setting,
-        theta: &[Jet],
-        memory: &mut [Jet],
-        place: Place<'_>,
-    );
+    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>);
 
     /// How many numbers it keeps along a sweep.
     fn memory(&self) -> usize {
         0
     }
 
-    /// The muscle as the effect changes it, for the stage [`crate::Stage::Shape`]; with the parameters `off` it must be the same muscle.
+    /// The muscle as the effect changes it, for the stage [`crate::Stage::Shape`].
+    ///
+    /// With the parameters `off` it must be the same muscle, whatever that states; any other value replaces what it states. An effect
+    /// without parameters has no `off`: it is there or not.
+    ///
+    /// [`Reshaped::moves`] lists only numbers that the muscle it gives has. One that is absent where the effect is off (the modulus of a
+    /// bladder that isn't there, the stiffness of fibres that don't stretch) has no derivative there, and one in which the force is even
+    /// (an angle) has none that says anything: nothing is listed then, and who needs a derivative takes it at a small value beside `off`.
+    /// A parameter that is absent at 0 and has no small values either (a circumference) starts at its `typical` value.
     ///
     /// # Errors
     /// If the muscle can't have the effect, or not with these values.
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         let _ = theta;
-        Ok(Reshaped { muscle: muscle.clone(), moves: Vec::new() })
+        Ok(Reshaped::unchanged(muscle))
     }
 }

@@ -8,8 +8,11 @@
 
 mod card;
 mod catalogue;
+mod describe;
 mod effect;
+pub mod expression;
 mod geometry;
+pub mod law;
 mod load;
 mod material;
 #[cfg(test)]
@@ -20,4 +23,5 @@ mod unit;
 
 pub use card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 pub use catalogue::{Catalogue, CatalogueError};
+pub use describe::{CardDocument, ParameterDocument, SignatureDocument, TwinDocument, describe, overview};
 pub use effect::{Balance, Effect, Input, Jet, LANES, Moment, Place, Reshaped, Setting};

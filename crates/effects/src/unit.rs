@@ -13,3 +13,6 @@ pub(crate) const KILOPASCAL: Unit = ("kPa", 1e3);
 pub(crate) const MEGAPASCAL: Unit = ("MPa", 1e6);
 pub(crate) const NEWTON_PER_BAR: Unit = ("N/bar", 1e-5);
 pub(crate) const SECOND: Unit = ("s", 1.0);
+pub(crate) const KILONEWTON_PER_METRE: Unit = ("kN/m", 1e3);
+pub(crate) const NEWTON_PER_METRE: Unit = ("N/m", 1.0);
+pub(crate) const PERCENT_PER_KILONEWTON: Unit = ("%/kN", 1e-5);

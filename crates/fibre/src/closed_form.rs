@@ -63,6 +63,8 @@ pub struct ClosedForm {
     pub force: Graded,
     /// v of S1 eq. 30: volume with circular sections / l0^3.
     pub volume: Graded,
+    /// Largest radius over R: 1/cos(phi_R).
+    pub radius: Graded,
     /// Newton iterations.
     pub iterations: u32,
     /// Evaluations of the pair of elliptic integrals.
@@ -324,6 +326,8 @@ fn outputs(
     let v_t = scale * (g_phi * t * i.c * i.c + mg_m * 2.0 * s2) + 2.0 * s2 * v;
     let v_y = scale * 2.0 * mg_m - v;
     let volume = graded(v, [v_t, v_y], -3.0);
+    let largest = t.hypot(1.0);
+    let radius = graded(largest, [t * t / largest, 0.0], 0.0);
     let (t, y) = (t * (1.0 - step[0]), y * (1.0 - step[1]));
     let size = step[0].abs().max(step[1].abs());
     let residual = (size * size).max(f64::EPSILON);
@@ -334,6 +338,7 @@ fn outputs(
         strain: kappa / (y * y),
         force,
         volume,
+        radius,
         iterations,
         evaluations: iterations,
         residual,

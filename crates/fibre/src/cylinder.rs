@@ -10,7 +10,6 @@
 //! `F = pi r0^2 p (3 (1 - eps)^2/tan^2(alpha0) - 1/sin^2(alpha0))`.
 
 use bulge_numerics::{Dual, Real};
-use std::f64::consts::PI;
 
 use crate::FibreError;
 use crate::net::Net;
@@ -46,8 +45,9 @@ pub(crate) fn solve<D: Real>(net: &Net<D>, contraction: D) -> Result<Cylinder<D>
     let (tension, iterations) = tension(net, sigma, contraction.value())?;
     let (radius, _) = balance(net, sigma, tension);
     let local = net.acting_at(radius.value()).local(radius, tension);
-    let force = local.force - net.area(radius);
-    let volume = (radius + net.depth).squared() * sigma * net.half_fibre * (2.0 * PI);
+    let section = net.section(radius);
+    let force = local.force - section.area;
+    let volume = net.volume_section(radius, &section) * sigma * net.half_fibre * 2.0;
     Ok(Cylinder { radius, tension, force, volume, iterations })
 }
 

@@ -39,7 +39,8 @@ impl Problem {
     #[must_use]
     pub fn pleated_numbers(&self, response: &Response) -> Option<PleatedNumbers> {
         let net = &self.net;
-        if !self.muscle.is_pleated() || net.turn != 0.0 || net.cloth.is_some() || net.depth != 0.0 {
+        if !self.muscle.is_pleated() || net.turn != 0.0 || net.cloth.is_some() || net.lobes.is_some() || net.depth != 0.0
+        {
             return None;
         }
         let l0 = self.muscle.length().si();
@@ -65,12 +66,15 @@ impl Problem {
         };
         let half = match found.solution {
             Solution::ClosedForm(closed) => {
+                // The closed form is that of the crests, in units of their radius at the fittings.
+                let crest = 1.0 + self.net.depth;
                 let tension = found.response.fibre_tension_n * self.fibre_number(|v| self.value(v))
                     / (self.pressure * self.muscle.radius().si().powi(2));
                 (0..=pieces)
                     .map(|i| {
                         let [x, r, slope, fibre] = closed.point(closed.phi_r() * i as f64 / pieces as f64);
-                        Station { fibre, x, r, chi: -slope, tension }
+                        let r = crest * r - self.net.depth;
+                        Station { fibre: crest * fibre, x: crest * x, r, chi: -slope, tension }
                     })
                     .collect()
             }

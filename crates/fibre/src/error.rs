@@ -45,6 +45,26 @@ pub enum FibreError {
         /// Radius at the fittings \[m\].
         end_m: f64,
     },
+    /// No gas is left inside the wall.
+    #[error("the gas acts {:.4} mm inside a braid whose radius is {:.4} mm: `effects.wall-thickness` must leave room for it", 1e3 * wall_m, 1e3 * radius_m)]
+    WallTooThick {
+        /// Thickness of the wall \[m\].
+        wall_m: f64,
+        /// Radius of the braid, or of its fittings \[m\].
+        radius_m: f64,
+    },
+    /// A derivative by something that the muscle doesn't have.
+    #[error("this muscle has no `{name}` to differentiate by: give it one first, with `Muscle::with`")]
+    NoVariable {
+        /// Name of the parameter.
+        name: &'static str,
+    },
+    /// One variable twice in a list.
+    #[error("the variable `{variable}` is asked for twice: name each once")]
+    AskedTwice {
+        /// The variable.
+        variable: crate::Variable,
+    },
     /// The contraction lies beyond the one at which the force vanishes.
     #[error(
         "no equilibrium with a pulling force at contraction {:.4} %: the limit of this muscle is {:.4} %, where the force vanishes",

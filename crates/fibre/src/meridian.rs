@@ -9,7 +9,7 @@
 //! chi' = sigma k                   carried as (sin chi, cos chi)
 //! k'   = -(sigma sin(chi)/N) (A'' - h_r cos(chi) - 2 h k)          k = (A' - h cos(chi))/N, the curvature of the meridian
 //! T'   = -T_r sigma sin(chi)
-//! V'   = pi (r + depth)^2 sigma cos(chi)
+//! V'   = pi (r + depth)^2 sigma cos(chi)       with lobes: A sigma cos(chi)
 //! ```
 //!
 //! It is the second-order balance, regular at mid-length, no square root of a difference. Carrying the curvature k as a state, although r and T
@@ -19,7 +19,6 @@
 
 use bulge_numerics::Real;
 use bulge_numerics::dop853::{self, Dop853};
-use std::f64::consts::PI;
 
 use crate::net::Net;
 
@@ -72,6 +71,7 @@ impl<D: Real> Flow<D> {
         let (sin, cos, k, tension) = (y[SIN], y[COS], y[CURVATURE], y[TENSION]);
         let r = self.mid_radius - y[RHO];
         let l = net.local(r, tension);
+        let section = net.section(r);
         let out = l.sigma * sin;
         let turn = l.sigma * k;
         // cos(alpha0) - sigma cos(chi) without cancellation: (cos^2(alpha0) - sigma^2)/(cos(alpha0) + sigma) + sigma (1 - cos(chi)).
@@ -84,9 +84,9 @@ impl<D: Real> Flow<D> {
             shortening,
             cos * turn,
             -(sin * turn),
-            -(out / l.force) * (net.area_rr() - l.hoop_r * cos - l.hoop * k * 2.0),
+            -(out / l.force) * (section.area_rr - l.hoop_r * cos - l.hoop * k * 2.0),
             -(l.tension_r * out),
-            (r + net.depth).squared() * l.sigma * cos * PI,
+            net.volume_section(r, &section) * l.sigma * cos,
         ]
     }
 
@@ -166,26 +166,21 @@ pub(crate) fn trajectory<D: Real>(
     let Middle { bulge, curvature, tension: mid_tension } = middle;
     let mid_radius = net.end_radius + bulge;
     let mut y = middle.state();
-    // Where the meridian crosses the radius at which the cloth becomes taut, the law has a kink: one smooth law on either side, and the
-    // crossing hit exactly.
     let at_middle = net.acting_at(mid_radius.value());
     let mut flow = Flow { net: at_middle, mid_radius };
     let mut slope = flow.slope(&y);
     let mid = at_middle.local(mid_radius, mid_tension);
-    let force = mid.force - net.area(mid_radius);
+    let force = mid.force - at_middle.area(mid_radius);
     let sign = bulge.value().signum();
     let size = bulge.value().abs();
-    let mut kink = net
-        .cloth
-        .map(|cloth| mid_radius - cloth.radius)
-        .filter(|rho| rho.value() * sign > 0.0 && rho.value() * sign < size);
+    let mut targets = targets(net, mid_radius, bulge);
     let parabola = (2.0 * size / (curvature.value().abs())).sqrt() / mid.sigma.value();
     let mut run = Dop853::new((0.5 * parabola).min(1.0 + 0.1 * net.half_fibre.value()), tolerance);
     let floor = shortening_floor(net, size, parabola);
     let mut fibre = D::from(0.0);
     let far = 10.0 * net.half_fibre.value();
     loop {
-        let target = kink.unwrap_or(bulge);
+        let target = targets[0];
         let limit = D::from(flow.distance_to(&y, &slope, target.value()).map_or(far, |h| h.min(far)));
         let stepped = run.advance(
             &mut |y: &State<D>| flow.slope(y),
@@ -205,10 +200,13 @@ pub(crate) fn trajectory<D: Real>(
             fibre += more;
             y = state;
             run.evaluations += 12 * pieces;
-            if kink.take().is_none() {
+            let [_, next, last] = targets;
+            if target.value() == bulge.value() {
                 break;
             }
-            flow.net = net.acting_at(net.end_radius.value());
+            targets = [next, last, last];
+            let between = 0.5 * (target.value() + next.value());
+            flow.net = net.acting_at(mid_radius.value() - between);
             slope = flow.slope(&y);
         }
         if run.accepted > MAX_STEPS || y[COS].value() < -0.999 {
@@ -216,7 +214,7 @@ pub(crate) fn trajectory<D: Real>(
         }
     }
     let end = flow.net.local(net.end_radius, y[TENSION]);
-    let integral = end.force * y[COS] - net.area(net.end_radius) - force;
+    let integral = end.force * y[COS] - flow.net.area(net.end_radius) - force;
     let first_integral = (integral.value() / mid.force.value()).abs();
     if !first_integral.is_finite() {
         return Err(NoTrajectory { evaluations: run.evaluations });
@@ -230,6 +228,20 @@ pub(crate) fn trajectory<D: Real>(
         evaluations: run.evaluations,
         first_integral,
     })
+}
+
+/// Where the law changes on the way to the fitting, and the fitting itself, as values of rho in the order in which they are met: one smooth law
+/// in between, and each hit exactly. Places that are left are filled with the fitting.
+fn targets<D: Real>(net: &Net<D>, mid_radius: D, bulge: D) -> [D; 3] {
+    let (sign, size) = (bulge.value().signum(), bulge.value().abs());
+    let on_the_way = |radius: D| Some(mid_radius - radius).filter(|rho| rho.value() * sign > 0.0 && rho.value() * sign < size);
+    let [one, other] = net.kinks().map(|radius| radius.and_then(on_the_way));
+    match (one, other) {
+        (Some(a), Some(b)) if a.value().abs() <= b.value().abs() => [a, b, bulge],
+        (Some(a), Some(b)) => [b, a, bulge],
+        (Some(a), None) | (None, Some(a)) => [a, bulge, bulge],
+        (None, None) => [bulge; 3],
+    }
 }
 
 /// A point of the meridian, from mid-length outwards; dimensionless.
@@ -255,15 +267,12 @@ pub(crate) fn stations(
     pieces: usize,
 ) -> Result<(Vec<Station>, f64), NoTrajectory> {
     let (mut y, mid_radius, tension) = (middle.state(), net.end_radius + middle.bulge, middle.tension);
-    let flows = [net.acting_at(0.0), *net].map(|net| Flow { net, mid_radius });
-    let flow_at = |y: &State<f64>| {
-        let taut = net.cloth.is_some_and(|cloth| mid_radius - y[RHO] > cloth.radius);
-        flows[usize::from(taut)]
-    };
+    let flow_at = |y: &State<f64>| Flow { net: net.acting_at(mid_radius - y[RHO]), mid_radius };
     let mut f = |y: &State<f64>| flow_at(y).slope(y);
     let mut slope = f(&y);
-    let mid_force = flow_at(&y).net.local(mid_radius, tension).force;
-    let force = mid_force - net.area(mid_radius);
+    let middle_net = flow_at(&y).net;
+    let mid_force = middle_net.local(mid_radius, tension).force;
+    let force = mid_force - middle_net.area(mid_radius);
     let floor = shortening_floor(net, middle.bulge.abs(), half_fibre);
     let mut run = Dop853::new(half_fibre / pieces as f64, tolerance);
     let mut departure: f64 = 0.0;
@@ -277,7 +286,8 @@ pub(crate) fn stations(
                 .map_err(|_| NoTrajectory { evaluations: run.evaluations })?;
         }
         let r = mid_radius - y[RHO];
-        let integral = flow_at(&y).net.local(r, y[TENSION]).force * y[COS] - net.area(r) - force;
+        let here = flow_at(&y).net;
+        let integral = here.local(r, y[TENSION]).force * y[COS] - here.area(r) - force;
         departure = departure.max((integral / mid_force).abs());
         let x = net.cos_rest * fibre - y[SHORTENING];
         found.push(Station { fibre, x, r, chi: y[SIN].atan2(y[COS]), tension: y[TENSION] });

@@ -26,6 +26,8 @@
 use bulge_numerics::{Dual, Real};
 use std::f64::consts::PI;
 
+use crate::lobes::{Lobes, Section};
+
 /// Rubber bladder that follows the net point by point: Mooney-Rivlin W = c10 (I1 - 3) + c01 (I2 - 3), incompressible, plane stress,
 /// stretches l1 = sigma/cos(alpha0) along the meridian and l2 = r/r0 around it.
 #[derive(Debug, Clone, Copy)]
@@ -64,8 +66,10 @@ pub(crate) struct Net<D> {
     pub(crate) compliance: D,
     /// Area of the cross-section over pi (r + depth)^2: (n/2 pi) sin(2 pi/n) for a polygon, 1 for a circle.
     pub(crate) area_factor: D,
-    /// Pleat depth: the pressure acts out to the crests at r + depth.
+    /// How far outside the fibres the pressure acts, at r + depth: out to the crests of pleats; negative: at the inner face of a wall.
     pub(crate) depth: D,
+    /// Cloth in lobes between the fibres, if it is; instead of the polygon.
+    pub(crate) lobes: Option<Lobes<D>>,
     /// Bladder, if any.
     pub(crate) bladder: Option<Bladder<D>>,
     /// Cloth with limited unfolding, if any.
@@ -101,24 +105,50 @@ pub(crate) struct Local<D> {
 }
 
 impl<D: Real> Net<D> {
-    /// The net as it is at radius `r`: without the cloth where that is slack.
+    /// The net as it is at radius `r`, one smooth law: without the cloth where that is slack, with lobes that touch or that don't.
     pub(crate) fn acting_at(&self, r: f64) -> Self {
-        Self { cloth: self.cloth.filter(|cloth| r > cloth.radius.value()), ..*self }
+        let cloth = self.cloth.filter(|cloth| r > cloth.radius.value());
+        let lobes = self.lobes.map(|lobes| lobes.acting_at(r + self.depth.value()));
+        Self { cloth, lobes, ..*self }
+    }
+
+    /// The radii at which the law changes: one at which cloth becomes taut, one at which lobes cease to touch.
+    pub(crate) fn kinks(&self) -> [Option<D>; 2] {
+        let cloth = self.cloth.map(|cloth| cloth.radius);
+        [cloth, self.lobes.map(|lobes| lobes.contact_radius() - self.depth)]
+    }
+
+    /// The cross-section: the area A(r) on which the pressure acts, and its derivatives.
+    #[inline]
+    pub(crate) fn section(&self, r: D) -> Section<D> {
+        let r = r + self.depth;
+        if let Some(lobes) = &self.lobes {
+            return lobes.section(r);
+        }
+        let area_rr = self.area_factor * (2.0 * PI);
+        let area_r = area_rr * r;
+        Section { area: area_r * r * 0.5, area_r, area_rr }
+    }
+
+    /// The area of the reported volume: that of a circle, or of the lobes.
+    #[inline]
+    pub(crate) fn volume_section(&self, r: D, section: &Section<D>) -> D {
+        if self.lobes.is_some() { section.area } else { (r + self.depth).squared() * PI }
+    }
+
+    /// Volume on which the pressure acts over the reported one.
+    pub(crate) fn volume_factor(&self) -> D {
+        if self.lobes.is_some() { D::from(1.0) } else { self.area_factor }
     }
 
     /// Area enclosed by a cross-section, A(r).
     pub(crate) fn area(&self, r: D) -> D {
-        self.area_factor * (r + self.depth).squared() * PI
+        self.section(r).area
     }
 
     /// A'(r).
     pub(crate) fn area_r(&self, r: D) -> D {
-        self.area_factor * (r + self.depth) * (2.0 * PI)
-    }
-
-    /// A''(r).
-    pub(crate) fn area_rr(&self) -> D {
-        self.area_factor * (2.0 * PI)
+        self.section(r).area_r
     }
 
     fn wall(&self, sigma: D, r: D) -> Wall<D> {
@@ -206,14 +236,15 @@ impl<D: Real> Net<D> {
         Local { sigma, force, hoop, hoop_r, tension_r, force_t, hoop_t }
     }
 
-    /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis at radius `r`: A' - h = k N.
+    /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis at radius `r` with A'(r) = `push`:
+    /// A' - h = k N.
     ///
     /// Linear in T for inextensible fibres; else a bracketed Newton's method on the values and one step more for the derivatives.
     /// `None` if there is none with a positive tension, or the fibres can't reach that radius.
-    pub(crate) fn tension_at_equator(&self, r: D, curvature: D) -> Option<D> {
+    pub(crate) fn tension_at_equator(&self, r: D, push: D, curvature: D) -> Option<D> {
         let gap = |tension: D| {
             let local = self.local(r, tension);
-            let gap = self.area_r(r) - local.hoop - curvature * local.force;
+            let gap = push - local.hoop - curvature * local.force;
             (gap, local.hoop_t + curvature * local.force_t)
         };
         let (at_zero, slope) = gap(D::from(0.0));
@@ -250,20 +281,26 @@ impl<D: Real> Net<D> {
 }
 
 impl<D: Real> Net<D> {
+    /// The same net for another scalar.
+    pub(crate) fn map<E>(&self, f: impl Fn(D) -> E) -> Net<E> {
+        Net {
+            end_radius: f(self.end_radius),
+            half_fibre: f(self.half_fibre),
+            cos_rest: f(self.cos_rest),
+            sin2_rest: f(self.sin2_rest),
+            turn: f(self.turn),
+            compliance: f(self.compliance),
+            area_factor: f(self.area_factor),
+            depth: f(self.depth),
+            lobes: self.lobes.map(|lobes| lobes.map(&f)),
+            bladder: self.bladder.map(|b| Bladder { c10: f(b.c10), c01: f(b.c01) }),
+            cloth: self.cloth.map(|c| Cloth { stiffness: f(c.stiffness), radius: f(c.radius) }),
+        }
+    }
+
     /// The values without derivatives.
     pub(crate) fn constant(&self) -> Net<f64> {
-        Net {
-            end_radius: self.end_radius.value(),
-            half_fibre: self.half_fibre.value(),
-            cos_rest: self.cos_rest.value(),
-            sin2_rest: self.sin2_rest.value(),
-            turn: self.turn.value(),
-            compliance: self.compliance.value(),
-            area_factor: self.area_factor.value(),
-            depth: self.depth.value(),
-            bladder: self.bladder.map(|b| Bladder { c10: b.c10.value(), c01: b.c01.value() }),
-            cloth: self.cloth.map(|c| Cloth { stiffness: c.stiffness.value(), radius: c.radius.value() }),
-        }
+        self.map(Real::value)
     }
 }
 
@@ -279,6 +316,7 @@ impl Net<f64> {
             compliance: 0.0,
             area_factor: 1.0,
             depth: 0.0,
+            lobes: None,
             bladder: None,
             cloth: None,
         }
@@ -287,6 +325,11 @@ impl Net<f64> {
     /// The same net for numbers with derivatives, as a constant.
     pub(crate) fn lift<const N: usize>(&self) -> Net<Dual<N>> {
         self.lift_to()
+    }
+
+    /// The same net for another scalar, as a constant.
+    pub(crate) fn lift_to<D: Real>(&self) -> Net<D> {
+        self.map(D::from)
     }
 
     /// The same net with a part of the stiffness of bladder and cloth.
@@ -305,22 +348,6 @@ impl Net<f64> {
         net.bladder = net.bladder.map(|b| Bladder { c10: b.c10 * inverse, c01: b.c01 * inverse });
         net.cloth = net.cloth.map(|c| Cloth { stiffness: c.stiffness * inverse, ..c });
         net
-    }
-
-    /// The same net for another scalar.
-    pub(crate) fn lift_to<D: Real>(&self) -> Net<D> {
-        Net {
-            end_radius: self.end_radius.into(),
-            half_fibre: self.half_fibre.into(),
-            cos_rest: self.cos_rest.into(),
-            sin2_rest: self.sin2_rest.into(),
-            turn: self.turn.into(),
-            compliance: self.compliance.into(),
-            area_factor: self.area_factor.into(),
-            depth: self.depth.into(),
-            bladder: self.bladder.map(|b| Bladder { c10: b.c10.into(), c01: b.c01.into() }),
-            cloth: self.cloth.map(|c| Cloth { stiffness: c.stiffness.into(), radius: c.radius.into() }),
-        }
     }
 }
 
@@ -383,6 +410,7 @@ pub(crate) mod tests {
             compliance: D::from(0.004),
             area_factor: D::from(0.97),
             depth: D::from(0.1),
+            lobes: None,
             bladder: Some(Bladder { c10: D::from(0.3), c01: D::from(0.1) }),
             cloth: Some(Cloth { stiffness: D::from(0.7), radius: D::from(1.2) }),
         }
@@ -443,7 +471,7 @@ pub(crate) mod tests {
     fn tension_at_equator_meets_the_curvature() {
         let net: Net<f64> = rich();
         for curvature in [-0.05, 1e-12, 0.3, 1.0] {
-            let tension = net.tension_at_equator(1.4, curvature).unwrap();
+            let tension = net.tension_at_equator(1.4, net.area_r(1.4), curvature).unwrap();
             let local = net.local(1.4, tension);
             assert!((net.area_r(1.4) - local.hoop - curvature * local.force).abs() < 1e-12 * local.force);
         }

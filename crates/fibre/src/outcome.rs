@@ -41,7 +41,7 @@ pub(crate) struct Outcome<const N: usize> {
     pub(crate) force: Total<N>,
     /// Whole volume with circular sections.
     pub(crate) volume: Total<N>,
-    pub(crate) mid_radius: f64,
+    pub(crate) mid_radius: Total<N>,
     /// Largest tension of all fibres.
     pub(crate) tension: f64,
     /// Angle at the left fitting, positive where the muscle widens.
@@ -49,6 +49,8 @@ pub(crate) struct Outcome<const N: usize> {
     pub(crate) method: Method,
     pub(crate) convergence: Convergence,
     pub(crate) solution: Solution,
+    /// How the unknowns of the shooting follow.
+    pub(crate) follow: Option<[Total<N>; 2]>,
 }
 
 impl Problem {
@@ -76,8 +78,8 @@ impl Problem {
             Some("its fibres are misaligned")
         } else if net.cloth.is_some() {
             Some("its cloth stops unfolding")
-        } else if net.depth != 0.0 {
-            Some("its pleats have a depth")
+        } else if net.lobes.is_some() {
+            Some("its cloth bulges in lobes")
         } else {
             None
         }
@@ -144,7 +146,7 @@ fn by_cylinder<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<O
     Ok(Outcome {
         force: total(found.force),
         volume: total(found.volume),
-        mid_radius: radius,
+        mid_radius: total(found.radius),
         tension,
         end_slope: 0.0,
         method: Method::ClosedForm,
@@ -156,40 +158,41 @@ fn by_cylinder<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<O
             first_integral: 0.0,
         },
         solution: Solution::Cylinder { radius, tension },
+        follow: None,
     })
 }
 
+/// With pleats of depth h, A = a pi (r + h)^2: the muscle of radius R + h, whose fibres lie h inside.
 fn by_closed_form<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<Outcome<N>, FibreError> {
+    let crest = net.depth + 1.0;
     // kappa = p sin(2 pi/n) R^2/(4 EA) of one fibre = (area factor) (2 pi)/4 * p R^2/(n EA).
-    let kappa = net.area_factor * net.compliance * std::f64::consts::FRAC_PI_2;
-    let slenderness = net.half_fibre * 2.0;
+    let kappa = net.area_factor * net.compliance * crest * crest * std::f64::consts::FRAC_PI_2;
+    let length = net.half_fibre * 2.0;
+    let slenderness = length / crest;
     let found = closed_form::solve(contraction, slenderness.value(), kappa.value())?;
-    // In units of p R^2 and R^3: F = a L^2 f, V = L^3 v.
-    let carry = |g: &Graded| {
-        (slenderness - slenderness.value()) * g.by_slenderness
+    // In units of p R^2 and R^3: F = a (l0/R)^2 f, V = (l0/R)^3 v.
+    let total = |scale: Dual<N>, g: &Graded, less: Dual<N>| {
+        let carried = (slenderness - slenderness.value()) * g.by_slenderness
             + (kappa - kappa.value()) * g.by_compliance
-            + g.value
-    };
-    let force_scale = net.area_factor * slenderness.squared();
-    let volume_scale = slenderness.squared() * slenderness;
-    let total = |scale: Dual<N>, g: &Graded| {
-        let d = scale * carry(g);
+            + g.value;
+        let d = scale * carried - less;
         Total {
             value: d.value(),
             by_contraction: scale.value() * g.by_contraction,
             by_parameter: *d.gradient(),
         }
     };
-    let a = net.area_factor.value();
-    // N = T = pi a/(2 y^2); N cos(psi) - A - F at the fitting.
-    let tension = std::f64::consts::FRAC_PI_2 * a / (found.y * found.y);
-    let force = total(force_scale, &found.force);
+    let nothing = Dual::from(0.0);
+    let a = net.area(Dual::from(1.0)).value();
+    // N = T = A(R)/(2 y^2); N cos(psi) - A - F at the fitting.
+    let tension = 0.5 * a / (found.y * found.y);
+    let force = total(net.area_factor * length.squared(), &found.force, nothing);
     let end_slope = found.end_slope();
-    let integral = tension * end_slope.cos() - std::f64::consts::PI * a - force.value;
+    let integral = tension * end_slope.cos() - a - force.value;
     Ok(Outcome {
         force,
-        volume: total(volume_scale, &found.volume),
-        mid_radius: found.max_radius(),
+        volume: total(length.squared() * length, &found.volume, nothing),
+        mid_radius: total(crest, &found.radius, net.depth),
         tension,
         end_slope,
         method: Method::ClosedForm,
@@ -201,6 +204,7 @@ fn by_closed_form<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Resul
             first_integral: (integral / tension).abs(),
         },
         solution: Solution::ClosedForm(found),
+        follow: None,
     })
 }
 
@@ -233,5 +237,6 @@ fn by_shooting<const N: usize>(
             first_integral: run.first_integral,
         },
         solution: Solution::Shooting(found.unknowns),
+        follow: Some(found.follow),
     })
 }

@@ -3,10 +3,12 @@
 //! Lengths are divided by the reference radius R (pleated: fibre radius at the fittings; braided: braid radius at rest), forces by p R^2.
 
 use bulge_muscles::{Construction, Ends, FibreCount, Muscle, Parameter, Pressure, Quantity};
-use bulge_numerics::Real;
+use bulge_numerics::{Dual, Real};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use crate::FibreError;
+use crate::lobes::Lobes;
 use crate::net::{Bladder, Cloth, Net};
 
 /// What the result may be differentiated by, besides the contraction.
@@ -45,24 +47,42 @@ pub const BRAIDED_SLENDERNESS: [f64; 2] = [1.0, 100.0];
 /// Range of the braid angle at rest of braids with clamped ends, degrees.
 pub const BRAID_ANGLE: [f64; 2] = [5.0, 50.0];
 
+/// Range of the number of fibres with lobes between them: with more, rounding is larger than the errors that the integration keeps to.
+pub const LOBED_FIBRES: [f64; 2] = [3.0, 300.0];
+/// Largest n l0/r* of n fibres with lobes between them that can open to the radius r*: how far the middle of a longer muscle is from a
+/// cylinder, exp(-0.4 n l0/r*), can't be told from 0.
+pub const LOBED_LENGTH: f64 = 600.0;
+
 /// A muscle at a gauge pressure, ready to be asked.
 #[derive(Debug, Clone)]
 pub struct Problem {
-    pub(crate) muscle: Muscle,
+    pub(crate) muscle: Arc<Muscle>,
     /// Gauge pressure \[Pa\].
     pub(crate) pressure: f64,
     pub(crate) net: Net<f64>,
-    /// Whether the fittings of a braid have the radius of the braid because nothing else is stated.
-    fitting_follows: bool,
 }
 
 impl Problem {
     /// Checks the ranges and makes the problem dimensionless.
     ///
     /// # Errors
-    /// [`FibreError::PressureNotPositive`], [`FibreError::NotFinite`], or [`FibreError::OutOfRange`] outside
-    /// [`PLEATED_SLENDERNESS`], [`BRAIDED_SLENDERNESS`] and [`BRAID_ANGLE`].
+    /// [`FibreError::PressureNotPositive`], [`FibreError::NotFinite`], [`FibreError::OutOfRange`] outside
+    /// [`PLEATED_SLENDERNESS`], [`BRAIDED_SLENDERNESS`], [`BRAID_ANGLE`], [`LOBED_FIBRES`] and [`LOBED_LENGTH`], [`FibreError::ClothTooNarrow`] or
+    /// [`FibreError::WallTooThick`].
     pub fn new(muscle: &Muscle, pressure: Pressure) -> Result<Self, FibreError> {
+        check_ranges(muscle)?;
+        Self::checked(Arc::new(muscle.clone()), pressure)
+    }
+
+    /// The same muscle at another gauge pressure; it is shared, not copied.
+    ///
+    /// # Errors
+    /// [`FibreError::PressureNotPositive`] or [`FibreError::NotFinite`].
+    pub fn at_pressure(&self, pressure: Pressure) -> Result<Self, FibreError> {
+        Self::checked(Arc::clone(&self.muscle), pressure)
+    }
+
+    fn checked(muscle: Arc<Muscle>, pressure: Pressure) -> Result<Self, FibreError> {
         let pressure = pressure.si();
         if !pressure.is_finite() {
             return Err(FibreError::NotFinite { what: "pressure", value: pressure });
@@ -70,9 +90,7 @@ impl Problem {
         if pressure <= 0.0 {
             return Err(FibreError::PressureNotPositive { pressure_pa: pressure });
         }
-        check_ranges(muscle)?;
-        let fitting_follows = !muscle.is_stated(Parameter::FittingRadius);
-        let mut problem = Self { muscle: muscle.clone(), pressure, net: Net::plain(), fitting_follows };
+        let mut problem = Self { muscle, pressure, net: Net::plain() };
         problem.net = problem.net_of(|variable| problem.value(variable));
         Ok(problem)
     }
@@ -91,6 +109,34 @@ impl Problem {
         }
     }
 
+    /// The variables as dual numbers, each with the place of its derivative (from [`Dual::variable`]: beyond `N` for a constant).
+    ///
+    /// What isn't stated separately follows: the fitting's radius that of the braid, the inner face of the wall the wall. A derivative by such a
+    /// follower is that of stating it.
+    pub(crate) fn seeded<const N: usize>(
+        &self,
+        place: impl Fn(Variable) -> usize,
+    ) -> impl Fn(Variable) -> Dual<N> {
+        let own = move |variable, value| Dual::variable(value, place(variable));
+        move |variable| {
+            let value = self.value(variable);
+            let own_of = |parameter, value| own(Variable::Parameter(parameter), value);
+            let Variable::Parameter(parameter) = variable else { return own(variable, value) };
+            let follows = !self.muscle.is_stated(parameter);
+            match parameter {
+                // The fibre radius that acts in a pleated muscle is that at the fittings, under either name.
+                Parameter::Radius | Parameter::FittingRadius if self.muscle.is_pleated() => {
+                    own_of(Parameter::Radius, value) + own_of(Parameter::FittingRadius, 0.0)
+                }
+                Parameter::FittingRadius if follows => {
+                    own_of(Parameter::Radius, value) + own_of(parameter, 0.0)
+                }
+                Parameter::GasWall if follows => own_of(Parameter::Wall, value) + own_of(parameter, 0.0),
+                _ => own_of(parameter, value),
+            }
+        }
+    }
+
     /// Whether shape, force/p and volume are the same at every pressure.
     pub(crate) fn is_scale_free(&self) -> bool {
         self.net.compliance == 0.0 && self.net.bladder.is_none() && self.net.cloth.is_none()
@@ -103,7 +149,6 @@ impl Problem {
         let p = value(Variable::Pressure);
         let radius = get(Parameter::Radius);
         let half_length = get(Parameter::Length) / (radius * 2.0);
-        let one = D::from(1.0);
         let mut net = Net { half_fibre: half_length, ..Net::plain().lift_to() };
         match self.muscle.construction() {
             Construction::Pleated(pleated) => {
@@ -118,20 +163,27 @@ impl Problem {
                 if let FibreCount::Discrete(_) = pleated.fibres() {
                     let n = get(Parameter::Fibres);
                     net.area_factor = n * (D::from(2.0 * PI) / n).sin_cos().0 / (2.0 * PI);
+                    if has(Parameter::ClothCircumference) {
+                        net.lobes = Some(Lobes::new(n, get(Parameter::ClothCircumference) / radius));
+                    }
                 }
             }
             Construction::Braided(_) => {
                 let (sin, cos) = get(Parameter::BraidAngle).sin_cos();
-                // Where the fitting's radius isn't stated separately it is the braid's, and follows it.
-                net.end_radius =
-                    if self.fitting_follows { one } else { get(Parameter::FittingRadius) / radius };
+                net.end_radius = get(Parameter::FittingRadius) / radius;
+                if has(Parameter::GasWall) {
+                    net.depth = -(get(Parameter::GasWall) / radius);
+                }
                 net.half_fibre = half_length / cos;
                 net.cos_rest = cos;
                 net.turn = sin;
                 net.sin2_rest = sin * sin;
-                if has(Parameter::C10) {
-                    // 2 pi r0 t W per axial length at rest; cos(alpha0) of that per fibre length.
-                    let wall = self.muscle.bladder().map_or(one, |_| get(Parameter::Wall));
+                if let Some(bladder) = self.muscle.bladder() {
+                    // 2 pi r0 t W per axial length at rest; cos(alpha0) of that per fibre length. A bladder of another thickness than that of
+                    // the muscle's wall doesn't follow it.
+                    let shared = self.muscle.wall() == Some(bladder.wall());
+                    let wall =
+                        if shared { get(Parameter::Wall) } else { D::from(bladder.wall().si()) };
                     let scale = wall * cos * (2.0 * PI) / (radius * p);
                     net.bladder =
                         Some(Bladder { c10: scale * get(Parameter::C10), c01: scale * get(Parameter::C01) });
@@ -162,7 +214,7 @@ impl Problem {
 
     /// Whether the radius of the fittings is a variable of its own: a clamped braid where it is stated.
     pub(crate) fn has_own_fitting(&self) -> bool {
-        !self.muscle.is_pleated() && !self.is_cylinder() && !self.fitting_follows
+        !self.muscle.is_pleated() && !self.is_cylinder() && self.muscle.is_stated(Parameter::FittingRadius)
     }
 
     /// Whether the braid is the textbook cylinder.
@@ -178,6 +230,12 @@ fn check_ranges(muscle: &Muscle) -> Result<(), FibreError> {
             return Err(FibreError::ClothTooNarrow { taut_m: taut, end_m: end });
         }
     }
+    if let Some(wall) = muscle.gas_wall() {
+        let (wall_m, radius_m) = (wall.si(), muscle.radius().si().min(muscle.end_radius().si()));
+        if wall_m >= radius_m {
+            return Err(FibreError::WallTooThick { wall_m, radius_m });
+        }
+    }
     let inside = |what, value: f64, [low, high]: [f64; 2]| {
         // A ratio of two decimal lengths may miss a round limit by rounding.
         let slack = 1e-9 * high;
@@ -188,6 +246,18 @@ fn check_ranges(muscle: &Muscle) -> Result<(), FibreError> {
         }
     };
     let slenderness = muscle.length().si() / muscle.radius().si();
+    if let Some(circumference) = muscle.get(Parameter::ClothCircumference) {
+        // The lobes form one circle of the cloth's circumference; at the fitting they must be further in.
+        let taut_m = circumference / (2.0 * PI);
+        let end_m = muscle.radius().si() + muscle.get(Parameter::PleatDepth).unwrap_or(0.0);
+        if taut_m <= end_m {
+            return Err(FibreError::ClothTooNarrow { taut_m, end_m });
+        }
+        let fibres = muscle.fibres().map_or(0.0, f64::from);
+        inside("number of fibres with lobes between them", fibres, LOBED_FIBRES)?;
+        let length = fibres * muscle.length().si() / taut_m;
+        inside("number of fibres times length over radius of the open lobes", length, [0.0, LOBED_LENGTH])?;
+    }
     match muscle.construction() {
         Construction::Pleated(pleated) if pleated.misalignment().si() == 0.0 => {
             inside("slenderness l0/R", slenderness, PLEATED_SLENDERNESS)

@@ -47,9 +47,10 @@ pub struct Response {
     pub length_m: f64,
     /// Contraction (l0 - l)/l0 \[-\].
     pub contraction: f64,
-    /// Enclosed volume with circular cross-sections of the fibre radius, plus the pleat depth if there is one \[m^3\].
+    /// Enclosed volume with circular cross-sections of the fibre radius, plus the pleat depth or less the wall if there is one; with lobes that of
+    /// the lobes \[m^3\].
     pub volume_m3: f64,
-    /// Enclosed volume with the cross-section that carries the pressure (polygon between n fibres) \[m^3\]: p dV of it is the
+    /// Enclosed volume with the cross-section that carries the pressure (polygon between n fibres, or lobes) \[m^3\]: p dV of it is the
     /// work of the gas, and F = -p dV/dl holds where nothing else stores energy.
     pub volume_polygon_m3: f64,
     /// Largest radius of the fibres \[m\].

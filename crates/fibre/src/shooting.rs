@@ -8,6 +8,9 @@
 //! ```
 //!
 //! In these variables the problem is nearly linear at both ends: for a shallow bulge S = sqrt(2 B/k), and in a long braid S grows with -ln k.
+//! Where lobes limit the radius, B is nearly the same for all of them and T = A'/k a ratio of two numbers near 0: the first unknown is then
+//! ln(T/B), from which A'(r_mid) = k B (T/B) fixes B (for an angle or cloth besides, A'/(k B) takes the place of T/B).
+//!
 //! Newton's method takes exact derivatives from the integration of dual numbers, loosely at first.
 
 use bulge_numerics::{Dual, Real};
@@ -47,11 +50,25 @@ const LAST_TOLERANCE: f64 = 1e-7;
 pub(crate) struct Unknowns {
     /// +1: bulge, -1: waist.
     pub(crate) side: f64,
-    /// ln|B|, ln|k|.
+    /// ln|B|, ln|k|; with lobes ln(A'/(k B)), ln|k|.
     pub(crate) logs: [f64; 2],
 }
 
+/// Part of the way to the radius of the lobes' circle that a start may cover.
+const OPEN: f64 = 0.98;
+
 impl Unknowns {
+    /// A bulge (+1) or a waist (-1) with ln|B| and the second unknown.
+    pub(crate) fn new(net: &Net<f64>, side: f64, [ln_bulge, second]: [f64; 2]) -> Self {
+        let Some(lobes) = net.lobes.filter(|_| side > 0.0) else {
+            return Self { side, logs: [ln_bulge, second] };
+        };
+        let most = OPEN * (lobes.limit() - net.depth - net.end_radius);
+        let bulge = ln_bulge.exp().min(most);
+        let r = net.end_radius + bulge;
+        Self { side, logs: [(net.acting_at(r).area_r(r) / bulge).ln() - second, second] }
+    }
+
     /// The middle of the meridian, with the unknowns as variables number 0 and 1 if `D` carries derivatives; `None` if the fibres can't be
     /// there with a positive tension.
     ///
@@ -62,18 +79,27 @@ impl Unknowns {
         net: &Net<D>,
         variable: impl Fn(f64, usize) -> D,
     ) -> Option<Middle<D>> {
-        let bulge = variable(self.logs[0], 0).exp() * self.side;
-        let second = variable(self.logs[1], 1).exp();
+        let logs = [variable(self.logs[0], 0), variable(self.logs[1], 1)];
+        let second = logs[1].exp();
+        if let Some(lobes) = net.lobes.filter(|_| self.side > 0.0) {
+            let slope = logs[0] + logs[1]; // ln(A'/B)
+            let bulge = lobes.bulge(net.end_radius + net.depth, -slope)?;
+            let r = net.end_radius + bulge;
+            let tension = net.acting_at(r.value()).tension_at_equator(r, bulge * slope.exp(), second)?;
+            return Some(Middle { bulge, curvature: second, tension });
+        }
+        let bulge = logs[0].exp() * self.side;
         let r = net.end_radius + bulge;
         if r.value() <= 0.0 {
             return None;
         }
         let net = net.acting_at(r.value());
+        let push = net.area_r(r);
         if self.side > 0.0 {
-            let tension = net.tension_at_equator(r, second)?;
+            let tension = net.tension_at_equator(r, push, second)?;
             return Some(Middle { bulge, curvature: second, tension });
         }
-        let cylinder = net.tension_at_equator(r, D::from(0.0))?;
+        let cylinder = net.tension_at_equator(r, push, D::from(0.0))?;
         let excess = cylinder * second;
         let tension = cylinder + excess;
         let (at_cylinder, local) = (net.local(r, cylinder), net.local(r, tension));
@@ -284,7 +310,8 @@ fn continuation(net: &Net<f64>, contraction: f64, effort: &mut Effort) -> Result
             return Err(failed);
         }
     };
-    let mut rate = [0.5, 0.5]; // d ln|B| / d ln(part) of a shallow bulge
+    // d(unknowns)/d ln(part) of a shallow bulge, where B, k and 1/T grow with the root of the contraction.
+    let mut rate = [if net.lobes.is_some() && at.side > 0.0 { -1.0 } else { 0.5 }, 0.5];
     let mut grow: f64 = 2.0;
     while part < 1.0 {
         let next = (part * grow).min(1.0);
@@ -325,7 +352,8 @@ pub(crate) fn straight_contraction(net: &Net<f64>) -> Option<f64> {
     if net.turn == 0.0 {
         return None;
     }
-    let tension = net.acting_at(net.end_radius).tension_at_equator(net.end_radius, 0.0)?;
+    let end = net.acting_at(net.end_radius);
+    let tension = end.tension_at_equator(end.end_radius, end.area_r(end.end_radius), 0.0)?;
     Some(1.0 - net.sigma(net.end_radius, tension) / net.cos_rest)
 }
 
@@ -333,11 +361,13 @@ pub(crate) fn straight_contraction(net: &Net<f64>) -> Option<f64> {
 pub(crate) struct Solved<const N: usize> {
     pub(crate) force: Total<N>,
     pub(crate) half_volume: Total<N>,
-    pub(crate) mid_radius: f64,
+    pub(crate) mid_radius: Total<N>,
     pub(crate) unknowns: Unknowns,
     pub(crate) evaluations: u32,
     pub(crate) trajectory: Trajectory<Dual<N>>,
     pub(crate) residual: f64,
+    /// Total derivatives of the two unknowns.
+    pub(crate) follow: [Total<N>; 2],
     /// The last Newton step, by which the trajectory misses the solution.
     step: [f64; 2],
 }
@@ -400,10 +430,16 @@ pub(crate) fn finish<const N: usize>(
             by_parameter: std::array::from_fn(|i| if i < 2 { 0.0 } else { o[i] - along(follow[i]) }),
         }
     };
+    let follow = std::array::from_fn(|z| Total {
+        value: at.logs[z] - step[z],
+        by_contraction: -by_contraction[z],
+        by_parameter: follow.map(|along| -along[z]),
+    });
     Ok(Solved {
+        follow,
         force: total(run.force),
         half_volume: total(run.end[VOLUME]),
-        mid_radius: net.end_radius.value() + bulge.value() * (1.0 - step[0]),
+        mid_radius: total(net.end_radius + bulge),
         unknowns: Unknowns { logs: [at.logs[0] - step[0], at.logs[1] - step[1]], ..at },
         evaluations,
         residual,

@@ -92,13 +92,14 @@ impl Problem {
     /// See [`FibreError`].
     pub fn gradient(&self, contraction: f64, approach: Approach) -> Result<Gradient, FibreError> {
         const N: usize = 2 + Variable::COUNT;
-        let seeded = |variable: Variable| Dual::<N>::variable(self.value(variable), 2 + variable.index());
-        let outcome = self.outcome(self.method(approach)?, contraction, &self.net_of(seeded), None)?;
+        let seeded = self.seeded::<N>(|variable| 2 + variable.index());
+        let outcome = self.outcome(self.method(approach)?, contraction, &self.net_of(&seeded), None)?;
         let [force, volume] = physical(&outcome, seeded);
         let by_variable = Variable::all()
             .filter(|variable| match variable {
                 Variable::Pressure => true,
                 Variable::Parameter(Parameter::FittingRadius) => self.has_own_fitting(),
+                Variable::Parameter(Parameter::GasWall) => self.muscle.is_stated(Parameter::GasWall),
                 Variable::Parameter(parameter) => self.muscle.get(*parameter).is_some(),
             })
             .map(|v| (v, [force.gradient()[2 + v.index()], volume.gradient()[2 + v.index()]]))
@@ -166,7 +167,8 @@ impl Problem {
         if !volume.is_finite() {
             return Err(FibreError::NotFinite { what: "volume", value: volume });
         }
-        let least = std::f64::consts::PI * self.muscle.radius().si().powi(2) * self.muscle.length().si();
+        let (end, radius) = (self.net.acting_at(1.0), self.muscle.radius().si());
+        let least = end.volume_section(1.0, &end.section(1.0)) * radius.powi(2) * self.muscle.length().si();
         if self.is_singular() && volume <= least {
             return Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: least });
         }
@@ -328,7 +330,7 @@ impl Problem {
         let [unit_force, unit_volume] = [p * radius * radius, radius * radius * radius];
         let [force, volume] = [unit_force * outcome.force.value, unit_volume * outcome.volume.value];
         let by_pressure = |total: &Total<N>| total.by_parameter.get(2).copied().unwrap_or(0.0);
-        let a = self.net.area_factor;
+        let a = self.net.volume_factor();
         // Per length: l = l0 (1 - eps).
         let stiffness = -unit_force * outcome.force.by_contraction / l0;
         let volume_slope = -a * unit_volume * outcome.volume.by_contraction / l0;
@@ -344,8 +346,8 @@ impl Problem {
             contraction,
             volume_m3: volume,
             volume_polygon_m3: polygon,
-            max_radius_m: radius * outcome.mid_radius.max(if self.is_cylinder() { 0.0 } else { end_radius }),
-            mid_radius_m: radius * outcome.mid_radius,
+            max_radius_m: radius * outcome.mid_radius.value.max(if self.is_cylinder() { 0.0 } else { end_radius }),
+            mid_radius_m: radius * outcome.mid_radius.value,
             fibre_tension_n: unit_force * outcome.tension / self.fibre_number(|v| self.value(v)),
             fibre_strain: self.net.compliance * outcome.tension,
             stiffness_n_per_m: stiffness,

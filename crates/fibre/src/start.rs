@@ -8,8 +8,15 @@ use crate::shooting::{Unknowns, steepest, straight_contraction};
 /// Difference of the contraction from that of a straight meridian up to which the start is taken from the linear solution.
 const SHALLOW: f64 = 1e-4;
 
+/// Part of the way to the circle of the lobes beyond which an arc that ignores them is no start.
+const NEARLY_OPEN: f64 = 0.9;
+
 /// Values to start from, some per cent to some ten per cent off.
 pub(crate) fn start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
+    open_start(net, contraction).or_else(|| usual_start(net, contraction))
+}
+
+fn usual_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     // Fibres that hardly turn bulge as straight ones do, and so does a net that has no cylinder at the fitting's radius.
     match straight_contraction(net) {
         Some(straight)
@@ -19,6 +26,61 @@ pub(crate) fn start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
         }
         _ => arc_start(net, contraction),
     }
+}
+
+/// Lobes that form a circle in the middle of the muscle: straight fibres at the radius r* of that circle between two curved ends. With
+/// `g = (A(r*) - A(r))/T` the first integral gives cos(psi) = 1 - g, so the end and its shortening against its length are
+///
+/// ```text
+/// S_end = integral dr/sin(psi) from R to r* - z        d = integral tan(psi/2) dr,  tan^2(psi/2) = g/(2 - g)
+/// ```
+///
+/// and in the middle r* - r grows as cosh(lambda s), lambda^2 = -A''(r*)/T. An angle is neglected. None if the middle isn't like this.
+fn open_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
+    let lobes = net.lobes?;
+    let limit = lobes.limit() - net.depth;
+    let room = limit - net.end_radius;
+    let angle = (6.0 * contraction).max(0.0).sqrt();
+    if 0.5 * angle * net.half_fibre < NEARLY_OPEN * room {
+        return None;
+    }
+    let rim = net.acting_at(limit).section(limit);
+    let missing = |r: f64| rim.area - net.acting_at(r).area(r);
+    // r = r* - room exp(-u): the end has a logarithm at r*. The last piece of it is linear.
+    let (last, panels) = (6.0, [0.0, 0.5, 1.0, 2.0, 4.0, 6.0]);
+    let along = |f: &dyn Fn(f64) -> f64| -> f64 {
+        let piece = |from: f64, to: f64| {
+            gauss::integrate(|part| {
+                let z = room * (-(from + part * (to - from))).exp();
+                f(missing(limit - z)) * z * (to - from)
+            })
+        };
+        panels.windows(2).map(|pair| piece(pair[0], pair[1])).sum()
+    };
+    let shortening = |tension: f64| {
+        along(&|gap| {
+            let g = gap / tension;
+            (g / (2.0 - g).max(1e-9)).sqrt()
+        })
+    };
+    let asked = |tension: f64| net.half_fibre * (contraction * net.cos_rest + 1.0 - net.cos_rest + net.compliance * tension);
+    let least = (0.5 * missing(net.end_radius)).ln();
+    let ln_tension = illinois(|ln_t| shortening(ln_t.exp()) - asked(ln_t.exp()), least, least + 12.0, 1e-3);
+    let tension = ln_tension.exp();
+    let end = along(&|gap| {
+        let g = gap / tension;
+        1.0 / (g * (2.0 - g)).max(1e-9).sqrt()
+    });
+    let rate = (-rim.area_rr / tension).sqrt();
+    let straight = net.half_fibre * (1.0 + net.compliance * tension) - end;
+    // r* - r at mid-length: 2 z exp(-lambda s) of the z at which the end was left.
+    let ln_gap = (2.0 * room).ln() - last - rate * straight;
+    if ln_gap > (0.5 * room).ln() - last {
+        return None;
+    }
+    let ln_curvature = ln_gap + 2.0 * rate.ln();
+    // A' = T k at mid-length, over k B.
+    Some(Unknowns { side: 1.0, logs: [ln_tension - room.ln(), ln_curvature] })
 }
 
 /// Straight fibres: a circular arc of the stretched fibre length, half-angle K: `sin(K)/K` is the end distance over the fibre length,
@@ -32,7 +94,7 @@ fn arc_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
             // T = A'/k; A' grows with the stretched length: a contraction unless the fibres balloon.
             for _ in 0..6 {
                 let length = straight * (1.0 + strain);
-                strain = (net.compliance * net.area_r(radius(length)) * length / angle).min(2.0);
+                strain = (net.compliance * slope_at(net, radius(length)) * length / angle).min(2.0);
             }
         }
         let length = straight * (1.0 + strain);
@@ -50,10 +112,14 @@ fn arc_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
         return None;
     };
     let (_, length, _) = arc(angle);
-    Some(Unknowns {
-        side: 1.0,
-        logs: [(length * 0.5 * angle * (1.0 - angle * angle / 12.0)).ln(), (angle / length).ln()],
-    })
+    let bulge = length * 0.5 * angle * (1.0 - angle * angle / 12.0);
+    Some(Unknowns::new(net, 1.0, [bulge.ln(), (angle / length).ln()]))
+}
+
+/// A'(r) for a start; where lobes end, that of the last radius with some room.
+fn slope_at(net: &Net<f64>, r: f64) -> f64 {
+    let r = net.lobes.map_or(r, |lobes| r.min(0.99 * (lobes.limit() - net.depth)));
+    net.acting_at(r).area_r(r)
 }
 
 /// Nets with an angle: the trial meridian `r = r_mid - B (cosh(kappa S) - 1)/(cosh(kappa S_half) - 1)` of the linearised equation about
@@ -68,9 +134,9 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
         let angle = (net.turn * r).min(0.98);
         3.0_f64.sqrt() * net.turn * angle / (1.0 - angle * angle).sqrt()
     };
-    let strain = net
-        .acting_at(net.end_radius)
-        .tension_at_equator(net.end_radius, 0.0)
+    let end = net.acting_at(net.end_radius);
+    let strain = end
+        .tension_at_equator(end.end_radius, end.area_r(end.end_radius), 0.0)
         .map_or(0.0, |t| net.compliance * t);
     let end_distance = |bulge: f64| {
         let mid = net.end_radius + side * bulge;
@@ -114,7 +180,7 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
         let share = (ln_curvature.exp() / steepest(net, mid)).min(0.98);
         (share / (1.0 - share)).ln()
     };
-    Some(Unknowns { side, logs: [bulge.ln(), second] })
+    Some(Unknowns::new(net, side, [bulge.ln(), second]))
 }
 
 /// cosh(x) - 1, with x kept below where it would overflow (for ratios at the same x).

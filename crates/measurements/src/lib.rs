@@ -1,1 +1,30 @@
 //! Measured force maps and histories: CSV and Parquet in, sweeps, directions, repeats and a quality gate.
+//!
+//! Data only, no model. Numbers are finite and in SI; what a file gets wrong is answered with its line and its cure.
+//! Deliberately absent: cleaning. Nothing is dropped, filtered or interpolated silently; [`Data::quality`] says what looks wrong and where.
+
+mod cell;
+mod columns;
+mod csv_file;
+mod data;
+mod dimension;
+mod error;
+mod heading;
+mod history;
+mod parquet_file;
+mod quote;
+mod rate;
+mod resolution;
+#[cfg(test)]
+mod simulated;
+mod slot;
+mod source;
+mod stretch;
+mod sweep;
+
+pub use columns::{Columns, Labels, Trace};
+pub use data::{Data, Motion};
+pub use error::{CellError, MeasurementError};
+pub use history::History;
+pub use source::SourceFile;
+pub use sweep::{Sweep, SweepKind};

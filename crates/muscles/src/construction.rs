@@ -65,6 +65,7 @@ pub struct Pleated {
     pub(crate) fibres: FibreCount,
     pub(crate) pleat_depth: Length,
     pub(crate) misalignment: Angle,
+    pub(crate) cloth_circumference: Option<Length>,
 }
 
 impl Pleated {
@@ -83,6 +84,7 @@ impl Pleated {
             fibres,
             pleat_depth: Length::m(0.0),
             misalignment: Angle::rad(0.0),
+            cloth_circumference: None,
         })
     }
 
@@ -117,6 +119,18 @@ impl Pleated {
         }
     }
 
+    /// The same with cloth of this circumference, inextensible around the muscle, that bulges in a lobe between every two fibres.
+    ///
+    /// # Errors
+    /// If it is not finite and > 0, or the fibres are continuous: then there is nothing between them.
+    pub fn with_cloth_circumference(self, circumference: Length) -> Result<Self, MuscleError> {
+        check::positive("effects.lobes.circumference", circumference)?;
+        match self.fibres {
+            FibreCount::Discrete(_) => Ok(Self { cloth_circumference: Some(circumference), ..self }),
+            FibreCount::Continuous => Err(MuscleError::LobesOfContinuous),
+        }
+    }
+
     /// Fibre radius R at the end fittings, as it acts: the separate end radius if there is one, else as stated.
     #[must_use]
     pub fn radius(&self) -> Length {
@@ -145,6 +159,12 @@ impl Pleated {
     #[must_use]
     pub fn misalignment(&self) -> Angle {
         self.misalignment
+    }
+
+    /// Circumference of the cloth that bulges in lobes between the fibres, if it does.
+    #[must_use]
+    pub fn cloth_circumference(&self) -> Option<Length> {
+        self.cloth_circumference
     }
 }
 
@@ -298,6 +318,8 @@ mod tests {
             (pleated.with_pleat_depth(Length::m(f64::INFINITY)).err(), "inf"),
             (pleated.with_misalignment(Angle::deg(-90.0)).err(), "-90"),
             (pleated.with_misalignment(Angle::rad(f64::NAN)).err(), "NaN"),
+            (pleated.with_cloth_circumference(Length::mm(-330.0)).err(), "-0.33 m"),
+            (pleated.with_cloth_circumference(Length::mm(330.0)).err(), "`fibres = 40`"),
             (Braided::new(Length::mm(10.0), Angle::deg(90.0)).err(), "90"),
             (Braided::new(Length::mm(10.0), Angle::deg(0.0)).err(), "0 deg"),
             (Braided::new(Length::mm(10.0), Angle::rad(f64::NAN)).err(), "NaN"),

@@ -70,6 +70,14 @@ pub enum MuscleError {
     /// A bladder without thickness.
     #[error("a bladder needs a wall thickness: `wall` is not stated")]
     NoWall,
+    /// Gas inside a wall of unknown thickness.
+    #[error("the gas acts on the inner wall, but `wall` does not say how thick the wall is")]
+    NoGasWall,
+    /// Lobes between fibres that have no distance.
+    #[error(
+        "lobes stand between fibres that can be counted, such as `fibres = 40`: `continuous` fibres have none"
+    )]
+    LobesOfContinuous,
     /// One part of an unfolding limit without the other.
     #[error("`{}` alone does not limit the unfolding: hoop stiffness and unfolded radius are needed together", parameter.name())]
     HalfUnfolding {
@@ -121,6 +129,8 @@ impl MuscleError {
             Self::NoName => "name",
             Self::NoFibreCount => "fibre",
             Self::NoWall | Self::BladderInPleated => "effects.bladder-elasticity",
+            Self::NoGasWall => "effects.wall-thickness",
+            Self::LobesOfContinuous => "effects.lobes",
             Self::HalfUnfolding { .. } => "effects.limited-unfolding",
             Self::OtherKind { parameter, .. }
             | Self::NoWidth { parameter }

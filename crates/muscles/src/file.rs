@@ -195,6 +195,10 @@ impl<'a> Document<'a> {
         if let Some(table) = effects.checked_table("fibre-misalignment")? {
             pleated = pleated.with_misalignment(table.required("angle")?).map_err(invalid)?;
         }
+        if let Some(table) = effects.checked_table("lobes")? {
+            let circumference = table.required("circumference")?;
+            pleated = pleated.with_cloth_circumference(circumference).map_err(invalid)?;
+        }
         Ok(pleated)
     }
 
@@ -242,6 +246,9 @@ impl<'a> Document<'a> {
             let stated = if own.is_some() { table.plain("wall")? } else { table.quantity("wall")? };
             let wall = stated.or(own).ok_or_else(|| invalid(MuscleError::NoWall))?;
             muscle = muscle.with_bladder(Bladder::new(c10, c01, wall).map_err(invalid)?).map_err(invalid)?;
+        }
+        if let Some(table) = effects.checked_table("wall-thickness")? {
+            muscle = muscle.with_gas_wall(table.quantity("thickness")?).map_err(invalid)?;
         }
         if let Some(table) = effects.checked_table("limited-unfolding")? {
             let hoop_stiffness = table.required::<LineStiffness>("hoop_stiffness")?;

@@ -36,13 +36,15 @@ const BEFORE: usize = 60;
 const SHOWN: usize = 110;
 
 impl FileError {
-    /// About the file as a whole.
-    pub(crate) fn whole(origin: &str, what: impl Into<String>, instead: impl Into<String>) -> Self {
+    /// About the file as a whole: what is wrong, and what to do instead.
+    #[must_use]
+    pub fn whole(origin: &str, what: impl Into<String>, instead: impl Into<String>) -> Self {
         Self { origin: origin.to_owned(), place: None, what: what.into(), instead: instead.into() }
     }
 
-    /// About a span of bytes in the text.
-    pub(crate) fn at(
+    /// About a span of bytes in the text; any span has a place.
+    #[must_use]
+    pub fn at(
         origin: &str,
         text: &str,
         span: Range<usize>,

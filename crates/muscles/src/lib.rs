@@ -30,7 +30,10 @@
 //!
 //! Deliberately absent: pressure, contraction and force. They are the state of a muscle, not the muscle.
 
+mod any_unit;
+mod any_unit_error;
 mod construction;
+mod dimension;
 mod error;
 mod file;
 mod file_error;
@@ -43,10 +46,12 @@ mod presets;
 mod quantity;
 mod table;
 mod unit_error;
+mod unit_expression;
 pub mod units;
 mod write;
 
 pub use construction::{Braided, Construction, Ends, FibreCount, Kind, Pleated};
+pub use dimension::Dimension;
 pub use error::MuscleError;
 pub use file::{from_toml, read};
 pub use file_error::FileError;

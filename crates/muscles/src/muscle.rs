@@ -9,6 +9,16 @@ use crate::quantity::{Angle, Force, Length, LineStiffness, Pressure};
 use crate::units::Quantity;
 use serde::Serialize;
 
+/// Where the gas acts in the wall of a braid.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum GasWall {
+    /// At the wall's inner face: the thickness is that of the wall, and follows it.
+    Inner,
+    /// At a depth of its own.
+    At(Length),
+}
+
 /// A pneumatic artificial muscle.
 ///
 /// ```
@@ -28,6 +38,7 @@ pub struct Muscle {
     fibre: Option<Fibre>,
     bladder: Option<Bladder>,
     unfolding: Option<Unfolding>,
+    gas_wall: Option<GasWall>,
     instruments: Instruments,
     widths: Vec<(Parameter, f64)>,
 }
@@ -50,6 +61,7 @@ impl Muscle {
             fibre: None,
             bladder: None,
             unfolding: None,
+            gas_wall: None,
             instruments: Instruments::default(),
             widths: Vec::new(),
         };
@@ -96,6 +108,30 @@ impl Muscle {
         self
     }
 
+    /// The same with gas that acts on the inner face of the wall, at the braid radius less this thickness, instead of at the braid radius; none:
+    /// the thickness of the muscle's wall, also if that is changed later.
+    ///
+    /// The wall keeps its thickness (C.-P. Chou and B. Hannaford, 1996). Rubber keeps its *volume* instead, and a braid that lies in the
+    /// wall at the stated radius then needs no correction at all.
+    ///
+    /// # Errors
+    /// If the thickness is negative or not finite, none is given and the wall's is not known, or the muscle is pleated.
+    pub fn with_gas_wall(mut self, thickness: Option<Length>) -> Result<Self, MuscleError> {
+        if self.is_pleated() {
+            let (parameter, kind) = (Parameter::GasWall, Kind::Pleated);
+            return Err(MuscleError::OtherKind { parameter, kind, owner: Kind::Braided });
+        }
+        self.gas_wall = Some(match thickness {
+            Some(thickness) => {
+                check::not_negative("effects.wall-thickness.thickness", thickness)?;
+                GasWall::At(thickness)
+            }
+            None if self.wall().is_some() => GasWall::Inner,
+            None => return Err(MuscleError::NoGasWall),
+        });
+        Ok(self)
+    }
+
     /// The same on other instruments.
     #[must_use]
     pub fn with_instruments(mut self, instruments: Instruments) -> Self {
@@ -124,7 +160,8 @@ impl Muscle {
     ///
     /// - `Radius`: radii that are not stated separately follow. Of a pleated muscle with a separate end radius it is
     ///   that one, the radius that acts.
-    /// - `Wall`: where the bladder has the muscle's wall thickness, it follows.
+    /// - `Wall`: where the bladder has the muscle's wall thickness, it follows, and so does gas on the inner face of the wall.
+    /// - `GasWall` adds the effect if it is absent.
     /// - `Fibres` must be a whole number; a continuous membrane becomes discrete.
     /// - `C10` or `C01` of a braid without bladder add one, if the wall is known.
     ///
@@ -152,6 +189,7 @@ impl Muscle {
                     Unfolding::new(now.hoop_stiffness(), Length::m(value))?
                 });
             }
+            Parameter::GasWall => return changed.with_gas_wall(Some(Length::m(value))),
             _ => match self.construction {
                 Construction::Pleated(pleated) => {
                     changed.construction = Construction::Pleated(pleated_with(pleated, parameter, value)?);
@@ -180,6 +218,8 @@ impl Muscle {
             Parameter::C10 => self.bladder.map(|bladder| bladder.c10().si()),
             Parameter::C01 => self.bladder.map(|bladder| bladder.c01().si()),
             Parameter::Wall => self.wall().map(Quantity::si),
+            Parameter::GasWall => self.gas_wall().map(Quantity::si),
+            Parameter::ClothCircumference => pleated.and_then(|p| p.cloth_circumference).map(Quantity::si),
             Parameter::HoopStiffness => self.unfolding.map(|limit| limit.hoop_stiffness().si()),
             Parameter::UnfoldedRadius => self.unfolding.map(|limit| limit.unfolded_radius().si()),
         }
@@ -285,18 +325,28 @@ impl Muscle {
         self.own_wall().or_else(|| self.bladder.map(|bladder| bladder.wall()))
     }
 
+    /// How far inside the braid radius the gas acts; none if it acts at the braid.
+    #[must_use]
+    pub fn gas_wall(&self) -> Option<Length> {
+        match self.gas_wall? {
+            GasWall::Inner => self.wall(),
+            GasWall::At(thickness) => Some(thickness),
+        }
+    }
+
     /// The wall thickness that the muscle states itself.
     pub(crate) fn own_wall(&self) -> Option<Length> {
         if let Construction::Braided(braided) = &self.construction { braided.wall() } else { None }
     }
 
     /// Whether the parameter has a place of its own in the muscle's file, where a width can be written. A fitting radius that is not stated
-    /// follows the radius.
+    /// follows the radius, and the inner face of the wall follows the wall.
     #[must_use]
     pub fn is_stated(&self, parameter: Parameter) -> bool {
         match (parameter, &self.construction) {
             (Parameter::FittingRadius, Construction::Pleated(pleated)) => pleated.end_radius.is_some(),
             (Parameter::FittingRadius, Construction::Braided(braided)) => braided.fitting_radius.is_some(),
+            (Parameter::GasWall, _) => matches!(self.gas_wall, Some(GasWall::At(_))),
             _ => self.get(parameter).is_some(),
         }
     }
@@ -366,6 +416,7 @@ fn pleated_with(mut pleated: Pleated, parameter: Parameter, value: f64) -> Resul
         }
         Parameter::PleatDepth => pleated.with_pleat_depth(Length::m(value)),
         Parameter::Misalignment => pleated.with_misalignment(Angle::rad(value)),
+        Parameter::ClothCircumference => pleated.with_cloth_circumference(Length::m(value)),
         _ => Err(MuscleError::OtherKind { parameter, kind: Kind::Pleated, owner: Kind::Braided }),
     }
 }
@@ -473,6 +524,23 @@ mod tests {
         let muscle = muscle.with(Parameter::Wall, 0.0015).unwrap();
         assert_eq!((muscle.own_wall(), muscle.bladder().unwrap().wall()), (None, Length::mm(1.5)));
         assert_eq!(pleated().with_bladder(own), Err(MuscleError::BladderInPleated));
+    }
+
+    #[test]
+    fn gas_acts_on_the_wall_that_is_there() {
+        assert_eq!(braided().with_gas_wall(None), Err(MuscleError::NoGasWall));
+        let message = pleated().with_gas_wall(None).unwrap_err().to_string();
+        assert!(message.contains("`gas_wall`") && message.contains("braided"), "{message}");
+        let follows = braided().with(Parameter::Wall, 0.002).unwrap().with_gas_wall(None).unwrap();
+        assert_eq!(
+            (follows.gas_wall(), follows.is_stated(Parameter::GasWall)),
+            (Some(Length::mm(2.0)), false)
+        );
+        assert_eq!(follows.with(Parameter::Wall, 0.003).unwrap().gas_wall(), Some(Length::mm(3.0)));
+        let own = follows.with(Parameter::GasWall, 0.001).unwrap().with(Parameter::Wall, 0.003).unwrap();
+        assert_eq!((own.gas_wall(), own.wall()), (Some(Length::mm(1.0)), Some(Length::mm(3.0))));
+        assert!(own.with_width(Parameter::GasWall, 1e-4).is_ok());
+        assert!(follows.with_width(Parameter::GasWall, 1e-4).is_err());
     }
 
     #[test]

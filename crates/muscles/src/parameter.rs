@@ -31,15 +31,19 @@ pub enum Parameter {
     C01,
     /// Wall thickness (m).
     Wall,
+    /// Thickness by which the gas stays inside the braid radius (m).
+    GasWall,
     /// Hoop stiffness of cloth that limits the unfolding (N/m).
     HoopStiffness,
     /// Radius from which the cloth is taut (m).
     UnfoldedRadius,
+    /// Circumference of the cloth that bulges in lobes between the fibres (m).
+    ClothCircumference,
 }
 
 impl Parameter {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::Length,
         Self::Radius,
         Self::FittingRadius,
@@ -51,8 +55,10 @@ impl Parameter {
         Self::C10,
         Self::C01,
         Self::Wall,
+        Self::GasWall,
         Self::HoopStiffness,
         Self::UnfoldedRadius,
+        Self::ClothCircumference,
     ];
 
     /// The name in sweeps, tables and reports.
@@ -70,8 +76,10 @@ impl Parameter {
             Self::C10 => "c10",
             Self::C01 => "c01",
             Self::Wall => "wall",
+            Self::GasWall => "gas_wall",
             Self::HoopStiffness => "hoop_stiffness",
             Self::UnfoldedRadius => "unfolded_radius",
+            Self::ClothCircumference => "cloth_circumference",
         }
     }
 
@@ -92,8 +100,10 @@ impl Parameter {
             Self::FibreStiffness => "fibre.stiffness",
             Self::C10 => "effects.bladder-elasticity.c10",
             Self::C01 => "effects.bladder-elasticity.c01",
+            Self::GasWall => "effects.wall-thickness.thickness",
             Self::HoopStiffness => "effects.limited-unfolding.hoop_stiffness",
             Self::UnfoldedRadius => "effects.limited-unfolding.unfolded_radius",
+            Self::ClothCircumference => "effects.lobes.circumference",
         }
     }
 
@@ -106,7 +116,9 @@ impl Parameter {
             | Self::FittingRadius
             | Self::PleatDepth
             | Self::Wall
-            | Self::UnfoldedRadius => "m",
+            | Self::GasWall
+            | Self::UnfoldedRadius
+            | Self::ClothCircumference => "m",
             Self::BraidAngle | Self::Misalignment => "rad",
             Self::Fibres => "1",
             Self::FibreStiffness => "N",
@@ -119,8 +131,8 @@ impl Parameter {
     #[must_use]
     pub const fn kind(self) -> Option<Kind> {
         match self {
-            Self::BraidAngle | Self::C10 | Self::C01 | Self::Wall => Some(Kind::Braided),
-            Self::PleatDepth | Self::Misalignment => Some(Kind::Pleated),
+            Self::BraidAngle | Self::C10 | Self::C01 | Self::Wall | Self::GasWall => Some(Kind::Braided),
+            Self::PleatDepth | Self::Misalignment | Self::ClothCircumference => Some(Kind::Pleated),
             _ => None,
         }
     }

@@ -56,7 +56,8 @@ impl Document<'_> {
             MuscleError::NoFibreCount => {
                 "add a line such as `fibres = 60`: the fibres of the braid, both families together".to_owned()
             }
-            MuscleError::NoWall => "add a line such as `wall = \"2 mm\"`".to_owned(),
+            MuscleError::NoWall | MuscleError::NoGasWall => "add a line such as `wall = \"2 mm\"`".to_owned(),
+            MuscleError::LobesOfContinuous => "write a number of fibres, such as `fibres = 40`".to_owned(),
             MuscleError::TooFewFibres { .. } => {
                 "write the number of fibres, such as `fibres = 40` (a pleated muscle may say \"continuous\")"
                     .to_owned()

@@ -1,9 +1,12 @@
 //! Units in text: "110 mm", "2 bar", "110 mm +- 0.2 mm", "1,2,3 bar", "0 %..35 %".
 
+pub use crate::any_unit::{Any, any, any_with_width, exact_any_text};
+pub use crate::any_unit_error::AnyUnitError;
 use crate::quantity::{
     Angle, Area, Force, Length, LineStiffness, Pressure, Ratio, Volume, in_unit, rounded, to_si,
 };
 pub use crate::unit_error::UnitError;
+pub use crate::unit_expression::unit;
 
 /// A dimension with its units: what [`parse`] needs to know about a type.
 pub trait Quantity: Copy {
@@ -24,7 +27,7 @@ pub trait Quantity: Copy {
 pub(crate) type Units = &'static [(&'static str, f64)];
 
 /// Every dimension: a unit that is not of the dimension asked for is looked up here, to say what it is.
-const DIMENSIONS: &[(&str, Units)] = &[
+pub(crate) const DIMENSIONS: &[(&str, Units)] = &[
     (Length::NAME, Length::UNITS),
     (Pressure::NAME, Pressure::UNITS),
     (Force::NAME, Force::UNITS),
@@ -36,7 +39,7 @@ const DIMENSIONS: &[(&str, Units)] = &[
 ];
 
 /// Units in words, which are not accepted (there would be no end of them) but recognised.
-const WORDS: &[(&str, &str)] = &[
+pub(crate) const WORDS: &[(&str, &str)] = &[
     ("meter", "m"),
     ("metre", "m"),
     ("millimeter", "mm"),
@@ -193,7 +196,7 @@ fn split<Q: Quantity>(text: &str) -> Result<(f64, String), UnitError> {
 }
 
 /// How many bytes at the beginning are a decimal number: sign, digits, point, exponent ("12e" has no exponent).
-fn number_length(text: &str) -> usize {
+pub(crate) fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
     let mut end = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
@@ -212,7 +215,7 @@ fn number_length(text: &str) -> usize {
 }
 
 /// Whether the text begins with one of the words that stand for no finite number.
-fn is_not_finite(text: &str) -> bool {
+pub(crate) fn is_not_finite(text: &str) -> bool {
     let word = text.trim_start_matches(['+', '-']).split_whitespace().next().unwrap_or("");
     ["nan", "inf", "infinity", "\u{221e}"].iter().any(|other| word.eq_ignore_ascii_case(other))
 }

@@ -91,6 +91,9 @@ fn effect_lines(lines: &mut Vec<String>, muscle: &Muscle) {
         if counts(angle.si(), Parameter::Misalignment) {
             effect("fibre-misalignment", vec![line(muscle, "angle", Parameter::Misalignment, angle)]);
         }
+        if let Some(cloth) = pleated.cloth_circumference() {
+            effect("lobes", vec![line(muscle, "circumference", Parameter::ClothCircumference, cloth)]);
+        }
     }
     if let Some(bladder) = muscle.bladder() {
         let mut body = vec![line(muscle, "c10", Parameter::C10, bladder.c10())];
@@ -103,6 +106,12 @@ fn effect_lines(lines: &mut Vec<String>, muscle: &Muscle) {
             Some(_) => body.push(format!("wall = \"{}\"", exact_text(bladder.wall()))),
         }
         effect("bladder-elasticity", body);
+    }
+    if let Some(thickness) = muscle.gas_wall() {
+        // Without a thickness it is that of the wall.
+        let stated = muscle.is_stated(Parameter::GasWall);
+        let body = stated.then(|| line(muscle, "thickness", Parameter::GasWall, thickness));
+        effect("wall-thickness", body.into_iter().collect());
     }
     if let Some(limit) = muscle.unfolding() {
         let stiffness = line(muscle, "hoop_stiffness", Parameter::HoopStiffness, limit.hoop_stiffness());

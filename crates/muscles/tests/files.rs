@@ -116,10 +116,28 @@ fn pleated_effects_are_read() {
     let Construction::Pleated(pleated) = muscle.construction() else { panic!("pleated") };
     assert_eq!((pleated.radius(), pleated.stated_radius()), (Length::mm(15.0), Length::mm(16.0)));
     assert_eq!((pleated.pleat_depth(), pleated.misalignment()), (Length::mm(4.5), Angle::deg(-2.0)));
+    let lobes = format!("{PLEATED}[effects.lobes]\ncircumference = \"330 mm +- 2 mm\"");
+    let muscle = from_toml(&lobes, "m").unwrap();
+    assert_eq!(muscle.get(Parameter::ClothCircumference), Some(0.33));
+    assert_eq!(muscle.width(Parameter::ClothCircumference), Some(0.002));
     let continuous = with_line(PLEATED, 5, "fibres = \"continuous\"");
     assert_eq!(from_toml(&continuous, "m").unwrap().fibres(), None);
     let windows = format!("\u{feff}{}", PLEATED.replace('\n', "\r\n"));
     assert_eq!(from_toml(&windows, "m"), from_toml(PLEATED, "m"));
+}
+
+#[test]
+fn the_inner_wall_is_read() {
+    let text = format!("{BRAIDED}wall = \"2 mm\"\n[effects.wall-thickness]\n");
+    let muscle = from_toml(&text, "m").unwrap();
+    assert_eq!(muscle.gas_wall(), Some(Length::mm(2.0)));
+    assert!(to_toml(&muscle).contains("[effects.wall-thickness]\n"));
+    let own = from_toml(&format!("{text}thickness = \"1.5 mm +- 0.1 mm\""), "m").unwrap();
+    assert_eq!((own.gas_wall(), own.wall()), (Some(Length::mm(1.5)), Some(Length::mm(2.0))));
+    assert_eq!(own.width(Parameter::GasWall), Some(0.0001));
+    for muscle in [muscle, own] {
+        assert_eq!(from_toml(&to_toml(&muscle), "copy").unwrap(), muscle);
+    }
 }
 
 #[test]
@@ -325,6 +343,21 @@ fn effects_that_are_wrong() {
         (6, 1),
         &["needs `c10`", "c10 = \"0.2 MPa\""],
     );
+    refused(&effect(BRAIDED, "wall-thickness]"), (6, 1), &["how thick the wall is", "wall = \"2 mm\""]);
+    refused(
+        &effect(BRAIDED, "wall-thickness]\nthickness = \"-1 mm\""),
+        (7, 13),
+        &["not negative", "thickness = \"2 mm\""],
+    );
+    refused(&effect(PLEATED, "wall-thickness]"), (6, 10), &["belongs to a braided muscle"]);
+    refused(&effect(BRAIDED, "lobes]"), (6, 10), &["belongs to a pleated muscle"]);
+    refused(&effect(PLEATED, "lobes]"), (6, 1), &["needs `circumference`", "circumference = \"330 mm\""]);
+    let continuous = with_line(PLEATED, 5, "fibres = \"continuous\"");
+    refused(
+        &format!("{continuous}\n[effects.lobes]\ncircumference = \"330 mm\""),
+        (6, 1),
+        &["can be counted", "fibres = 40"],
+    );
     refused(&effect(BRAIDED, "bladder-elasticity]\nc20 = \"1 MPa\""), (7, 1), &["did you mean `c10`?"]);
     refused(&effect(PLEATED, "end-radius]"), (6, 1), &["`[effects.end-radius]` needs `radius`"]);
     refused(
@@ -462,10 +495,20 @@ fn some_muscle(random: &mut Lcg) -> Muscle {
         let stiffness = LineStiffness::n_per_m(random.fraction() * 1e5);
         muscle = muscle.with_unfolding(Unfolding::new(stiffness, Length::m(random.fraction())).unwrap());
     }
-    for parameter in [Parameter::FittingRadius, Parameter::PleatDepth, Parameter::Misalignment] {
+    let effects = [
+        Parameter::FittingRadius,
+        Parameter::PleatDepth,
+        Parameter::Misalignment,
+        Parameter::GasWall,
+        Parameter::ClothCircumference,
+    ];
+    for parameter in effects {
         if random.next(2) == 0 {
             muscle = muscle.with(parameter, random.fraction() * 0.1).unwrap_or(muscle);
         }
+    }
+    if random.next(4) == 0 {
+        muscle = muscle.clone().with_gas_wall(None).unwrap_or(muscle);
     }
     for parameter in Parameter::ALL {
         if random.next(3) == 0 {

@@ -8,6 +8,7 @@ mod dop853_coefficients;
 mod dual;
 pub mod elliptic;
 pub mod gauss;
+pub mod least_squares;
 mod real;
 pub mod root;
 

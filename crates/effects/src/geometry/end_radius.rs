@@ -30,7 +30,10 @@ impl Effect for EndRadius {
                 shape: "more force at small contractions, less at large ones (PPAM: crossing near 24 %)",
             },
             twins: &[
-                Twin { name: "pleat-depth", how: "identical in force; only a photograph of the fibres tells" },
+                Twin {
+                    name: "pleat-depth",
+                    how: "identical in force; only a photograph of the fibres tells",
+                },
                 Twin { name: "displacement-gain", how: "0.997 (PPAM)" },
             ],
             separate: "photograph the fibres at the fitting under pressure; measure a second slenderness l0/R",

@@ -41,7 +41,8 @@ impl Effect for PreslidingHysteresis {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         vec![
-            ParameterCard::new("force", NEWTON, (0.0, 200.0), 12.0, "friction far from a reversal").prior(0.0, 20.0),
+            ParameterCard::new("force", NEWTON, (0.0, 200.0), 12.0, "friction far from a reversal")
+                .prior(0.0, 20.0),
             ParameterCard::new("distance", PERCENT, (0.02, 10.0), 1.0, "contraction over which it builds up")
                 .off_at(1.0)
                 .logarithmic(),

@@ -34,7 +34,11 @@ impl Effect for ForceOffset {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "what the cell reads without load";
-        vec![ParameterCard::new("offset", NEWTON, (-300.0, 300.0), 0.0, about).prior(0.0, 10.0).plausible(-50.0, 50.0)]
+        vec![
+            ParameterCard::new("offset", NEWTON, (-300.0, 300.0), 0.0, about)
+                .prior(0.0, 10.0)
+                .plausible(-50.0, 50.0),
+        ]
     }
 
     fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {

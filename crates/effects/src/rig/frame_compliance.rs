@@ -20,7 +20,11 @@ impl Effect for FrameCompliance {
             group: Group::Rig,
             stage: Stage::Input,
             kind: None,
-            signature: Signature { pressure: "2", parity: Parity::Even, shape: "F dF/d eps: vanishes where the force does" },
+            signature: Signature {
+                pressure: "2",
+                parity: Parity::Even,
+                shape: "F dF/d eps: vanishes where the force does",
+            },
             twins: &[
                 Twin { name: "force-nonlinearity", how: "0.958 (braid)" },
                 Twin { name: "fibre-stretch", how: "0.93 (braid), 0.974 (PPAM)" },

@@ -22,7 +22,11 @@ impl Effect for LengthZeroError {
             group: Group::Rig,
             stage: Stage::Input,
             kind: None,
-            signature: Signature { pressure: "1", parity: Parity::Even, shape: "dF/d eps: largest at small contractions" },
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Even,
+                shape: "dF/d eps: largest at small contractions",
+            },
             twins: &[
                 Twin { name: "fibre-length", how: "0.98" },
                 Twin { name: "displacement-gain", how: "1.000 on a calibrated cylinder" },
@@ -36,7 +40,11 @@ impl Effect for LengthZeroError {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "how much shorter the muscle is than the reading says";
-        vec![ParameterCard::new("offset", MILLIMETRE, (-20.0, 20.0), 0.0, about).prior(0.0, 2.0).plausible(-8.0, 8.0)]
+        vec![
+            ParameterCard::new("offset", MILLIMETRE, (-20.0, 20.0), 0.0, about)
+                .prior(0.0, 2.0)
+                .plausible(-8.0, 8.0),
+        ]
     }
 
     fn act(&self, _: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {

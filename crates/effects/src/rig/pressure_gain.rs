@@ -34,7 +34,11 @@ impl Effect for PressureGain {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        vec![ParameterCard::new("gain", PERCENT, (-20.0, 20.0), 0.0, "relative error").prior(0.0, 1.0).plausible(-5.0, 5.0)]
+        vec![
+            ParameterCard::new("gain", PERCENT, (-20.0, 20.0), 0.0, "relative error")
+                .prior(0.0, 1.0)
+                .plausible(-5.0, 5.0),
+        ]
     }
 
     fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {

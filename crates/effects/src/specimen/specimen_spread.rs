@@ -22,7 +22,11 @@ impl Effect for SpecimenSpread {
             group: Group::Specimen,
             stage: Stage::Output,
             kind: None,
-            signature: Signature { pressure: "any", parity: Parity::Even, shape: "differs from specimen to specimen" },
+            signature: Signature {
+                pressure: "any",
+                parity: Parity::Even,
+                shape: "differs from specimen to specimen",
+            },
             twins: &[Twin { name: "force-gain", how: "identical for a single specimen" }],
             separate: "three specimens or more on the same rig",
             needs: Needs::Specimens,
@@ -30,7 +34,11 @@ impl Effect for SpecimenSpread {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        vec![ParameterCard::new("factor", PERCENT, (-20.0, 20.0), 0.0, "relative difference of this specimen").prior(0.0, 1.0).plausible(-5.0, 5.0)]
+        vec![
+            ParameterCard::new("factor", PERCENT, (-20.0, 20.0), 0.0, "relative difference of this specimen")
+                .prior(0.0, 1.0)
+                .plausible(-5.0, 5.0),
+        ]
     }
 
     fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {

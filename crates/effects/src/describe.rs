@@ -1,0 +1,356 @@
+//! Cards to read: an effect on a page, the catalogue as a list, and both as documents for programs.
+
+use bulge_muscles::Kind;
+use serde::Serialize;
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage};
+use crate::catalogue::Catalogue;
+use crate::effect::Effect;
+
+/// Widest line.
+const WIDTH: usize = 100;
+/// Columns of the labels below the parameters.
+const LABEL: usize = 10;
+/// An equation in the overview shorter than this says nothing.
+const LEAST_EQUATION: usize = 12;
+
+/// The card of an effect as a page of text: title, what happens, equation, parameters, signature, twins and how to tell them apart, source.
+///
+/// ```
+/// let catalogue = bulge_effects::Catalogue::builtin();
+/// let page = bulge_effects::describe(catalogue.find("coulomb-friction")?.as_ref());
+/// assert!(page.starts_with("coulomb-friction: Constant friction\n"));
+/// assert!(page.lines().all(|line| line.chars().count() <= 100));
+/// # Ok::<(), bulge_effects::CatalogueError>(())
+/// ```
+#[must_use]
+pub fn describe(effect: &dyn Effect) -> String {
+    let card = effect.card();
+    let mut page = Page::default();
+    page.paragraph(0, 2, &format!("{}: {}", card.name, card.title));
+    page.paragraph(0, 0, &belongs(&card));
+    page.line("");
+    page.paragraph(0, 0, card.about);
+    page.line("");
+    for part in parts(card.equation) {
+        page.paragraph(4, 8, part);
+    }
+    page.line("");
+    page.parameters(&effect.parameters());
+    page.item("shows", &shows(&card.signature));
+    let widest = card.twins.iter().map(|twin| twin.name.chars().count()).max().unwrap_or(0);
+    for (i, twin) in card.twins.iter().enumerate() {
+        let label = if i == 0 { "twins" } else { "" };
+        let first = format!("{label:LABEL$}{:widest$}  ", twin.name);
+        page.hanging(&first, LABEL + widest + 2, twin.how);
+    }
+    page.item("separate", card.separate);
+    page.item("needs", card.needs.says());
+    page.item("source", &format!("{} ({})", card.source, card.evidence.says()));
+    page.text
+}
+
+/// All effects, one line each: name, title and the beginning of the equation, by group, the members of a family below its first.
+#[must_use]
+pub fn overview(catalogue: &Catalogue) -> String {
+    let cards: Vec<Card<'_>> = catalogue.iter().map(|effect| effect.card()).collect();
+    let is_member =
+        |card: &Card<'_>| card.family != card.name && cards.iter().any(|other| other.name == card.family);
+    let mut lines: Vec<(usize, &Card<'_>)> = Vec::with_capacity(cards.len());
+    let mut headings = Vec::new();
+    for group in Group::ALL {
+        headings.push((lines.len(), group.name()));
+        for first in cards.iter().filter(|card| card.group == group && !is_member(card)) {
+            lines.push((2, first));
+            let members = cards.iter().filter(|card| card.name != first.name && card.family == first.name);
+            lines.extend(members.map(|member| (4, member)));
+        }
+    }
+    let names = lines.iter().map(|(indent, card)| indent + card.name.chars().count()).max().unwrap_or(0);
+    let titles = lines.iter().map(|(_, card)| card.title.chars().count()).max().unwrap_or(0).min(40);
+    let mut page = Page::default();
+    for (i, (indent, card)) in lines.iter().enumerate() {
+        for (_, heading) in headings.iter().filter(|(at, _)| *at == i) {
+            page.line("");
+            page.line(heading);
+        }
+        let named = format!("{:indent$}{}", "", card.name);
+        let before = format!("{named:names$}  {:titles$}  ", card.title);
+        let room = WIDTH.saturating_sub(before.chars().count());
+        let equation = shortened(parts(card.equation).next().unwrap_or_default(), room);
+        page.line(format!("{before}{equation}").trim_end());
+    }
+    page.text.trim_start_matches('\n').to_owned()
+}
+
+/// A card for programs: owned texts, numbers in the units in which they are shown.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CardDocument {
+    /// Name in commands, files and reports.
+    pub name: String,
+    /// The family it counts under.
+    pub family: String,
+    /// A heading.
+    pub title: String,
+    /// What happens physically.
+    pub about: String,
+    /// The equation in plain text.
+    pub equation: String,
+    /// Its parameters.
+    pub parameters: Vec<ParameterDocument>,
+    /// What kind of thing it is.
+    pub group: Group,
+    /// Where it acts.
+    pub stage: Stage,
+    /// The family of muscle that has it; both if none.
+    pub kind: Option<Kind>,
+    /// How it shows in a residual.
+    pub signature: SignatureDocument,
+    /// What it is confused with.
+    pub twins: Vec<TwinDocument>,
+    /// The experiment that separates it from its twins.
+    pub separate: String,
+    /// What the data must have.
+    pub needs: Needs,
+    /// Where the equation comes from.
+    pub source: String,
+    /// How reliable that is.
+    pub evidence: Evidence,
+}
+
+/// How an effect shows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SignatureDocument {
+    /// Power of the pressure, in words.
+    pub pressure: String,
+    /// Parity in the direction of motion.
+    pub parity: Parity,
+    /// Dependence on the contraction in words.
+    pub shape: String,
+}
+
+/// An effect that data may not tell from another.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TwinDocument {
+    /// Its name.
+    pub name: String,
+    /// How near it is.
+    pub how: String,
+}
+
+/// A parameter with its numbers in `unit`, or as multiples where `multiple_of` names one of the muscle's own numbers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ParameterDocument {
+    /// Name in results.
+    pub name: String,
+    /// Key in a muscle file.
+    pub key: String,
+    /// Unit.
+    pub unit: String,
+    /// The muscle's number of which the others are multiples.
+    pub multiple_of: Option<&'static str>,
+    /// Bounds of a fit.
+    pub low: f64,
+    /// Bounds of a fit.
+    pub high: f64,
+    /// A usual value.
+    pub typical: f64,
+    /// The value at which the effect does nothing.
+    pub off: f64,
+    /// Mean and standard deviation on the scale of the literature.
+    pub prior: Option<[f64; 2]>,
+    /// The range outside which the value is no cure.
+    pub plausible: Option<[f64; 2]>,
+    /// Whether a fit runs over its logarithm.
+    pub logarithmic: bool,
+    /// Name and unit of its reciprocal, where that is shown too.
+    pub reciprocal: Option<[String; 2]>,
+    /// What it is.
+    pub about: String,
+}
+
+impl CardDocument {
+    /// Of an effect.
+    #[must_use]
+    pub fn of(effect: &dyn Effect) -> Self {
+        let card = effect.card();
+        let twins = card.twins.iter().map(|t| TwinDocument { name: t.name.to_owned(), how: t.how.to_owned() });
+        let Signature { pressure, parity, shape } = card.signature;
+        Self {
+            name: card.name.to_owned(),
+            family: card.family.to_owned(),
+            title: card.title.to_owned(),
+            about: card.about.to_owned(),
+            equation: card.equation.to_owned(),
+            parameters: effect.parameters().iter().map(ParameterDocument::of).collect(),
+            group: card.group,
+            stage: card.stage,
+            kind: card.kind,
+            signature: SignatureDocument { pressure: pressure.to_owned(), parity, shape: shape.to_owned() },
+            twins: twins.collect(),
+            separate: card.separate.to_owned(),
+            needs: card.needs,
+            source: card.source.to_owned(),
+            evidence: card.evidence,
+        }
+    }
+}
+
+impl ParameterDocument {
+    fn of(card: &ParameterCard<'_>) -> Self {
+        let factor = if card.relative_to.is_some() { 1.0 } else { card.factor };
+        // As a person would write it: 0.3 MPa, not 0.30000000000000004.
+        let shown = |si: f64| format!("{:.11e}", si / factor).parse().unwrap_or(si / factor);
+        let pair = |(a, b): (f64, f64)| [shown(a), shown(b)];
+        Self {
+            name: card.name.to_owned(),
+            key: card.key.to_owned(),
+            unit: card.unit.to_owned(),
+            multiple_of: card.relative_to.map(bulge_muscles::Parameter::name),
+            low: shown(card.low),
+            high: shown(card.high),
+            typical: shown(card.typical),
+            off: shown(card.off),
+            prior: card.prior.map(pair),
+            plausible: card.plausible.map(pair),
+            logarithmic: card.logarithmic,
+            reciprocal: card.reciprocal.map(|(name, unit, _)| [name.to_owned(), unit.to_owned()]),
+            about: card.about.to_owned(),
+        }
+    }
+
+    /// What it is, its range and the rest in one sentence.
+    fn says(&self) -> String {
+        let mut says = self.about.clone();
+        let times = self.multiple_of.map_or(String::new(), |of| format!(" times the {}", of.replace('_', " ")));
+        says += &format!(": {} to {}{times}", digits(self.low), digits(self.high));
+        if self.typical.to_bits() != self.off.to_bits() {
+            says += &format!(", usually {}", digits(self.typical));
+        }
+        says += &format!("; off at {}", digits(self.off));
+        if let Some([mean, sd]) = self.prior {
+            says += &format!("; expected {} +- {}", digits(mean), digits(sd));
+        }
+        if let Some([low, high]) = self.plausible {
+            says += &format!("; no cure outside {} to {}", digits(low), digits(high));
+        }
+        if let Some([name, unit]) = &self.reciprocal {
+            says += &format!("; also shown as {name} in {unit}");
+        }
+        if self.logarithmic {
+            says += "; fitted over its logarithm";
+        }
+        says
+    }
+}
+
+/// Group, family, muscles and stage of an effect.
+fn belongs(card: &Card<'_>) -> String {
+    let muscles = card.kind.map_or("pleated and braided", Kind::name);
+    let family =
+        if card.family == card.name { String::new() } else { format!(", counts under {}", card.family) };
+    let acts = match card.stage {
+        Stage::Shape => "changes the muscle whose equilibrium is solved",
+        Stage::Input => "changes what reaches the muscle",
+        Stage::Load => "adds a force to that of the equilibrium",
+        Stage::Output => "changes what the load cell reads",
+    };
+    format!("{}{family}; {muscles} muscles; {acts}", card.group.name())
+}
+
+/// The signature in words.
+fn shows(signature: &Signature<'_>) -> String {
+    let pressure = match signature.pressure {
+        "0" => "independent of the pressure".to_owned(),
+        "1" => "proportional to the pressure".to_owned(),
+        "2" => "with the square of the pressure".to_owned(),
+        "any" => "with any power of the pressure".to_owned(),
+        other => format!("with powers {other} of the pressure"),
+    };
+    let parity = match signature.parity {
+        Parity::Even => "the same in both directions",
+        Parity::Odd => "changes sign with the direction",
+        Parity::Mixed => "different in the two directions",
+    };
+    format!("{pressure}, {parity}; over the contraction: {}", signature.shape)
+}
+
+/// The parts of an equation: two blanks or more, or a new line, stand between them.
+fn parts(equation: &str) -> impl Iterator<Item = &str> {
+    equation.split("  ").flat_map(str::lines).map(str::trim).filter(|part| !part.is_empty())
+}
+
+/// The beginning of a text that fits, cut at a blank.
+fn shortened(text: &str, room: usize) -> String {
+    let text = text.trim_end_matches([',', ';']);
+    if text.chars().count() <= room {
+        return text.to_owned();
+    }
+    if room < LEAST_EQUATION {
+        return String::new();
+    }
+    let cut: String = text.chars().take(room - 3).collect();
+    let kept = cut.rfind(' ').map_or(cut.as_str(), |at| &cut[..at]);
+    format!("{} ...", kept.trim_end_matches([' ', ',', ';', '=', '+', '-', '*', '/']))
+}
+
+/// A number with six significant digits at most.
+fn digits(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    if rounded != 0.0 && !(1e-4..1e7).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
+}
+
+/// Text in lines of [`WIDTH`].
+#[derive(Debug, Default)]
+struct Page {
+    text: String,
+}
+
+impl Page {
+    fn line(&mut self, line: &str) {
+        self.text += line;
+        self.text.push('\n');
+    }
+
+    /// Running text, the first line indented by `first`, the others by `rest`.
+    fn paragraph(&mut self, first: usize, rest: usize, text: &str) {
+        self.hanging(&" ".repeat(first), rest, text);
+    }
+
+    /// Running text after what stands before it on the first line.
+    fn hanging(&mut self, before: &str, rest: usize, text: &str) {
+        let mut line = before.to_owned();
+        let mut is_empty = true;
+        for word in text.split_whitespace() {
+            let blank = usize::from(!is_empty);
+            if !is_empty && line.chars().count() + blank + word.chars().count() > WIDTH {
+                self.line(line.trim_end());
+                line = " ".repeat(rest);
+                is_empty = true;
+            }
+            if !is_empty {
+                line.push(' ');
+            }
+            line += word;
+            is_empty = false;
+        }
+        self.line(line.trim_end());
+    }
+
+    fn item(&mut self, label: &str, text: &str) {
+        self.hanging(&format!("{label:LABEL$}"), LABEL, text);
+    }
+
+    fn parameters(&mut self, cards: &[ParameterCard<'_>]) {
+        if cards.is_empty() {
+            self.paragraph(2, 2, "no parameter: it is there or not");
+        }
+        let name = cards.iter().map(|card| card.name.chars().count()).max().unwrap_or(0);
+        let unit = cards.iter().map(|card| card.unit.chars().count() + 2).max().unwrap_or(0);
+        for card in cards {
+            let first = format!("  {:name$}  {:unit$}  ", card.name, format!("[{}]", card.unit));
+            self.hanging(&first, name + unit + 6, &ParameterDocument::of(card).says());
+        }
+        self.line("");
+    }
+}

@@ -1,0 +1,87 @@
+//! What is wrong with a formula: where it is, what it is, and what to write instead.
+
+use bulge_muscles::FileError;
+use std::ops::Range;
+use thiserror::Error;
+
+/// What is wrong with a formula. Its `Display` is the whole message:
+///
+/// ```text
+/// formula:1:5: unknown name `epss`
+///   |
+/// 1 | k * epss
+///   |     ^^^^
+///   = did you mean `eps`?
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{message}")]
+pub struct ExpressionError {
+    span: Range<usize>,
+    message: FileError,
+}
+
+impl ExpressionError {
+    pub(crate) fn new(
+        text: &str,
+        span: Range<usize>,
+        what: impl Into<String>,
+        instead: impl Into<String>,
+    ) -> Self {
+        Self { message: FileError::at("formula", text, span.clone(), what, instead), span }
+    }
+
+    /// The bytes of the formula that it is about.
+    #[must_use]
+    pub fn span(&self) -> Range<usize> {
+        self.span.clone()
+    }
+
+    /// The line, counted from 1.
+    #[must_use]
+    pub fn line(&self) -> usize {
+        self.message.line().unwrap_or(1)
+    }
+
+    /// The column in characters, counted from 1.
+    #[must_use]
+    pub fn column(&self) -> usize {
+        self.message.column().unwrap_or(1)
+    }
+
+    /// What is wrong, in one sentence.
+    #[must_use]
+    pub fn what(&self) -> &str {
+        self.message.what()
+    }
+
+    /// What to write instead.
+    #[must_use]
+    pub fn instead(&self) -> &str {
+        self.message.instead()
+    }
+}
+
+/// A quotation for a message: at most 40 characters, on one line, without control characters.
+pub(crate) fn quoted(text: &str) -> String {
+    let text = text.trim();
+    let blank = |c: char| if c.is_whitespace() || c.is_control() { ' ' } else { c };
+    let mut out: String = text.chars().take(40).map(blank).collect();
+    if text.chars().nth(40).is_some() {
+        out.push('\u{2026}');
+    }
+    out
+}
+
+/// The name that was probably meant: the same but for case and hyphens, or a slip or two away.
+pub(crate) fn nearest<'n>(word: &str, names: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+    let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
+    let word = plain(word);
+    let length = word.chars().count();
+    // A long word is no slip of a short name, and comparing it would take long.
+    if length > 64 {
+        return None;
+    }
+    let slips = |name: &str| strsim::damerau_levenshtein(&plain(name), &word);
+    let closest = names.into_iter().map(|name| (slips(name), name)).min_by_key(|(slips, _)| *slips);
+    closest.filter(|(slips, _)| *slips <= (length / 3).max(usize::from(length == 2))).map(|(_, name)| name)
+}

@@ -1,0 +1,192 @@
+//! Formulas in text for effects of one's own: `-mu * p * (1 - eps) * direction + k * max(0, eps - eps_c)^2`.
+//!
+//! A formula is read once, checked for its units, and then computed any number of times with exact derivatives.
+//!
+//! - Numbers, with a unit in brackets where they have one: `3 [N]`, `0.1 [N/mm^2]`. The constant `pi`.
+//! - The variables of [`VARIABLES`], and parameters.
+//! - `+ - * / ^` (`a^b^c` is `a^(b^c)`, `-x^2` is `-(x^2)`) and parentheses.
+//! - `sqrt exp ln log10 sin cos tan asin atan tanh sinh cosh abs sign min max step clamp`, and `if(a < b, x, y)` with
+//!   `< <= > >=`.
+//!
+//! Where a formula has a kink, its derivative is that of the branch that counts: of equal arguments of `min` and `max`
+//! the first; within `clamp` up to and including its limits; `abs`, `sqrt` and powers between 0 and 1 have the
+//! derivative 0 at 0, `asin` at -1 and 1; `sign` and `step` have the derivative 0 everywhere.
+
+mod compile;
+mod display;
+mod elementary;
+mod error;
+mod function;
+mod lexer;
+mod node;
+mod parser;
+mod program;
+mod variable;
+
+pub use error::ExpressionError;
+pub(crate) use error::{nearest, quoted};
+pub use variable::{VARIABLES, Variable, variable_index};
+
+use bulge_muscles::Dimension;
+use bulge_numerics::Real;
+use function::Function;
+use node::{Node, Part};
+use program::Program;
+use std::fmt;
+
+/// How deep parentheses, functions, signs and exponents may stand within each other.
+pub const MAX_DEPTH: usize = 64;
+/// How many numbers, names and operators a formula may have.
+pub const MAX_NODES: usize = 4096;
+/// How many bytes a formula may have.
+pub const MAX_BYTES: usize = 16 << 10;
+
+/// A formula whose units are right.
+///
+/// ```
+/// use bulge_effects::expression::{Expression, VARIABLES, variable_index};
+/// use bulge_muscles::Dimension;
+/// use bulge_numerics::Dual;
+///
+/// let formula = Expression::parse("-k * max(0, eps - 10 [%])^2", &[("k", Dimension::FORCE)], Dimension::FORCE)?;
+/// let mut state = [Dual::<2>::from(0.0); VARIABLES.len()];
+/// state[variable_index("eps").unwrap()] = Dual::variable(0.3, 0);
+/// let force = formula.evaluate(&state, &[Dual::variable(50.0, 1)]);
+/// assert!((force.gradient()[0] + 2.0 * 50.0 * 0.2).abs() < 1e-12);
+///
+/// let error = Expression::parse("p + eps", &[], Dimension::FORCE).unwrap_err();
+/// assert_eq!(error.what(), "`p` (Pa) cannot be added to `eps` (1)");
+/// # Ok::<(), bulge_effects::expression::ExpressionError>(())
+/// ```
+///
+/// Two formulas are equal if they take the same steps with the same parameters.
+#[derive(Debug, Clone)]
+pub struct Expression {
+    text: String,
+    nodes: Vec<Node>,
+    parameters: Vec<String>,
+    dimension: Dimension,
+    program: Program,
+}
+
+impl Expression {
+    /// Reads a formula over [`VARIABLES`] and these parameters, each with its dimension; it must have the dimension
+    /// `result`.
+    ///
+    /// Numbers are pure unless they have a unit; a plain 0 fits any dimension.
+    ///
+    /// # Errors
+    /// With the place and the cure, if the text is larger than [`MAX_BYTES`], deeper than [`MAX_DEPTH`] or longer than
+    /// [`MAX_NODES`], is no formula, uses an unknown name or has units that do not fit; also if a parameter has a name
+    /// that [`check_name`] refuses or that occurs twice.
+    pub fn parse(
+        text: &str,
+        parameters: &[(&str, Dimension)],
+        result: Dimension,
+    ) -> Result<Self, ExpressionError> {
+        if text.len() > MAX_BYTES {
+            let what = format!("the formula has {} bytes, but at most {MAX_BYTES} are read", text.len());
+            return Err(ExpressionError::new(
+                text,
+                0..0,
+                what,
+                "write several effects, each with a part of it",
+            ));
+        }
+        let names: Vec<&str> = parameters.iter().map(|(name, _)| *name).collect();
+        for (index, name) in names.iter().enumerate() {
+            let twice = || Err(format!("there are two parameters `{name}`"));
+            check_name(name)
+                .and_then(|()| if names[..index].contains(name) { twice() } else { Ok(()) })
+                .map_err(|what| ExpressionError::new(text, 0..0, what, "rename the parameter"))?;
+        }
+        let nodes = parser::parse(text, &names)?;
+        let variable = |index: usize| VARIABLES.get(index).map_or(Dimension::NONE, |known| known.dimension);
+        let parameter =
+            |index: usize| parameters.get(index).map_or(Dimension::NONE, |(_, dimension)| *dimension);
+        let program = compile::compile(text, &nodes, variable, parameter, result)?;
+        let parameters = names.into_iter().map(str::to_owned).collect();
+        Ok(Self { text: text.to_owned(), nodes, parameters, dimension: result, program })
+    }
+
+    /// The text as it was written; `Display` writes it in one form, which reads as an equal formula.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Names of the parameters, in the order of their values.
+    #[must_use]
+    pub fn parameters(&self) -> &[String] {
+        &self.parameters
+    }
+
+    /// Dimension of the value.
+    #[must_use]
+    pub fn dimension(&self) -> Dimension {
+        self.dimension
+    }
+
+    /// Whether the parameter of this place occurs.
+    #[must_use]
+    pub fn uses_parameter(&self, index: usize) -> bool {
+        self.nodes.iter().any(|node| node.part == Part::Parameter(index))
+    }
+
+    /// Whether the variable of this place in [`VARIABLES`] occurs.
+    #[must_use]
+    pub fn uses_variable(&self, index: usize) -> bool {
+        self.nodes.iter().any(|node| node.part == Part::Variable(index))
+    }
+
+    /// The value in SI, for the values of [`VARIABLES`] and of the parameters in SI, each in its order.
+    ///
+    /// Numbers with derivatives ([`bulge_numerics::Dual`]) give a value with exact derivatives. Nothing is allocated.
+    /// Where the formula has no value, such as the logarithm or a real power of a negative number or a division by 0,
+    /// the answer is not finite, which the caller checks; also where a value is missing.
+    pub fn evaluate<D: Real>(&self, variables: &[D], parameters: &[D]) -> D {
+        self.program.run(variables, parameters)
+    }
+}
+
+/// Whether a parameter may have this name: letters a to z, digits and `_`, not first a digit, and no variable, function
+/// or constant.
+///
+/// # Errors
+/// A sentence that says why not.
+pub fn check_name(name: &str) -> Result<(), String> {
+    let shown = quoted(name);
+    let is_word = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if name.is_empty() || name.len() > 64 || !is_word || name.starts_with(|c: char| c.is_ascii_digit()) {
+        return Err(format!(
+            "`{shown}` is no name of a parameter: write letters from a to z, digits and `_`, first a letter, at most 64"
+        ));
+    }
+    if let Some(variable) = variable_index(name).and_then(|index| VARIABLES.get(index)) {
+        return Err(format!("`{shown}` is a variable already: {}", variable.meaning));
+    }
+    if Function::named(name).is_some() || name == "pi" {
+        let kind = if name == "pi" { "constant" } else { "function" };
+        return Err(format!("`{shown}` is a {kind} already"));
+    }
+    Ok(())
+}
+
+impl PartialEq for Expression {
+    fn eq(&self, other: &Self) -> bool {
+        self.parameters == other.parameters
+            && self.dimension == other.dimension
+            && self.program == other.program
+    }
+}
+
+impl fmt::Display for Expression {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let written = display::written(&self.text, &self.nodes, &self.parameters);
+        // Blanks could make a long formula too long to be read again.
+        f.pad(if written.len() > MAX_BYTES { &self.text } else { &written })
+    }
+}
+
+#[cfg(test)]
+mod tests;

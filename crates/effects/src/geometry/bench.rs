@@ -1,0 +1,21 @@
+//! For tests of shape effects: muscles and the force of their equilibrium.
+
+use bulge_fibre::{Approach, Problem};
+use bulge_muscles::{Angle, Braided, Construction, Ends, Length, Muscle, Pressure, preset};
+
+/// The textbook cylinder of a muscle of 20 mm: r0 = 10 mm, 25 deg, 250 mm.
+pub(crate) fn cylinder() -> Muscle {
+    let braided = Braided::new(Length::mm(10.0), Angle::deg(25.0)).unwrap().with_ends(Ends::Cylinder);
+    Muscle::new("cylinder", Length::mm(250.0), Construction::Braided(braided)).unwrap()
+}
+
+/// The second-generation PPAM: R = 16 mm, 110 mm, 40 fibres.
+pub(crate) fn pleated() -> Muscle {
+    preset("ppam-2-r16").unwrap()
+}
+
+/// Force of the equilibrium \[N\] at a pressure in bar.
+pub(crate) fn force(muscle: &Muscle, bar: f64, contraction: f64) -> f64 {
+    let problem = Problem::new(muscle, Pressure::bar(bar)).unwrap();
+    problem.follow(contraction, Approach::Auto).unwrap().force_n
+}

@@ -1,0 +1,83 @@
+//! Braid angle error: the fibres run at another angle at rest than stated (catalogue G14).
+
+use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::unit::DEGREE;
+
+/// `alpha0 -> alpha0 + error` in the equilibrium of the net.
+#[derive(Debug)]
+pub(crate) struct BraidAngleError;
+
+impl Effect for BraidAngleError {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "braid-angle-error",
+            family: "braid-angle-error",
+            title: "Angle of the braid",
+            about: "The fibres run at another angle to the axis than stated. Half a degree too steep costs 5 % of the force at full length \
+                    and moves the contraction at which the muscle stops pulling.",
+            equation: "alpha0 -> alpha0 + error;   on a cylinder F = pi r0^2 p (3 (1 - eps)^2/tan^2(alpha0) - 1/sin^2(alpha0))",
+            source: "derivative of S2 eq. 12; 23.5 to 28.6 deg are reported for muscles of the same make (S5 and later work)",
+            evidence: Evidence::Derived,
+            group: Group::Geometry,
+            stage: Stage::Shape,
+            kind: Some(Kind::Braided),
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Even,
+                shape: "3 (1 - eps)^2 - 1: largest at eps = 0, zero where the fibres cross at their neutral angle",
+            },
+            twins: &[
+                Twin { name: "radius-error", how: "together they are all that the force of a cylinder shows" },
+                Twin { name: "fibre-length", how: "absorbed once radius and angle are calibrated" },
+                Twin { name: "displacement-gain", how: "near" },
+                Twin { name: "end-factor", how: "near" },
+            ],
+            separate: "measure fibre length and turns of a dissected muscle; a photograph of the braid at rest",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "true angle at rest minus the stated one";
+        vec![
+            ParameterCard::new("error", DEGREE, (-12.0, 12.0), 0.0, about).prior(0.0, 0.5).plausible(-1.5, 1.5),
+        ]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+
+    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
+        let stated = muscle.get(Parameter::BraidAngle).unwrap_or(0.0);
+        Reshaped::setting(muscle, &[(Parameter::BraidAngle, stated + theta[0])])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::bench::{cylinder, force};
+    use bulge_muscles::preset;
+
+    #[test]
+    fn half_a_degree_is_five_per_cent() {
+        let muscle = cylinder();
+        let steep = BraidAngleError.reshape(&muscle, &[0.5_f64.to_radians()]).unwrap();
+        assert_eq!(steep.moves, [(0, Parameter::BraidAngle, 1.0)]);
+        let shape = |degrees: f64| {
+            let (s, c) = degrees.to_radians().sin_cos();
+            (3.0 * c * c - 1.0) / (s * s)
+        };
+        let ratio = force(&steep.muscle, 3.0, 0.0) / force(&muscle, 3.0, 0.0);
+        assert!((ratio - shape(25.5) / shape(25.0)).abs() < 1e-9);
+        assert!((ratio - 0.950).abs() < 2e-3, "{ratio}");
+    }
+
+    #[test]
+    fn angles_that_are_none_and_other_muscles_are_refused() {
+        assert!(BraidAngleError.reshape(&cylinder(), &[-0.5]).is_err());
+        assert!(BraidAngleError.reshape(&preset("ppam-2-r16").unwrap(), &[0.01]).is_err());
+    }
+}

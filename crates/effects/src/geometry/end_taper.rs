@@ -1,0 +1,127 @@
+//! End taper: the ends of the braid are clamped, not cylindrical (catalogue G11; theory of Adkins and Rivlin, Liu and Rahn).
+
+use bulge_muscles::{Construction, Ends, Kind, Muscle, MuscleError, Parameter};
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+
+/// `ends = "cylinder"` becomes `ends = "clamped"`: the exact shape of the net; no parameter.
+#[derive(Debug)]
+pub(crate) struct EndTaper;
+
+impl Effect for EndTaper {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "end-taper",
+            family: "end-taper",
+            title: "Taper at the clamped ends",
+            about: "The textbook formula takes the muscle for a cylinder up to its fittings. Really the braid is clamped there and swells over \
+                    a length of some radii, so that the middle is more contracted than the muscle as a whole. A muscle of 25 radii loses an \
+                    eighth of its force at 20 % by it, one of 3 radii four fifths. There is nothing to fit: the shape follows from the net.",
+            equation: "1 - eps = cos(theta_c)/cos(alpha0) + delta/l0,   F = pi p r0^2 (3 cos^2(theta_c) - 1)/sin^2(alpha0); \
+                       delta: what the two ends lack to a cylinder, from the equilibrium of the clamped net",
+            source: "equilibrium of the pinned net, as Adkins and Rivlin 1955, Liu and Rahn 2003; checked by an independent energy method",
+            evidence: Evidence::Derived,
+            group: Group::Geometry,
+            stage: Stage::Shape,
+            kind: Some(Kind::Braided),
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Even,
+                shape: "dF/d eps times the taper's length: grows with eps, levels off near 15 %",
+            },
+            twins: &[
+                Twin { name: "wall-thickness", how: "-0.995" },
+                Twin { name: "end-factor", how: "0.983" },
+                Twin { name: "length-zero-error", how: "0.98" },
+                Twin { name: "displacement-gain", how: "0.98" },
+            ],
+            separate: "two lengths of the same hose (0.98 falls to 0.57); a photograph of the profile",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        Vec::new()
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+
+    fn reshape(&self, muscle: &Muscle, _: &[f64]) -> Result<Reshaped, MuscleError> {
+        match muscle.construction() {
+            Construction::Braided(braided) if braided.ends() == Ends::Cylinder => {
+                let clamped = Construction::Braided(braided.with_ends(Ends::Clamped));
+                Ok(Reshaped { muscle: rebuilt(muscle, clamped)?, moves: Vec::new() })
+            }
+            _ => Ok(Reshaped::unchanged(muscle)),
+        }
+    }
+}
+
+/// The same muscle of another construction of its family.
+fn rebuilt(muscle: &Muscle, construction: Construction) -> Result<Muscle, MuscleError> {
+    let mut new = Muscle::new(muscle.name(), muscle.length(), construction)?;
+    if let Some(fibre) = muscle.fibre() {
+        new = new.with_fibre(fibre)?;
+    }
+    if let Some(bladder) = muscle.bladder() {
+        new = new.with_bladder(bladder)?;
+    }
+    if let Some(unfolding) = muscle.unfolding() {
+        new = new.with_unfolding(unfolding);
+    }
+    if let Some(wall) = muscle.gas_wall() {
+        new = new.with_gas_wall(muscle.is_stated(Parameter::GasWall).then_some(wall))?;
+    }
+    new = new.with_instruments(*muscle.instruments());
+    for &(parameter, width) in muscle.widths() {
+        new = new.with_width(parameter, width)?;
+    }
+    Ok(new)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::bench::{cylinder, force};
+    use bulge_muscles::{
+        Bladder, Fibre, Force, Instrument, Instruments, Length, LineStiffness, Pressure, Ratio, Unfolding,
+        preset,
+    };
+
+    #[test]
+    fn clamped_ends_cost_what_an_independent_method_says() {
+        let muscle = cylinder();
+        assert!((force(&muscle, 3.0, 0.2) - 304.5).abs() < 0.05);
+        for (length, expected) in [(0.25, 265.7), (0.06, 159.3), (0.03, 60.7)] {
+            let short = muscle.with(Parameter::Length, length).unwrap();
+            let clamped = EndTaper.reshape(&short, &[]).unwrap();
+            assert!(clamped.moves.is_empty());
+            assert!((force(&clamped.muscle, 3.0, 0.2) - expected).abs() < 0.05, "{length}");
+        }
+    }
+
+    #[test]
+    fn nothing_else_changes() {
+        let fibre = Fibre::new(Force::kn(2.0)).unwrap();
+        let bladder = Bladder::new(Pressure::mpa(0.3), Pressure::mpa(0.1), Length::mm(2.0)).unwrap();
+        let unfolding = Unfolding::new(LineStiffness::kn_per_m(81.0), Length::mm(52.6)).unwrap();
+        let noise = Instrument::new(4.0, 1.0, Ratio::percent(0.1)).unwrap();
+        let full = cylinder().with(Parameter::Fibres, 60.0).unwrap().with(Parameter::Wall, 0.002).unwrap();
+        let full = full.with_fibre(fibre).unwrap().with_bladder(bladder).unwrap().with_unfolding(unfolding);
+        let full = full.with_instruments(Instruments { force: Some(noise), ..Instruments::default() });
+        let full = full.with_width(Parameter::Length, 2e-4).unwrap();
+        for full in [full.clone().with_gas_wall(None).unwrap(), full.with(Parameter::GasWall, 1e-3).unwrap()] {
+            let clamped = EndTaper.reshape(&full, &[]).unwrap().muscle;
+            assert_eq!(format!("{clamped:?}"), format!("{full:?}").replace("Cylinder", "Clamped"));
+        }
+    }
+
+    #[test]
+    fn what_is_clamped_or_pleated_stays() {
+        for name in ["dmsp-20-250", "ppam-2-r16"] {
+            let muscle = preset(name).unwrap();
+            assert_eq!(EndTaper.reshape(&muscle, &[]).unwrap().muscle, muscle);
+        }
+    }
+}

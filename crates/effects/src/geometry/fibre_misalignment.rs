@@ -1,0 +1,84 @@
+//! Fibre misalignment: the fibres of a pleated muscle run as a slight helix (catalogue G7).
+
+use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::unit::DEGREE;
+
+/// `sin(theta) = r sin(gamma)/R` in the equilibrium of the net.
+#[derive(Debug)]
+pub(crate) struct FibreMisalignment;
+
+impl Effect for FibreMisalignment {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "fibre-misalignment",
+            family: "fibre-misalignment",
+            title: "Fibres laid at an angle",
+            about: "The fibres don't run along the meridians but as a slight helix, a braid of very small angle. The further out they get, the \
+                    more of their length goes around the muscle, and the force falls. One sense of the helix twists the muscle; the force is \
+                    the same for both, so a small angle acts with its square.",
+            equation: "sin(theta) = (r/R) sin(gamma),   fibre length l0/cos(gamma);   dF ~ gamma^2, so its derivative at 0 vanishes",
+            source: "equilibrium of the net, derived; the law of pinned crossings",
+            evidence: Evidence::Derived,
+            group: Group::Geometry,
+            stage: Stage::Shape,
+            kind: Some(Kind::Pleated),
+            signature: Signature { pressure: "1", parity: Parity::Even, shape: "as the force, the loss growing with eps" },
+            twins: &[
+                Twin { name: "pressure-gain", how: "0.999" },
+                Twin { name: "fibre-count", how: "0.999" },
+                Twin { name: "lobes", how: "0.956 far from the stop" },
+                Twin { name: "end-radius", how: "near" },
+            ],
+            separate: "look along the muscle: twist or torque under pressure; a photograph of the fibres",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "angle gamma between fibre and meridian at the fitting; replaces an angle that the muscle states";
+        vec![
+            ParameterCard::new("angle", DEGREE, (0.0, 10.0), 3.0, about).prior(0.0, 3.0).plausible(0.0, 6.0),
+        ]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+
+    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
+        // At 0 nothing moves: the force is even in the angle.
+        if theta[0] == 0.0 {
+            return Ok(Reshaped::unchanged(muscle));
+        }
+        Reshaped::setting(muscle, &[(Parameter::Misalignment, theta[0])])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::bench::{force, pleated};
+
+    #[test]
+    fn the_loss_is_even_in_the_angle_and_goes_with_its_square() {
+        let muscle = pleated();
+        let loss = |degrees: f64, contraction: f64| {
+            let helix = FibreMisalignment.reshape(&muscle, &[degrees.to_radians()]).unwrap().muscle;
+            force(&helix, 1.0, contraction) - force(&muscle, 1.0, contraction)
+        };
+        for contraction in [0.1, 0.2] {
+            let [one, two, back] = [1.0, 2.0, -2.0].map(|angle| loss(angle, contraction));
+            assert!(one < 0.0 && (two - back).abs() < 1e-6 * two.abs(), "{two} {back}");
+            assert!((two / one - 4.0).abs() < 0.05, "{}", two / one);
+        }
+    }
+
+    #[test]
+    fn straight_fibres_are_the_same_muscle() {
+        assert_eq!(FibreMisalignment.reshape(&pleated(), &[0.0]).unwrap(), Reshaped::unchanged(&pleated()));
+        let helix = FibreMisalignment.reshape(&pleated(), &[0.05]).unwrap();
+        assert_eq!(helix.muscle.get(Parameter::Misalignment), Some(0.05));
+        assert_eq!(helix.moves, [(0, Parameter::Misalignment, 1.0)]);
+    }
+}

@@ -1,0 +1,87 @@
+//! Lobes: inextensible cloth bulges between the fibres and stops the unfolding (catalogue G5).
+
+use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::unit::MILLIMETRE;
+
+/// Cloth of circumference `C_f` stands in n circular lobes outside the polygon of the fibres.
+#[derive(Debug)]
+pub(crate) struct Lobes;
+
+impl Effect for Lobes {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "lobes",
+            family: "lobes",
+            title: "Lobes of cloth between the fibres",
+            about: "The cloth between two fibres is longer than their distance and bulges into a lobe, which adds up to 12 % of area to the \
+                    polygon. As the muscle swells the lobes flatten, and near the radius at which they are gone the cloth holds the muscle \
+                    back: the force falls off at large contractions.",
+            equation: "s = C_f/n, w = r sin(pi/n), sin(b)/b = 2 w/s, rho = s/(2 b), b <= 90 deg: \
+                       A = (n/2) sin(2 pi/n) r^2 + n rho^2 (b - sin(b) cos(b));   stop at r = C_f/(2 n sin(pi/n)); \
+                       deeper cloth stands in semicircles on pleats",
+            source: "geometry and virtual work, derived",
+            evidence: Evidence::Derived,
+            group: Group::Geometry,
+            stage: Stage::Shape,
+            kind: Some(Kind::Pleated),
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Even,
+                shape: "some per cent more, then a steep loss as the equator nears C_f/(2 pi)",
+            },
+            twins: &[
+                Twin { name: "fibre-misalignment", how: "0.956 far from the stop" },
+                Twin { name: "pressure-gain", how: "near, far from the stop" },
+                Twin { name: "limited-unfolding", how: "the same with cloth that stretches" },
+                Twin { name: "pleat-depth", how: "near, far from the stop" },
+            ],
+            separate: "measure the diameter at mid-length up to the largest contractions; measure the cloth",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "circumference C_f of the cloth; 0: flat between the fibres, without limit. \
+                     There is no small effect: between 0 and 2 pi R there is no muscle";
+        let card = ParameterCard::multiple("circumference", MILLIMETRE, Parameter::Radius, (8.0, 75.0), about);
+        vec![ParameterCard { typical: 25.0, ..card }.off_at(0.0).prior(25.0, 8.0).plausible(15.0, 45.0)]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+
+    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
+        if theta[0] == 0.0 {
+            return Ok(Reshaped::unchanged(muscle));
+        }
+        Reshaped::setting(muscle, &[(Parameter::ClothCircumference, theta[0])])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::bench::{force, pleated};
+    use bulge_muscles::preset;
+
+    #[test]
+    fn cloth_holds_the_muscle_back() {
+        let muscle = pleated();
+        // The equator of the muscle without lobes is at 44.8 mm at 20 % and at 53.6 mm at 40 %: 2 pi 47 mm stops it between.
+        let lobed = Lobes.reshape(&muscle, &[2.0 * std::f64::consts::PI * 0.047]).unwrap();
+        assert_eq!(lobed.moves, [(0, Parameter::ClothCircumference, 1.0)]);
+        let gain = |contraction| force(&lobed.muscle, 1.0, contraction) / force(&muscle, 1.0, contraction);
+        let gains = [0.03, 0.1, 0.2, 0.3].map(gain);
+        assert!(gains[0] > 1.02 && gains[0] < 1.3, "{gains:?}");
+        assert!(gains.is_sorted_by(|a, b| a > b) && gains[3] < 0.9, "{gains:?}");
+    }
+
+    #[test]
+    fn none_is_the_same_muscle_and_a_membrane_has_none() {
+        assert_eq!(Lobes.reshape(&pleated(), &[0.0]).unwrap(), Reshaped::unchanged(&pleated()));
+        assert!(Lobes.reshape(&preset("ppam-1").unwrap(), &[0.4]).is_err());
+        assert!(Lobes.reshape(&preset("dmsp-20-250").unwrap(), &[0.4]).is_err());
+    }
+}

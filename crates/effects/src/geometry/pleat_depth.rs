@@ -1,0 +1,81 @@
+//! Pleat depth: under pressure the crests of the cloth stand outside the fibres (catalogue G3).
+
+use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::unit::MILLIMETRE;
+
+/// `A = (n/2) sin(2 pi/n) (r + h)^2` instead of `r^2`.
+#[derive(Debug)]
+pub(crate) struct PleatDepth;
+
+impl Effect for PleatDepth {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "pleat-depth",
+            family: "pleat-depth",
+            title: "Depth of the pleats under pressure",
+            about: "The crests of the pleats stand outside the fibres and enclose gas there too, so the pressure acts out to r + h. In force \
+                    this is exactly a muscle with fittings of radius R + h: another reading of why the second-generation PPAM, with fibres laid \
+                    at 11.5 mm, pulls like one of 16 mm.",
+            equation: "A(r) = (n/2) sin(2 pi/n) (r + h)^2;   F(R, h) = F(R + h, 0)",
+            source: "equilibrium of the fibres, derived; S1 discusses 11.5 mm against 16 mm",
+            evidence: Evidence::Derived,
+            group: Group::Geometry,
+            stage: Stage::Shape,
+            kind: Some(Kind::Pleated),
+            signature: Signature { pressure: "1", parity: Parity::Even, shape: "dF/dR: more force at small contractions, less at large ones" },
+            twins: &[
+                Twin { name: "end-radius", how: "identical in force; only a photograph of the fibres tells" },
+                Twin { name: "displacement-gain", how: "0.997" },
+            ],
+            separate: "photograph the fibres at the fitting under pressure; neither force nor volume tells",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "height h of the crests above the fibres; replaces a depth that the muscle states";
+        let card = ParameterCard::multiple("depth", MILLIMETRE, Parameter::Radius, (0.0, 0.6), about);
+        vec![ParameterCard { typical: 0.25, ..card }.off_at(0.0).prior(0.0, 0.3).plausible(0.0, 0.45)]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+
+    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
+        let stated = muscle.get(Parameter::PleatDepth).unwrap_or(0.0);
+        if theta[0] == 0.0 && stated != 0.0 {
+            return Ok(Reshaped::unchanged(muscle));
+        }
+        Reshaped::setting(muscle, &[(Parameter::PleatDepth, theta[0])])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::bench::{cylinder, force, pleated};
+    use bulge_muscles::preset;
+
+    #[test]
+    fn it_pulls_as_fittings_of_the_radius_of_the_crests() {
+        let narrow = preset("ppam-2-r11.5").unwrap();
+        let deep = PleatDepth.reshape(&narrow, &[0.0045]).unwrap();
+        assert_eq!(deep.moves, [(0, Parameter::PleatDepth, 1.0)]);
+        for contraction in [0.03, 0.1, 0.3] {
+            let (found, expected) = (force(&deep.muscle, 2.0, contraction), force(&pleated(), 2.0, contraction));
+            assert!((found / expected - 1.0).abs() < 1e-9, "{contraction}: {found} {expected}");
+        }
+    }
+
+    #[test]
+    fn no_depth_is_the_same_muscle() {
+        let muscle = pleated();
+        assert_eq!(PleatDepth.reshape(&muscle, &[0.0]).unwrap().muscle, muscle);
+        let deep = muscle.with(Parameter::PleatDepth, 0.001).unwrap();
+        assert_eq!(PleatDepth.reshape(&deep, &[0.0]).unwrap(), Reshaped::unchanged(&deep));
+        assert!(PleatDepth.reshape(&cylinder(), &[0.001]).is_err());
+        assert!(PleatDepth.reshape(&muscle, &[-0.001]).is_err());
+    }
+}

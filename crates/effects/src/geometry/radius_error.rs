@@ -1,0 +1,83 @@
+//! Radius error: the braid has another radius at rest than stated (S5, table 2: three candidates for one muscle).
+
+use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::unit::MILLIMETRE;
+
+/// `r0 -> radius` in the equilibrium of the net; fittings that are not stated separately follow.
+#[derive(Debug)]
+pub(crate) struct RadiusError;
+
+impl Effect for RadiusError {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "radius-error",
+            family: "radius-error",
+            title: "Radius of the braid",
+            about: "The braid lies at another radius than stated: the nominal diameter of a hose is that of its bore, the braid is embedded in \
+                    the wall. In a muscle of 20 mm it was found at 10.7 mm, between a bore of 9.75 and an outside of 11.75 mm; the force goes \
+                    with the square.",
+            equation: "r0 = radius of the braid at rest; on a cylinder F ~ r0^2",
+            source: "S5, table 2: b sin(alpha0)/(2 pi N) = 10.725 mm, the middle of the wall",
+            evidence: Evidence::Derived,
+            group: Group::Geometry,
+            stage: Stage::Shape,
+            kind: Some(Kind::Braided),
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Even,
+                shape: "as the force; with clamped ends a little less at large contractions",
+            },
+            twins: &[
+                Twin { name: "pressure-gain", how: "identical on a cylinder" },
+                Twin { name: "force-gain", how: "identical on a cylinder without bladder" },
+                Twin { name: "braid-angle-error", how: "together they are all that the force of a cylinder shows" },
+            ],
+            separate: "measure fibre length b and turns N of a dissected muscle: r0 = b sin(alpha0)/(2 pi N)",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "radius of the braid at rest";
+        vec![
+            ParameterCard::multiple("radius", MILLIMETRE, Parameter::Radius, (0.5, 2.0), about)
+                .prior(1.0, 0.03)
+                .plausible(0.93, 1.07),
+        ]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+
+    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
+        Reshaped::setting(muscle, &[(Parameter::Radius, theta[0])])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::bench::{cylinder, force};
+    use bulge_muscles::preset;
+
+    #[test]
+    fn the_force_of_a_cylinder_goes_with_the_square() {
+        let muscle = cylinder();
+        let wide = RadiusError.reshape(&muscle, &[0.01 * 1.07]).unwrap();
+        assert_eq!(wide.moves, [(0, Parameter::Radius, 1.0)]);
+        assert!((force(&wide.muscle, 3.0, 0.2) / force(&muscle, 3.0, 0.2) - 1.1449).abs() < 1e-9);
+        // S5's muscle against its nominal radius: 296.2 and 257.5 N per bar.
+        let found = RadiusError.reshape(&muscle, &[0.010_725]).unwrap().muscle;
+        assert!((force(&found, 1.0, 0.0) - 296.2).abs() < 0.1);
+    }
+
+    #[test]
+    fn fittings_follow() {
+        let muscle = preset("dmsp-20-250").unwrap();
+        let wide = RadiusError.reshape(&muscle, &[0.012]).unwrap().muscle;
+        assert_eq!(wide.get(Parameter::FittingRadius), Some(0.012));
+        assert!(RadiusError.reshape(&muscle, &[0.0]).is_err());
+    }
+}

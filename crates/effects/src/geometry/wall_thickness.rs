@@ -1,0 +1,87 @@
+//! Wall thickness: the gas acts inside a wall of constant thickness, not at the braid (Chou and Hannaford 1996; catalogue G9).
+
+use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::unit::MILLIMETRE;
+
+/// `A = pi (r - t)^2` instead of `pi r^2` in the equilibrium of the net.
+#[derive(Debug)]
+pub(crate) struct WallThickness;
+
+impl Effect for WallThickness {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "wall-thickness",
+            family: "wall-thickness",
+            title: "Thickness of the wall",
+            about: "The gas acts on the inner face of the wall, at a smaller radius than the braid. This is the correction for a wall that keeps \
+                    its thickness. Rubber keeps its volume instead: where the stated radius is that of the braid, nothing is to correct, and a \
+                    thickness found here says that the radius is not.",
+            equation: "A(r) = pi (r - t)^2;   on a cylinder dF = pi p (D0 t (2 sin(theta) - 1/sin(theta)) - t^2),   D0 = 2 r0/sin(alpha0)",
+            source: "Chou and Hannaford 1996; formula derived again",
+            evidence: Evidence::Derived,
+            group: Group::Geometry,
+            stage: Stage::Shape,
+            kind: Some(Kind::Braided),
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Even,
+                shape: "2 sin(theta) - 1/sin(theta): a loss that fades as the muscle swells",
+            },
+            twins: &[
+                Twin { name: "end-taper", how: "-0.995" },
+                Twin { name: "end-factor", how: "-0.961" },
+                Twin { name: "radius-error", how: "near" },
+            ],
+            separate: "dissect a muscle: thickness of the wall and depth of the braid in it",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "how far inside the braid the gas acts; replaces a depth that the muscle states";
+        let card = ParameterCard::multiple("thickness", MILLIMETRE, Parameter::Radius, (0.0, 0.5), about);
+        vec![ParameterCard { typical: 0.2, ..card }.off_at(0.0).prior(0.0, 0.2).plausible(0.0, 0.35)]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+
+    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
+        if theta[0] == 0.0 {
+            return Ok(Reshaped::unchanged(muscle));
+        }
+        Reshaped::setting(muscle, &[(Parameter::GasWall, theta[0])])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::bench::{cylinder, force, pleated};
+    use std::f64::consts::PI;
+
+    #[test]
+    fn a_cylinder_loses_what_chou_and_hannaford_say() {
+        let muscle = cylinder();
+        let (thickness, p) = (0.002, 3e5);
+        let thick = WallThickness.reshape(&muscle, &[thickness]).unwrap();
+        assert_eq!(thick.moves, [(0, Parameter::GasWall, 1.0)]);
+        for contraction in [0.0, 0.1, 0.25] {
+            let cos = (1.0 - contraction) * 25.0_f64.to_radians().cos();
+            let sin = (1.0 - cos * cos).sqrt();
+            let across = 2.0 * 0.01 / 25.0_f64.to_radians().sin();
+            let expected = PI * p * (across * thickness * (2.0 * sin - 1.0 / sin) - thickness * thickness);
+            let found = force(&thick.muscle, 3.0, contraction) - force(&muscle, 3.0, contraction);
+            assert!((found / expected - 1.0).abs() < 1e-9, "{contraction}: {found} {expected}");
+        }
+    }
+
+    #[test]
+    fn none_is_the_same_muscle() {
+        assert_eq!(WallThickness.reshape(&cylinder(), &[0.0]).unwrap(), Reshaped::unchanged(&cylinder()));
+        assert!(WallThickness.reshape(&cylinder(), &[-0.001]).is_err());
+        assert!(WallThickness.reshape(&pleated(), &[0.002]).is_err());
+    }
+}

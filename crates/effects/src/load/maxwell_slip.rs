@@ -1,0 +1,105 @@
+//! Maxwell slip: springs in parallel, each of which slips at its own limit (Vo-Minh et al. 2011; catalogue F7).
+
+use bulge_numerics::Real;
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::unit::{NEWTON, PERCENT};
+
+/// Where each of the four elements begins to slip, over the distance of the last.
+const SLIPS_AT: [f64; 4] = [0.1, 0.25, 0.5, 1.0];
+
+/// `z_i -> clamp(z_i + d eps/delta_i, -1, 1)`, `dF = -(w/4) (z_1 + z_2 + z_3 + z_4)`, delta_i = delta (0.1, 0.25, 0.5, 1).
+///
+/// The clamp is the stop operator of Prandtl and Ishlinskii: exact for a step between two rows, however long, because the contraction moves
+/// one way between them.
+#[derive(Debug)]
+pub(crate) struct MaxwellSlip;
+
+impl Effect for MaxwellSlip {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "maxwell-slip",
+            family: "presliding-hysteresis",
+            title: "Friction of elements that slip one after the other",
+            about: "Contacts between strands and rubber stick, give elastically and let go, one sort after the other. After a reversal the \
+                    friction goes over in straight pieces, and an inner loop that closes leaves no trace.",
+            equation: "z_i -> clamp(z_i + d eps/delta_i, -1, 1),   dF = -(w/4) sum z_i,   delta_i = delta (0.1, 0.25, 0.5, 1)",
+            source: "Iwan 1966; for fluidic muscles Vo-Minh et al. 2011 (four elements)",
+            evidence: Evidence::Literature,
+            group: Group::Load,
+            stage: Stage::Load,
+            kind: None,
+            signature: Signature {
+                pressure: "0",
+                parity: Parity::Odd,
+                shape: "constant far from reversals, with a transition of straight pieces within 2 delta after each",
+            },
+            twins: &[
+                Twin { name: "bouc-wen", how: "0.994" },
+                Twin { name: "presliding-hysteresis", how: "same family; the shape of the transition" },
+                Twin { name: "viscous-damping", how: "0.94 at one speed" },
+                Twin { name: "standard-linear-solid", how: "0.92 at one speed" },
+                Twin { name: "coulomb-friction", how: "0.88 without inner loops" },
+            ],
+            separate: "loops with inner reversals (first-order reversal curves)",
+            needs: Needs::Path,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        vec![
+            ParameterCard::new("force", NEWTON, (0.0, 200.0), 12.0, "friction far from a reversal").prior(0.0, 20.0),
+            ParameterCard::new("distance", PERCENT, (0.02, 20.0), 2.0, "contraction at which the last element slips")
+                .off_at(2.0)
+                .logarithmic(),
+        ]
+    }
+
+    fn memory(&self) -> usize {
+        SLIPS_AT.len()
+    }
+
+    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
+        if let Place::Load(_, force) = place {
+            let mut sum = Jet::from(0.0);
+            for (z, part) in memory.iter_mut().zip(SLIPS_AT) {
+                let moved = *z + Jet::from(moment.step / part) / theta[1];
+                *z = if moved.value().abs() > 1.0 { Jet::from(moved.value().signum()) } else { moved };
+                sum += *z;
+            }
+            *force = *force - theta[0] * sum / 4.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::path;
+
+    #[test]
+    fn elements_slip_one_after_the_other() {
+        // Reach 2 %: the elements slip at 0.2, 0.5, 1 and 2 %. At 0.5 %: (1 + 1 + 0.5 + 0.25)/4 of the force. Back by 0.4 % from full slip:
+        // (-1 + 0.2 + 0.6 + 0.8)/4.
+        let out = path(&MaxwellSlip, &[10.0, 0.02], &[0.0, 0.005, 0.05, 0.046]);
+        for (found, expected) in out.iter().zip([0.0, -6.875, -10.0, -1.5]) {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn many_small_steps_are_one_large_step() {
+        let fine: Vec<f64> = (0..=200).map(|i| 6e-5 * f64::from(i)).collect();
+        let fine = path(&MaxwellSlip, &[10.0, 0.02], &fine);
+        let coarse = path(&MaxwellSlip, &[10.0, 0.02], &[0.0, 0.012]);
+        assert!((coarse[1] - fine[200]).abs() < 1e-11);
+    }
+
+    #[test]
+    fn a_closed_inner_loop_is_wiped_out() {
+        let direct = path(&MaxwellSlip, &[10.0, 0.02], &[0.0, 0.05, 0.04, 0.06]);
+        let detour = path(&MaxwellSlip, &[10.0, 0.02], &[0.0, 0.05, 0.04, 0.045, 0.04, 0.06]);
+        assert!((direct[3] - detour[5]).abs() < 1e-12 && (direct[2] - detour[4]).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,89 @@
+//! Self-heating: the muscle warms up by its own work (S3, section 4; catalogue T2).
+
+use bulge_numerics::Real;
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::unit::{PERCENT, SECOND};
+
+/// `modulus -> modulus (1 + a (1 - exp(-t/tau)))`, t since the first row; without a bladder the whole force.
+///
+/// a = alpha_b dT: temperature rise and coefficient show in the force only as their product.
+#[derive(Debug)]
+pub(crate) struct SelfHeating;
+
+impl Effect for SelfHeating {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "self-heating",
+            family: "temperature",
+            title: "Warming up by work",
+            about: "Gas that is pumped in and out and rubber that is kneaded warm the muscle up, most at its closed end, until it gives off as \
+                    much heat as it gets. Its rubber gets stiffer meanwhile: 10 K are 3.4 %. Where there is no bladder the whole force changes.",
+            equation: "modulus x (1 + a (1 - exp(-t/tau))),   t since the first row;   without a bladder the force x the same",
+            source: "S3, section 4 (the closed end gets hot); first-order heating; 0.34 % of the modulus per kelvin",
+            evidence: Evidence::Literature,
+            group: Group::Load,
+            stage: Stage::Input,
+            kind: None,
+            signature: Signature { pressure: "0", parity: Parity::Even, shape: "as the bladder's force, settling with the clock" },
+            twins: &[
+                Twin { name: "temperature", how: "the same where the temperature is measured" },
+                Twin { name: "force-drift", how: "in tests shorter than tau" },
+                Twin { name: "stress-softening", how: "a change of the modulus with cycles instead of time" },
+            ],
+            separate: "a thermometer in the closed end; a pause after which the muscle is cold again",
+            needs: Needs::Time,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        vec![
+            ParameterCard::new("amplitude", PERCENT, (-50.0, 50.0), 3.4, "relative change when it is warm")
+                .prior(0.0, 5.0)
+                .plausible(-15.0, 15.0),
+            ParameterCard::new("time", SECOND, (10.0, 1e5), 600.0, "time within which it warms up")
+                .off_at(600.0)
+                .logarithmic(),
+        ]
+    }
+
+    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
+        if let Place::Input(input) = place {
+            let warmed = -(-(Jet::from(moment.clock) / theta[1])).exp() + 1.0;
+            let factor = theta[0] * warmed + 1.0;
+            input.wall = input.wall * factor;
+            if !setting.has_bladder {
+                // F = wall B(p area/wall): both together multiply the force.
+                input.area = input.area * factor;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Input;
+    use crate::probe::{SETTING, input};
+
+    #[test]
+    fn it_settles_with_the_clock() {
+        // 1 + 0.034 (1 - 1/e) after one time constant.
+        for (clock, expected) in [(0.0, 1.0), (600.0, 1.021_492_099), (1e5, 1.034)] {
+            let found = input(&SelfHeating, &[0.034, 600.0], |moment| moment.clock = clock);
+            assert!((found.wall.value() - expected).abs() < 1e-9, "{clock}");
+            assert_eq!(found.wall, found.area);
+        }
+    }
+
+    #[test]
+    fn of_a_bladder_it_is_the_modulus() {
+        let setting = Setting { has_bladder: true, ..SETTING };
+        let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
+        let moment = Moment { clock: 600.0, ..Moment::at_rest(2e5, 0.1) };
+        SelfHeating.act(&moment, &setting, &[0.034, 600.0].map(Jet::from), &mut [], Place::Input(&mut input));
+        assert!((input.wall.value() - 1.021_492_099).abs() < 1e-9);
+        assert_eq!(input.area, Jet::from(1.0));
+    }
+}

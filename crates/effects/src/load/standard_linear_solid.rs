@@ -1,0 +1,142 @@
+//! Standard linear solid: a spring that relaxes in series with a dashpot (Zener; catalogue R3).
+
+use bulge_numerics::Real;
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::unit::{NEWTON, SECOND};
+
+/// `q' = k eps' - q/tau`, `dF = -q`, q = 0 when a sweep begins.
+///
+/// Exact between two rows, a time t and a contraction d apart, if the contraction runs straight:
+/// q -> q exp(-t/tau) + k d (1 - exp(-t/tau))/(t/tau).
+#[derive(Debug)]
+pub(crate) struct StandardLinearSolid;
+
+impl Effect for StandardLinearSolid {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "standard-linear-solid",
+            family: "creep",
+            title: "Rubber that relaxes",
+            about: "Rubber answers a quick motion stiffly and then yields within a time tau. Slow loops don't show it, fast ones see a \
+                    spring, and in between the loop opens; in a hold the force comes back by itself.",
+            equation: "dq/dt = k d eps/dt - q/tau,   dF = -q,   q = 0 when a sweep begins",
+            source: "Zener 1948; exact for a contraction that runs straight between two rows",
+            evidence: Evidence::Literature,
+            group: Group::Load,
+            stage: Stage::Load,
+            kind: None,
+            signature: Signature {
+                pressure: "0",
+                parity: Parity::Mixed,
+                shape: "follows the contraction and forgets it within tau",
+            },
+            twins: &[
+                Twin { name: "viscous-damping", how: "0.94 at one speed (tau 30 s)" },
+                Twin { name: "maxwell-slip", how: "0.92 at one speed" },
+                Twin { name: "membrane-axial", how: "0.9 where the sweep is much shorter than tau" },
+                Twin { name: "creep", how: "similar in a hold" },
+            ],
+            separate: "a second speed (0.14 at twenty times the speed); a hold after a quick step",
+            needs: Needs::Time,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        vec![
+            ParameterCard::new("stiffness", NEWTON, (0.0, 1e4), 150.0, "force per contraction of a quick motion")
+                .prior(0.0, 300.0)
+                .plausible(0.0, 3e3),
+            ParameterCard::new("time", SECOND, (0.1, 1e4), 30.0, "time within which it relaxes")
+                .plausible(1.0, 1e3)
+                .off_at(30.0)
+                .logarithmic(),
+        ]
+    }
+
+    fn memory(&self) -> usize {
+        1
+    }
+
+    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
+        if let Place::Load(_, force) = place {
+            let over = Jet::from(moment.since) / theta[1];
+            // Without the factor k, so that the derivative by k is there where k is 0.
+            memory[0] = memory[0] * (-over).exp() + mean_decay(over) * moment.step;
+            *force = *force - theta[0] * memory[0];
+        }
+    }
+}
+
+/// The mean of exp(-x) over 0 ..= h: (1 - exp(-h))/h, 1 at h = 0.
+fn mean_decay(over: Jet) -> Jet {
+    let h = over.value();
+    let decay = (-h).exp();
+    if h < 0.01 {
+        // The series: the quotients lose digits here. The first term left out is below 1e-15.
+        let mean = 1.0 - h / 2.0 * (1.0 - h / 3.0 * (1.0 - h / 4.0 * (1.0 - h / 5.0 * (1.0 - h / 6.0))));
+        let slope = -0.5 + h / 3.0 * (1.0 - h * 3.0 / 8.0 * (1.0 - h * 4.0 / 15.0 * (1.0 - h * 5.0 / 24.0)));
+        return over.chain(mean, slope);
+    }
+    let mean = -(-h).exp_m1() / h;
+    over.chain(mean, (decay - mean) / h)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::path;
+
+    #[test]
+    fn it_builds_up_and_is_forgotten() {
+        // 1 % in 1 s with tau = 2 s: 150 N 0.01 2 (1 - exp(-1/2)); then at rest exp(-1/2) per second.
+        let out = path(&StandardLinearSolid, &[150.0, 2.0], &[0.0, 0.01, 0.01, 0.01]);
+        let first = 3.0 * (1.0 - (-0.5_f64).exp());
+        for (found, expected) in out.iter().zip([0.0, -first, -first * (-0.5_f64).exp(), -first * (-1.0_f64).exp()]) {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn quick_motion_meets_a_spring_and_slow_motion_a_dashpot() {
+        // tau = 1e6 s: k d; tau = 1 ms: k tau d/t.
+        let out = path(&StandardLinearSolid, &[150.0, 1e6], &[0.0, 0.01, 0.02]);
+        assert!((out[2] + 3.0).abs() < 1e-5);
+        let out = path(&StandardLinearSolid, &[150.0, 1e-3], &[0.0, 0.01, 0.02]);
+        assert!((out[2] + 150.0 * 1e-3 * 0.01).abs() < 1e-12);
+    }
+
+    #[test]
+    fn many_small_steps_are_one_large_step() {
+        let run = |n: u32| {
+            let mut memory = [Jet::from(0.0)];
+            let mut force = Jet::from(0.0);
+            for _ in 0..n {
+                let mut moment = Moment::at_rest(2e5, 0.1);
+                (moment.since, moment.step) = (60.0 / f64::from(n), 0.05 / f64::from(n));
+                force = Jet::from(0.0);
+                let place = Place::Load(&crate::probe::balance(0.1), &mut force);
+                StandardLinearSolid.act(&moment, &crate::probe::SETTING, &[150.0, 30.0].map(Jet::from), &mut memory, place);
+            }
+            force.value()
+        };
+        assert!((run(1) - run(777)).abs() < 1e-11);
+        assert!((run(1) + 150.0 * 0.05 * (1.0 - (-2.0_f64).exp()) / 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_mean_of_the_decay_is_smooth() {
+        for h in [1e-9, 1e-3, 0.0099, 0.0101, 0.5, 30.0] {
+            let at = mean_decay(Jet::variable(h, 0));
+            // Simpson's rule for the integrals of exp(-h u) and -u exp(-h u) over 0 ..= 1.
+            let integral = |f: &dyn Fn(f64) -> f64| {
+                let n = 2000;
+                let inner = (1..n).map(|i| f64::from(2 + 2 * (i % 2)) * f(f64::from(i) / f64::from(n)));
+                (f(0.0) + f(1.0) + inner.sum::<f64>()) / f64::from(3 * n)
+            };
+            assert!((at.value() - integral(&|u| (-h * u).exp())).abs() < 1e-9, "{h}");
+            assert!((at.gradient()[0] + integral(&|u| u * (-h * u).exp())).abs() < 1e-9, "{h}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Stress softening: rubber is stiffer in its first cycles (Mullins 1948; catalogue R7).
+
+use bulge_numerics::Real;
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::unit::{NUMBER, PERCENT};
+
+/// `factor = 1 + D exp(-N/N0)`, N the number of the cycle from 0: on the modulus of the bladder, or on the whole force where there is none.
+///
+/// Within the first cycle rubber is stiff only where it is stretched further than ever before, and soft on the way back. That part of the
+/// effect looks like friction in one cycle; it is left out here, because a factor that jumps at the reversal would be a friction of its own.
+#[derive(Debug)]
+pub(crate) struct StressSoftening;
+
+impl Effect for StressSoftening {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "stress-softening",
+            family: "stress-softening",
+            title: "Softening in the first cycles",
+            about: "New rubber is stiffer: the first cycles break up its filler, and it settles down to its later stiffness within a few. \
+                    Where the muscle has no bladder, all of its force settles in the same way.",
+            equation: "modulus x (1 + D exp(-N/N0)),   N number of the cycle from 0;   without a bladder the force x the same",
+            source: "Mullins 1948; exponential form of conditioning; 10 to 40 % in the first cycle",
+            evidence: Evidence::Literature,
+            group: Group::Load,
+            stage: Stage::Input,
+            kind: None,
+            signature: Signature { pressure: "0", parity: Parity::Even, shape: "as the bladder's force, dying out with the cycles" },
+            twins: &[
+                Twin { name: "bladder-elasticity", how: "identical within one cycle" },
+                Twin { name: "force-drift", how: "over a few cycles" },
+                Twin { name: "self-heating", how: "a change of the modulus with time instead of cycles" },
+            ],
+            separate: "five cycles of a new muscle, a pause, and five more: what stays is softening, what comes back is heat",
+            needs: Needs::Cycles,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        vec![
+            ParameterCard::new("amplitude", PERCENT, (0.0, 100.0), 20.0, "how much stiffer the first cycle is")
+                .prior(0.0, 30.0)
+                .plausible(0.0, 50.0),
+            ParameterCard::new("cycles", NUMBER, (0.2, 30.0), 1.0, "number of cycles within which it settles")
+                .off_at(1.0)
+                .logarithmic(),
+        ]
+    }
+
+    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
+        if let Place::Input(input) = place {
+            let factor = theta[0] * (-(Jet::from(moment.cycle) / theta[1])).exp() + 1.0;
+            input.wall = input.wall * factor;
+            if !setting.has_bladder {
+                // F = wall B(p area/wall): both together multiply the force.
+                input.area = input.area * factor;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Input;
+    use crate::probe::{SETTING, input};
+
+    #[test]
+    fn the_force_settles_with_the_cycles() {
+        for (cycle, expected) in [(0.0, 1.2), (1.0, 1.073_575_888), (40.0, 1.0)] {
+            let found = input(&StressSoftening, &[0.2, 1.0], |moment| moment.cycle = cycle);
+            assert!((found.wall.value() - expected).abs() < 1e-9, "{cycle}");
+            assert_eq!(found.wall, found.area);
+        }
+    }
+
+    #[test]
+    fn of_a_bladder_it_is_the_modulus() {
+        let setting = Setting { has_bladder: true, ..SETTING };
+        let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
+        let moment = Moment { cycle: 2.0, ..Moment::at_rest(2e5, 0.1) };
+        StressSoftening.act(&moment, &setting, &[0.2, 2.0].map(Jet::from), &mut [], Place::Input(&mut input));
+        assert!((input.wall.value() - 1.073_575_888).abs() < 1e-9);
+        assert_eq!(input.area, Jet::from(1.0));
+    }
+}

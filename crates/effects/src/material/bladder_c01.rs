@@ -1,0 +1,90 @@
+//! Second constant of the bladder: the part of rubber that a neo-Hookean law misses (Mooney-Rivlin; catalogue E8).
+
+use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::unit::MEGAPASCAL;
+
+/// Stored energy W = c01 (I2 - 3) of the rubber, beside its c10 if it has one.
+#[derive(Debug)]
+pub(crate) struct BladderC01;
+
+impl Effect for BladderC01 {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "bladder-c01",
+            family: "bladder-elasticity",
+            title: "Second constant of the rubber bladder",
+            about: "Rubber that is stretched in two directions is stiffer than the simplest law says. The second constant of Mooney and Rivlin \
+                    stands for that. In a force map it looks nearly like the first: fit one of the two, or test the rubber by itself.",
+            equation: "W = c01 (1/l1^2 + 1/l2^2 + (l1 l2)^2 - 3),   beside c10 (I1 - 3);   l1, l2 as for bladder-elasticity",
+            source: "Mooney 1940, Rivlin 1948; latex c10 = 118.4 and c01 = 105.7 kPa after Klute and Hannaford 2000",
+            evidence: Evidence::Literature,
+            group: Group::Material,
+            stage: Stage::Shape,
+            kind: Some(Kind::Braided),
+            signature: Signature {
+                pressure: "0",
+                parity: Parity::Even,
+                shape: "0 at eps = 0, falls steeply, and goes on falling where that of c10 levels off",
+            },
+            twins: &[
+                Twin { name: "bladder-elasticity", how: "0.982" },
+                Twin { name: "hoop-elasticity", how: "-0.991 once c10 is calibrated" },
+            ],
+            separate: "a coupon of the rubber stretched in two directions",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "Mooney-Rivlin constant c01";
+        vec![
+            ParameterCard::new("modulus", MEGAPASCAL, (0.0, 3.0), 0.1, about)
+                .key("c01")
+                .prior(0.0, 0.15)
+                .plausible(0.0, 1.0),
+        ]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+
+    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
+        if theta[0] == 0.0 {
+            return Ok(Reshaped::unchanged(muscle));
+        }
+        Reshaped::setting(muscle, &[(Parameter::C01, theta[0])])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::bench::{cylinder, force};
+    use std::f64::consts::PI;
+
+    #[test]
+    fn a_cylinder_loses_what_the_energy_of_the_tube_says() {
+        let muscle = cylinder().with(Parameter::Wall, 0.002).unwrap();
+        let (c01, wall, radius, contraction) = (1e5, 0.002, 0.01, 0.1);
+        let rubber = BladderC01.reshape(&muscle, &[c01]).unwrap();
+        assert_eq!(rubber.moves, [(0, Parameter::C01, 1.0)]);
+        let (s, c) = 25.0_f64.to_radians().sin_cos();
+        let l1: f64 = 1.0 - contraction;
+        let l2 = (1.0 - (l1 * c).powi(2)).sqrt() / s;
+        let w_1 = 2.0 * c01 * (l1 * l2 * l2 - 1.0 / l1.powi(3));
+        let w_2 = 2.0 * c01 * (l2 * l1 * l1 - 1.0 / l2.powi(3));
+        let expected = 2.0 * PI * radius * wall * (w_1 - w_2 * l1 * (c / s).powi(2) / l2);
+        let found = force(&rubber.muscle, 2.0, contraction) - force(&muscle, 2.0, contraction);
+        assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
+    }
+
+    #[test]
+    fn it_leaves_the_first_constant() {
+        let neo = cylinder().with(Parameter::Wall, 0.002).unwrap().with(Parameter::C10, 3e5).unwrap();
+        let both = BladderC01.reshape(&neo, &[1e5]).unwrap().muscle;
+        assert_eq!((both.get(Parameter::C10), both.get(Parameter::C01)), (Some(3e5), Some(1e5)));
+        assert_eq!(BladderC01.reshape(&neo, &[0.0]).unwrap(), Reshaped::unchanged(&neo));
+    }
+}

@@ -1,0 +1,61 @@
+//! Displacement gain: the displacement sensor's scale is off (catalogue M9).
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::unit::PERCENT;
+
+/// `true contraction = measured x (1 + g)`.
+#[derive(Debug)]
+pub(crate) struct DisplacementGain;
+
+impl Effect for DisplacementGain {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "displacement-gain",
+            family: "displacement-gain",
+            title: "Gain of the displacement sensor",
+            about: "The displacement sensor, or the rope and drum before it, counts a fixed part too little or too much of every way. At \
+                    contraction 0 nothing is wrong; the error grows from there.",
+            equation: "true contraction = measured (1 + g)",
+            source: "data sheets of displacement sensors: 0.05 to 1 %",
+            evidence: Evidence::Derived,
+            group: Group::Rig,
+            stage: Stage::Input,
+            kind: None,
+            signature: Signature { pressure: "1", parity: Parity::Even, shape: "eps dF/d eps" },
+            twins: &[
+                Twin { name: "end-factor", how: "identical" },
+                Twin { name: "length-zero-error", how: "1.000 on a calibrated cylinder" },
+                Twin { name: "end-taper", how: "0.983 (braid)" },
+                Twin { name: "wall-thickness", how: "-0.96 (braid)" },
+                Twin { name: "end-radius", how: "0.997 (PPAM)" },
+                Twin { name: "fibre-misalignment", how: "0.98 (PPAM)" },
+            ],
+            separate: "a gauge block under the sensor",
+            needs: Needs::Nothing,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "how much more the muscle has moved than the reading says";
+        vec![ParameterCard::new("gain", PERCENT, (-30.0, 30.0), 0.0, about).prior(0.0, 1.0).plausible(-5.0, 5.0)]
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
+        if let Place::Input(input) = place {
+            input.contraction = input.contraction * (theta[0] + 1.0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::input;
+    use bulge_numerics::Real;
+
+    #[test]
+    fn the_way_is_scaled() {
+        assert!((input(&DisplacementGain, &[0.02], |_| ()).contraction.value() - 0.102).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,67 @@
+//! Valve hysteresis: the valve lets the pressure fall a little before it opens (catalogue P4).
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::rig::lowered_pressure::lowered;
+use crate::unit::KILOPASCAL;
+
+/// `p = reading - s dp`, s = +1 while shortening, -1 while lengthening.
+#[derive(Debug)]
+pub(crate) struct ValveHysteresis;
+
+impl Effect for ValveHysteresis {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "valve-hysteresis",
+            family: "regulator-lag",
+            title: "Dead band of the pressure valve",
+            about: "The valve acts only when the pressure has left a band. A muscle that shortens draws the pressure to the lower edge of the \
+                    band, one that lengthens pushes it to the upper one, whatever the speed.",
+            equation: "p = reading - s dp,   s = +1 while shortening, -1 while lengthening, 0 at rest",
+            source: "data sheets of proportional valves: 0.5 to 1 % of full scale",
+            evidence: Evidence::Derived,
+            group: Group::Rig,
+            stage: Stage::Input,
+            kind: None,
+            signature: Signature { pressure: "0", parity: Parity::Odd, shape: "F/p" },
+            twins: &[
+                Twin { name: "regulator-lag", how: "0.962 (PPAM)" },
+                Twin { name: "coulomb-friction", how: "0.92" },
+                Twin { name: "force-lag", how: "0.93 (PPAM)" },
+                Twin { name: "force-friction", how: "0.90" },
+                Twin { name: "asymmetric-friction", how: "0.90" },
+            ],
+            separate: "a pressure sensor in the muscle itself",
+            needs: Needs::Path,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let about = "half the width of the band";
+        vec![
+            ParameterCard::new("pressure", KILOPASCAL, (0.0, 30.0), 2.0, about)
+                .prior(0.0, 4.0)
+                .plausible(0.0, 10.0),
+        ]
+    }
+
+    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
+        if let Place::Input(input) = place {
+            input.pressure = lowered(input.pressure, theta[0] * moment.direction);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::input;
+    use bulge_numerics::Real;
+
+    #[test]
+    fn the_pressure_is_at_the_edge_of_the_band() {
+        let [up, down, rest] = [1.0, -1.0, 0.0]
+            .map(|s| input(&ValveHysteresis, &[2e3], |moment| moment.direction = s).pressure.value());
+        assert_eq!([up, down, rest], [1.98e5, 2.02e5, 2e5]);
+    }
+}

@@ -1,0 +1,65 @@
+//! Why a comparison or a fit can't be made.
+
+use bulge_model::ModelError;
+
+/// What went wrong.
+#[derive(Debug, thiserror::Error)]
+pub enum InferenceError {
+    /// No rows are left.
+    #[error("no rows are left to compare with: {left_out}")]
+    NoRows {
+        /// Why they were left out.
+        left_out: String,
+    },
+    /// More numbers than rows.
+    #[error("{numbers} numbers can't be fitted to {rows} rows; measure more, or fit fewer effects at once")]
+    TooFewRows {
+        /// Rows that count.
+        rows: usize,
+        /// Numbers to fit.
+        numbers: usize,
+    },
+    /// All rows are the same, and something is to be fitted.
+    #[error("all {rows} rows are identical: nothing can be fitted to a single point")]
+    Identical {
+        /// How many.
+        rows: usize,
+    },
+    /// The muscle doesn't match the data.
+    #[error(
+        "the muscle doesn't match the data: {muscle} would push at {lines} ({rows} rows; first at contraction {contraction:.3} and {pressure_pa:.0} Pa: \
+         {force_n:.0} N), where the measured muscle pulls with up to {measured_n:.0} N; check length, radius and the zero of the contraction"
+    )]
+    BeyondLimit {
+        /// Name of the muscle.
+        muscle: String,
+        /// Lines of the file.
+        lines: String,
+        /// How many rows.
+        rows: usize,
+        /// Contraction of the first.
+        contraction: f64,
+        /// Its pressure \[Pa\].
+        pressure_pa: f64,
+        /// What the model says of it \[N\].
+        force_n: f64,
+        /// Largest force that was measured at these rows \[N\].
+        measured_n: f64,
+    },
+    /// An effect needs something that the data don't have.
+    #[error("`{effect}` needs {needs}, which these data don't have; leave it out or measure it")]
+    Needs {
+        /// The effect.
+        effect: String,
+        /// What it needs.
+        needs: &'static str,
+    },
+    /// The model has no prediction.
+    #[error("{what}{source}")]
+    Model {
+        /// The lines, if rows are to blame: `lines 12, 33-40: `.
+        what: String,
+        /// What it says.
+        source: Box<ModelError>,
+    },
+}

@@ -1,0 +1,320 @@
+//! The fit: many starts on a thinned record, the best ones polished on all rows, and what is to be said about the result.
+
+use bulge_model::{Model, ModelError, Record, Wanted};
+use bulge_numerics::least_squares::{LeastSquaresError, Minimum, Options, Reason, Side, minimise};
+
+use crate::fit::{Convergence, Fit, Fitted};
+use crate::halton::halton;
+use crate::interval;
+use crate::nuisance::Prepared;
+use crate::problem::{FitProblem, free};
+use crate::weights::{Noise, effective_rows};
+
+/// Rows on which starts are tried.
+const FEW_ROWS: usize = 400;
+/// Starting points; fewer where every answer takes an integration.
+const STARTS: usize = 8;
+/// Minima of the thinned record that are polished on all rows.
+const POLISHED: usize = 2;
+/// Costs that differ by less than this part belong to the same minimum.
+const SAME: f64 = 1e-3;
+/// Correlations beyond this are spoken of.
+const INSEPARABLE: f64 = 0.98;
+
+/// What a fit needs besides the model.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Task<'a> {
+    pub(crate) record: &'a Record,
+    pub(crate) used: &'a [bool],
+    pub(crate) noise: Noise,
+    /// Tries only the start that the model states, and makes no statement about uncertainty: for held-out errors.
+    pub(crate) quick: bool,
+}
+
+/// Fits the free numbers of a model.
+pub(crate) fn fit(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Fit, ModelError> {
+    let model = &prepared.model;
+    let mut best = vec![start.to_vec()];
+    let mut minima = 1;
+    let mut agreeing = 1;
+    let mut tried = 1;
+    if !task.quick && !free(model).is_empty() {
+        let searched = search(prepared, start, task)?;
+        (best, minima, agreeing, tried) = (searched.best, searched.minima, searched.agreeing, searched.tried);
+    }
+    let mut found: Option<(Minimum, FitProblem<'_>)> = None;
+    for theta in &best {
+        let sd = weights(model, theta, task)?;
+        let problem =
+            FitProblem::new(model, task.record, task.used, sd, theta.clone(), &prepared.priors);
+        let minimum = settle(&problem, theta, task.quick)?;
+        if found.as_ref().is_none_or(|(other, _)| minimum.cost < other.cost) {
+            found = Some((minimum, problem));
+        }
+    }
+    let Some((minimum, problem)) = found else {
+        return Err(ModelError::Values { given: 0, expected: 1 });
+    };
+    report(prepared, &minimum, &problem, task, Convergence {
+        converged: minimum.certificate.converged,
+        reason: reason(minimum.certificate.reason).to_owned(),
+        gradient_cosine: minimum.certificate.gradient_cosine,
+        iterations: minimum.iterations,
+        starts: tried,
+        agreeing,
+        minima,
+        rank: minimum.certificate.rank,
+    })
+}
+
+struct Searched {
+    best: Vec<Vec<f64>>,
+    minima: usize,
+    agreeing: usize,
+    tried: usize,
+}
+
+/// Starts all over the plausible box, each followed to its minimum on few rows.
+fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searched, ModelError> {
+    let model = &prepared.model;
+    let (thin, kept) = task.record.thinned(FEW_ROWS);
+    let used: Vec<bool> = kept.iter().map(|row| task.used[*row]).collect();
+    let few = Task { record: &thin, used: &used, ..*task };
+    let sd = weights(model, start, &few)?;
+    let problem = FitProblem::new(model, &thin, &used, sd, start.to_vec(), &prepared.priors);
+    let bounds = problem.bounds();
+    let options = Options { check_curvature: false, tolerance: 1e-5, max_evaluations: 60, ..Options::default() };
+    let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
+    let mut tried = 0;
+    let mut first_error = None;
+    for number in 0..STARTS {
+        let coordinates = if number == 0 {
+            clamped(problem.coordinates(start), &bounds.lower, &bounds.upper)
+        } else {
+            scattered(prepared, &problem, start, number)
+        };
+        tried += 1;
+        match minimise(&problem, &coordinates, &bounds, &options) {
+            Ok(minimum) => ends.push((minimum.cost, problem.theta(&minimum.theta))),
+            Err(LeastSquaresError::Start(error)) => first_error = first_error.or(Some(error)),
+            Err(_) => {}
+        }
+    }
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some(least) = ends.first().map(|end| end.0) else {
+        return Err(first_error.unwrap_or(ModelError::Values { given: 0, expected: 1 }));
+    };
+    let same = |a: f64, b: f64| (a - b).abs() <= SAME * (a.abs() + b.abs()) + 1e-12;
+    let mut best: Vec<(f64, Vec<f64>)> = Vec::new();
+    for end in &ends {
+        if !best.iter().any(|other| same(other.0, end.0)) {
+            best.push(end.clone());
+        }
+    }
+    let agreeing = ends.iter().filter(|end| same(end.0, least)).count();
+    let minima = best.len();
+    Ok(Searched { best: best.into_iter().take(POLISHED).map(|(_, theta)| theta).collect(), minima, agreeing, tried })
+}
+
+/// A point of the plausible box; numbers with a narrow prior stay near its mean.
+fn scattered(prepared: &Prepared, problem: &FitProblem<'_>, start: &[f64], number: usize) -> Vec<f64> {
+    let model = &prepared.model;
+    let mut theta = start.to_vec();
+    for (place, index) in free(model).into_iter().enumerate() {
+        let p = &model.parameters()[index];
+        let u = halton(number, place);
+        let (low, high) = (p.plausible.0.max(p.low), p.plausible.1.min(p.high));
+        let (low, high) = match prepared.priors[index] {
+            Some((mean, sd)) if prepared.nuisance[index] => ((mean - sd).max(p.low), (mean + sd).min(p.high)),
+            _ => (low, high),
+        };
+        // Not on the ends: there effects may be off or absurd.
+        let u = 0.1 + 0.8 * u;
+        theta[index] = if p.logarithmic && low > 0.0 {
+            (low.ln() + u * (high.ln() - low.ln())).exp()
+        } else {
+            low + u * (high - low)
+        };
+    }
+    problem.coordinates(&theta)
+}
+
+fn clamped(mut coordinates: Vec<f64>, lower: &[f64], upper: &[f64]) -> Vec<f64> {
+    for ((x, low), high) in coordinates.iter_mut().zip(lower).zip(upper) {
+        *x = x.clamp(*low, *high);
+    }
+    coordinates
+}
+
+fn weights(model: &Model, theta: &[f64], task: &Task<'_>) -> Result<Vec<f64>, ModelError> {
+    let readings = task.noise.pressure_pa > 0.0 || task.noise.contraction > 0.0;
+    let wanted = Wanted { parameters: Vec::new(), readings };
+    let prediction = if readings {
+        model.evaluate(task.record, theta, &wanted)?
+    } else {
+        bulge_model::Prediction {
+            force: Vec::new(),
+            jacobian: Vec::new(),
+            by_pressure: Vec::new(),
+            by_contraction: Vec::new(),
+        }
+    };
+    Ok(task.noise.of_rows(task.record, &prediction))
+}
+
+fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimum, ModelError> {
+    let bounds = problem.bounds();
+    let start = clamped(problem.coordinates(theta), &bounds.lower, &bounds.upper);
+    let tolerance = if quick { 1e-5 } else { 1e-8 };
+    let options = Options { check_curvature: false, tolerance, max_evaluations: 200, ..Options::default() };
+    minimise(problem, &start, &bounds, &options).map_err(|error| match error {
+        LeastSquaresError::Start(error) => error,
+        _ => ModelError::NotFinite { rows: Vec::new(), what: "the fit cannot start: the model has no finite derivatives there" },
+    })
+}
+
+const fn reason(reason: Reason) -> &'static str {
+    if reason.is_converged() {
+        "residuals are orthogonal to what the numbers can change"
+    } else {
+        "the search ended before the residuals were orthogonal to what the numbers can change"
+    }
+}
+
+/// Numbers with intervals, and warnings.
+fn report(
+    prepared: &Prepared,
+    minimum: &Minimum,
+    problem: &FitProblem<'_>,
+    task: &Task<'_>,
+    convergence: Convergence,
+) -> Result<Fit, ModelError> {
+    let model = &prepared.model;
+    let theta = problem.theta(&minimum.theta);
+    let n = problem.measured();
+    let mut residuals = vec![0.0; task.record.len()];
+    let rows = (0..task.record.len()).filter(|row| task.used[*row]);
+    for (row, residual) in rows.zip(&minimum.residuals) {
+        residuals[row] = *residual;
+    }
+    let square: f64 = residuals.iter().zip(problem.sd()).map(|(r, sd)| (r * sd) * (r * sd)).sum();
+    let effective = if task.quick { n as f64 } else { effective_rows(task.record, &residuals, task.used) };
+    let mut fit = Fit {
+        parameters: Vec::new(),
+        theta,
+        rmse_n: (square / n.max(1) as f64).sqrt(),
+        cost: minimum.cost,
+        sd_n: task.noise.force_n,
+        effective_rows: effective,
+        correlations: minimum.correlation(),
+        convergence,
+        warnings: Vec::new(),
+    };
+    if task.quick {
+        return Ok(fit);
+    }
+    let scale = interval::Scale::new(minimum, n, effective);
+    for (place, index) in free(model).into_iter().enumerate() {
+        let mut fitted = fitted(prepared, index, fit.theta[index]);
+        fitted.determined = minimum.certificate.flat.iter().all(|v| v[place].abs() < 0.5);
+        fitted.at_bound = minimum.certificate.at_bound[place].map(|side| match side {
+            Side::Lower => "lower",
+            Side::Upper => "upper",
+        });
+        let found = interval::of(problem, minimum, place, &scale, fitted.at_bound.is_some() || !fitted.plausible);
+        fitted.interval = found.method;
+        let factor = model.parameters()[index].factor;
+        [fitted.low, fitted.high] = found.ends.map(|x| x / factor);
+        fit.parameters.push(fitted);
+    }
+    fit.warnings = warnings(&fit);
+    Ok(fit)
+}
+
+fn fitted(prepared: &Prepared, index: usize, value: f64) -> Fitted {
+    let p = &prepared.model.parameters()[index];
+    let tiny = 1e-9 * (p.high - p.low);
+    let plausible = value >= p.plausible.0 - tiny && value <= p.plausible.1 + tiny;
+    let effect = prepared.model.effects().iter().find(|c| c.effect.card().name == p.effect);
+    let cards = effect.map(|c| c.effect.parameters()).unwrap_or_default();
+    let reciprocal = cards.iter().find(|card| card.name == p.name).and_then(|card| card.reciprocal);
+    let also = reciprocal
+        .filter(|_| value > 0.0)
+        .map(|(name, unit, size)| (name.to_owned(), 1.0 / (value * size), unit.to_owned()));
+    Fitted {
+        effect: p.effect.clone(),
+        name: p.name.clone(),
+        specimen: p.specimen.clone(),
+        value: p.shown(value),
+        low: p.shown(value),
+        high: p.shown(value),
+        unit: p.unit.clone(),
+        interval: "covariance",
+        at_bound: None,
+        plausible: plausible || prepared.nuisance[index],
+        plausible_range: [p.shown(p.plausible.0), p.shown(p.plausible.1)],
+        determined: true,
+        nuisance: prepared.nuisance[index],
+        also,
+        about: p.about.clone(),
+    }
+}
+
+fn warnings(fit: &Fit) -> Vec<String> {
+    let label = |p: &Fitted| format!("{} of {}", p.name, p.effect);
+    let mut warnings = Vec::new();
+    if !fit.convergence.converged {
+        warnings.push(format!(
+            "the fit did not converge ({}): its numbers are not to be relied on",
+            fit.convergence.reason
+        ));
+    }
+    for p in &fit.parameters {
+        let value = format!("{} {}", three(p.value), p.unit);
+        if !p.plausible {
+            warnings.push(format!(
+                "implausible: {} = {value}, outside {} to {} {}: a wrong cure, even if the error falls",
+                label(p),
+                three(p.plausible_range[0]),
+                three(p.plausible_range[1]),
+                p.unit
+            ));
+        }
+        if let Some(side) = p.at_bound {
+            warnings.push(format!("{} lies on the {side} bound of the search, {value}", label(p)));
+        }
+        if !p.determined {
+            warnings.push(format!("these data do not determine {}", label(p)));
+        }
+    }
+    let k = fit.parameters.len();
+    for i in 0..k {
+        for j in 0..i {
+            let r = fit.correlations.get(i * k + j).copied().unwrap_or(0.0);
+            if r.abs() > INSEPARABLE {
+                warnings.push(format!(
+                    "{} and {} cannot be told apart by these data (correlation {r:.3})",
+                    label(&fit.parameters[j]),
+                    label(&fit.parameters[i])
+                ));
+            }
+        }
+    }
+    warnings
+}
+
+/// Three significant digits.
+pub(crate) fn three(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let magnitude = value.abs().log10().floor();
+    if (-4.0..6.0).contains(&magnitude) {
+        let decimals = (2.0 - magnitude).max(0.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 6")]
+        let decimals = decimals as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.2e}")
+    }
+}

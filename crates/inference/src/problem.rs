@@ -1,0 +1,150 @@
+//! A fit as a problem of least squares: weighted residuals of the used rows, then one row for each prior.
+
+use bulge_model::{Model, ModelError, ModelParameter, Record, Wanted};
+use bulge_numerics::least_squares::{Bounds, Residuals};
+use std::ops::Range;
+
+/// The free numbers of a model against a record.
+pub(crate) struct FitProblem<'a> {
+    model: &'a Model,
+    record: &'a Record,
+    /// Rows that count.
+    rows: Vec<usize>,
+    /// One standard deviation per row of the record.
+    sd: Vec<f64>,
+    /// Places of the free numbers.
+    free: Vec<usize>,
+    /// All numbers; the free ones are replaced.
+    base: Vec<f64>,
+    /// (place among the free, mean, standard deviation), in the coordinates of the search.
+    priors: Vec<(usize, f64, f64)>,
+    logarithmic: Vec<bool>,
+}
+
+impl<'a> FitProblem<'a> {
+    pub(crate) fn new(
+        model: &'a Model,
+        record: &'a Record,
+        used: &[bool],
+        sd: Vec<f64>,
+        base: Vec<f64>,
+        priors: &[Option<(f64, f64)>],
+    ) -> Self {
+        let free = free(model);
+        let numbers = model.parameters();
+        let logarithmic: Vec<bool> = free.iter().map(|i| numbers[*i].logarithmic).collect();
+        let of_free = |(place, index): (usize, &usize)| {
+            let (mean, sd) = priors[*index]?;
+            // A relative standard deviation on a logarithmic scale.
+            Some(if logarithmic[place] { (place, mean.ln(), sd / mean) } else { (place, mean, sd) })
+        };
+        let priors = free.iter().enumerate().filter_map(of_free).collect();
+        let rows = (0..record.len()).filter(|row| used[*row]).collect();
+        Self { model, record, rows, sd, free, base, priors, logarithmic }
+    }
+
+    /// All numbers of the model, from the coordinates of the search.
+    pub(crate) fn theta(&self, free: &[f64]) -> Vec<f64> {
+        let mut theta = self.base.clone();
+        for ((index, value), logarithmic) in self.free.iter().zip(free).zip(&self.logarithmic) {
+            theta[*index] = if *logarithmic { value.exp() } else { *value };
+        }
+        theta
+    }
+
+    /// Coordinates of the search.
+    pub(crate) fn coordinates(&self, theta: &[f64]) -> Vec<f64> {
+        let coordinate = |(index, logarithmic): (&usize, &bool)| {
+            if *logarithmic { theta[*index].ln() } else { theta[*index] }
+        };
+        self.free.iter().zip(&self.logarithmic).map(coordinate).collect()
+    }
+
+    /// Bounds in the coordinates of the search.
+    pub(crate) fn bounds(&self) -> Bounds {
+        let numbers = self.model.parameters();
+        let low: Vec<f64> = numbers.iter().map(|p| p.low).collect();
+        let high: Vec<f64> = numbers.iter().map(|p| p.high).collect();
+        Bounds { lower: self.coordinates(&low), upper: self.coordinates(&high) }
+    }
+
+    /// Number of rows of the record that count.
+    pub(crate) fn measured(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Standard deviation of each row of the record.
+    pub(crate) fn sd(&self) -> &[f64] {
+        &self.sd
+    }
+
+    /// The record.
+    pub(crate) fn record(&self) -> &Record {
+        self.record
+    }
+
+    /// Whether a free number is fitted over its logarithm.
+    pub(crate) fn is_logarithmic(&self, place: usize) -> bool {
+        self.logarithmic[place]
+    }
+}
+
+/// Places of the numbers that a fit may change.
+pub(crate) fn free(model: &Model) -> Vec<usize> {
+    let is_free = |(_, p): &(usize, &ModelParameter)| !p.fixed;
+    model.parameters().iter().enumerate().filter(is_free).map(|(i, _)| i).collect()
+}
+
+impl Residuals for FitProblem<'_> {
+    type Error = ModelError;
+
+    fn rows(&self) -> usize {
+        self.rows.len() + self.priors.len()
+    }
+
+    fn parameters(&self) -> usize {
+        self.free.len()
+    }
+
+    /// All at once: rows of a sweep depend on each other, and the model is parallel itself.
+    fn block(&self) -> usize {
+        self.rows()
+    }
+
+    fn evaluate(
+        &self,
+        coordinates: &[f64],
+        _: Range<usize>,
+        residuals: &mut [f64],
+        jacobian: Option<&mut [f64]>,
+    ) -> Result<(), ModelError> {
+        let theta = self.theta(coordinates);
+        let parameters = if jacobian.is_some() { self.free.clone() } else { Vec::new() };
+        let wanted = Wanted { parameters, readings: false };
+        let prediction = self.model.evaluate(self.record, &theta, &wanted)?;
+        let measured = self.record.force();
+        for (residual, row) in residuals.iter_mut().zip(&self.rows) {
+            *residual = (measured[*row] - prediction.force[*row]) / self.sd[*row];
+        }
+        let n = self.rows.len();
+        for (residual, (place, mean, sd)) in residuals[n..].iter_mut().zip(&self.priors) {
+            *residual = (coordinates[*place] - mean) / sd;
+        }
+        let k = self.free.len();
+        let Some(jacobian) = jacobian.filter(|_| k > 0) else { return Ok(()) };
+        let scale: Vec<f64> = (0..k)
+            .map(|place| if self.logarithmic[place] { theta[self.free[place]] } else { 1.0 })
+            .collect();
+        for (line, row) in jacobian.chunks_exact_mut(k).zip(&self.rows) {
+            let slopes = &prediction.jacobian[row * k..(row + 1) * k];
+            for ((out, slope), scale) in line.iter_mut().zip(slopes).zip(&scale) {
+                *out = -slope * scale / self.sd[*row];
+            }
+        }
+        for (line, (place, _, sd)) in jacobian[n * k..].chunks_exact_mut(k).zip(&self.priors) {
+            line.fill(0.0);
+            line[*place] = 1.0 / sd;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,72 @@
+//! What each effect contributes to the force, with the numbers of the last fit.
+
+use bulge_model::Wanted;
+
+use crate::compare::{Analysis, Climbed, FEWER_ROWS, carry_over};
+use crate::comparison::{Part, Stack};
+use crate::error::InferenceError;
+use crate::residuals::{bin, contractions};
+
+/// Bins of contraction.
+const BINS: usize = 25;
+
+/// Effects added one after the other, all with the numbers that the last fit gave them; rig errors within the data sheets come last.
+pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<Vec<Stack>, InferenceError> {
+    let effects = &analysis.options.effects;
+    if effects.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (thin, kept) = analysis.record.thinned(FEWER_ROWS);
+    let mut forces: Vec<Vec<f64>> = Vec::new();
+    for count in 0..=effects.len() {
+        let prepared = analysis.model(count)?;
+        // Nuisances stay off until the last.
+        let mut theta = prepared.model.off();
+        let asked = |i: usize| !prepared.nuisance[i];
+        let mut final_values = theta.clone();
+        carry_over(&last.prepared.model, &last.theta, &prepared.model, &mut final_values);
+        for (i, value) in theta.iter_mut().enumerate() {
+            if asked(i) || count == effects.len() && effects.is_empty() {
+                *value = final_values[i];
+            }
+        }
+        let prediction = prepared.model.evaluate(&thin, &theta, &Wanted::default());
+        forces.push(prediction.map_err(|error| analysis.about(error))?.force);
+    }
+    let mut names: Vec<String> = effects.iter().map(|effect| effect.card().name.to_owned()).collect();
+    if last.prepared.nuisance.contains(&true) {
+        forces.push(kept.iter().map(|row| last.force[*row]).collect());
+        names.push("rig within its data sheets".to_owned());
+    }
+    let [low, high] = contractions(analysis);
+    let width = (high - low) / BINS as f64;
+    let mut stacks = Vec::new();
+    for (level, pressure_pa) in analysis.levels.mean.iter().enumerate() {
+        let mut rows_of = vec![Vec::new(); BINS];
+        for (i, row) in kept.iter().enumerate() {
+            if analysis.used.mask[*row] && analysis.levels.of[*row] == level {
+                rows_of[bin(thin.moments()[i].contraction, low, high, BINS)].push(i);
+            }
+        }
+        let filled: Vec<(usize, &Vec<usize>)> =
+            rows_of.iter().enumerate().filter(|(_, rows)| !rows.is_empty()).collect();
+        let mean = |values: &[f64]| -> Vec<f64> {
+            filled.iter().map(|(_, rows)| rows.iter().map(|i| values[*i]).sum::<f64>() / rows.len() as f64).collect()
+        };
+        let added = |i: usize| -> Vec<f64> {
+            forces[i + 1].iter().zip(&forces[i]).map(|(with, without)| with - without).collect()
+        };
+        stacks.push(Stack {
+            pressure_pa: *pressure_pa,
+            contraction: filled.iter().map(|(i, _)| low + (*i as f64 + 0.5) * width).collect(),
+            measured_n: mean(thin.force()),
+            base_n: mean(&forces[0]),
+            parts: names
+                .iter()
+                .enumerate()
+                .map(|(i, effect)| Part { effect: effect.clone(), force_n: mean(&added(i)) })
+                .collect(),
+        });
+    }
+    Ok(stacks)
+}

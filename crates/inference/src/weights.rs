@@ -1,0 +1,112 @@
+//! Weights of the rows: force noise and what errors of pressure and contraction make of the force.
+
+use bulge_model::{Prediction, Record};
+use bulge_muscles::Muscle;
+use bulge_muscles::Quantity;
+
+/// Standard deviations of single readings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Of the force \[N\].
+    pub force_n: f64,
+    /// Of the pressure \[Pa\].
+    pub pressure_pa: f64,
+    /// Of the contraction.
+    pub contraction: f64,
+}
+
+impl Noise {
+    /// Force noise as given, the others as the muscle's `[instruments]` state them, else 0.
+    #[must_use]
+    pub fn of(muscle: &Muscle, force_n: f64) -> Self {
+        let instruments = muscle.instruments();
+        Self {
+            force_n,
+            pressure_pa: instruments.pressure.map_or(0.0, |p| p.noise()),
+            contraction: instruments.length.map_or(0.0, |l| l.noise()) / muscle.length().si(),
+        }
+    }
+
+    /// One standard deviation for each row:
+    ///
+    /// ```text
+    /// s_i^2 = sw^2 + (dF/dp)^2 sp^2 + (dF/deps)^2 se^2
+    /// ```
+    /// sw is the file's own `force_sd` where it has one.
+    #[must_use]
+    pub fn of_rows(&self, record: &Record, prediction: &Prediction) -> Vec<f64> {
+        let slope = |slopes: &[f64], row: usize| slopes.get(row).copied().unwrap_or(0.0);
+        (0..record.len())
+            .map(|row| {
+                let force = record.force_sd().map_or(self.force_n, |sd| sd[row].max(1e-3 * self.force_n));
+                let by_pressure = slope(&prediction.by_pressure, row) * self.pressure_pa;
+                let by_contraction = slope(&prediction.by_contraction, row) * self.contraction;
+                (force * force + by_pressure * by_pressure + by_contraction * by_contraction).sqrt()
+            })
+            .collect()
+    }
+}
+
+/// Rows that count as independent: the residuals r of a sweep are correlated, with the integrated correlation time of the sweeps together.
+///
+/// ```text
+/// n_eff = n/(1 + 2 sum rho_k),    the sum up to the first k at which rho_k + rho_(k+1) is not positive (Geyer 1992)
+/// ```
+#[must_use]
+pub fn effective_rows(record: &Record, residuals: &[f64], used: &[bool]) -> f64 {
+    let rows = used.iter().filter(|u| **u).count() as f64;
+    if !record.is_path() || rows < 10.0 {
+        return rows;
+    }
+    let sweeps: Vec<Vec<f64>> = record
+        .sweeps()
+        .iter()
+        .map(|sweep| sweep.clone().filter(|row| used[*row]).map(|row| residuals[row]).collect())
+        .collect();
+    let total: f64 = sweeps.iter().flatten().map(|r| r * r).sum();
+    if total <= 0.0 {
+        return rows;
+    }
+    let longest = sweeps.iter().map(Vec::len).max().unwrap_or(0);
+    let correlation = |lag: usize| -> f64 {
+        sweeps.iter().flat_map(|s| s.iter().zip(s.iter().skip(lag))).map(|(a, b)| a * b).sum::<f64>() / total
+    };
+    let mut sum = 0.0;
+    let mut lag = 1;
+    while lag + 1 < longest.min(2000) {
+        let pair = correlation(lag) + correlation(lag + 1);
+        if pair <= 0.0 {
+            break;
+        }
+        sum += pair;
+        lag += 2;
+    }
+    (rows / (1.0 + 2.0 * sum)).clamp(1.0, rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::Moment;
+
+    #[test]
+    fn repeated_values_count_once() {
+        // Every value eight times: an eighth of the rows is independent, up to the scatter of the estimate.
+        let rows = 4000;
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let values: Vec<f64> = (0..rows / 8).flat_map(|_| vec![random(); 8]).collect();
+        let moments: Vec<Moment> = (0..rows)
+            .map(|i| Moment { direction: 1.0, begins: i == 0, ..Moment::at_rest(1e5, 1e-4 * i as f64) })
+            .collect();
+        let record = Record::from_moments(moments, vec![0.0; rows], std::iter::once(0..rows).collect()).unwrap();
+        let found = effective_rows(&record, &values, &vec![true; rows]);
+        // Correlation time of a block of 8: (1 + 2 sum (8-k)/8) = 8.
+        assert!((found / (rows as f64 / 8.0) - 1.0).abs() < 0.25, "{found}");
+        let white: Vec<f64> = (0..rows).map(|_| random()).collect();
+        assert!(effective_rows(&record, &white, &vec![true; rows]) > 0.85 * rows as f64);
+    }
+}

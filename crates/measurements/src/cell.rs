@@ -1,0 +1,133 @@
+//! One field of a table as what its column holds, or why it isn't that.
+
+use crate::error::CellError;
+use crate::quote::quoted;
+
+/// A finite number.
+pub(crate) fn number(text: &str) -> Result<f64, CellError> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err(CellError::NotFinite { text: quoted(text) }),
+        Err(_) => Err(no_number(text)),
+    }
+}
+
+/// A whole number.
+pub(crate) fn whole(text: &str) -> Result<i64, CellError> {
+    text.parse::<i64>().or_else(|_| whole_of(number(text)?, text))
+}
+
+/// A whole number written as a number with a point, such as 3.0.
+pub(crate) fn whole_of(value: f64, text: &str) -> Result<i64, CellError> {
+    /// Whole numbers up to here are exact in a double.
+    const LARGEST: f64 = 9_007_199_254_740_992.0;
+    if value.fract() == 0.0 && value.abs() <= LARGEST {
+        #[expect(clippy::cast_possible_truncation, reason = "whole and below 2^53")]
+        return Ok(value as i64);
+    }
+    Err(CellError::NotWhole { text: quoted(text) })
+}
+
+/// A direction: +1 shortening, -1 lengthening, 0 at rest.
+pub(crate) fn direction(text: &str) -> Result<i8, CellError> {
+    let is_one_of = |words: &[&str]| words.iter().any(|word| text.eq_ignore_ascii_case(word));
+    if text.is_empty() {
+        Err(CellError::Empty)
+    } else if is_one_of(&["up", "shortening", "contracting"]) {
+        Ok(1)
+    } else if is_one_of(&["down", "lengthening", "extending"]) {
+        Ok(-1)
+    } else if is_one_of(&["rest", "hold"]) {
+        Ok(0)
+    } else {
+        number(text).ok().and_then(sign).ok_or_else(|| CellError::NotADirection { text: quoted(text) })
+    }
+}
+
+/// A direction written as a number.
+pub(crate) fn sign(value: f64) -> Option<i8> {
+    [(1.0, 1), (-1.0, -1), (0.0, 0)].into_iter().find(|(known, _)| *known == value).map(|(_, sign)| sign)
+}
+
+/// Why a text isn't a number.
+#[cold]
+fn no_number(text: &str) -> CellError {
+    let text = text.trim();
+    if text.is_empty() {
+        return CellError::Empty;
+    }
+    // The longest beginning that is a number; numbers are short.
+    let end = text.char_indices().map(|(at, c)| at + c.len_utf8()).take(40);
+    let starts = end.filter(|end| text[..*end].trim_end().parse::<f64>().is_ok_and(f64::is_finite)).last();
+    let fixed = text.replacen(',', ".", 1);
+    if text.matches(',').count() == 1 && fixed.parse::<f64>().is_ok() {
+        return CellError::DecimalComma { text: quoted(text), fixed: quoted(&fixed) };
+    }
+    match starts {
+        Some(end)
+            if text[end..].trim_start().starts_with(|c: char| c.is_alphabetic() || "%\u{b0}".contains(c)) =>
+        {
+            CellError::UnitInside { text: quoted(text), number: text[..end].trim_end().to_owned() }
+        }
+        _ => CellError::NotANumber { text: quoted(text) },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers() {
+        for (text, value) in [("1", 1.0), ("-2.5e3", -2500.0), ("+.5", 0.5), ("1E-3", 1e-3)] {
+            assert_eq!(number(text), Ok(value));
+        }
+        assert_eq!(whole("7"), Ok(7));
+        assert_eq!(whole("-3.0"), Ok(-3));
+        assert!(matches!(whole("3.5"), Err(CellError::NotWhole { .. })));
+        assert!(matches!(whole("1e300"), Err(CellError::NotWhole { .. })));
+    }
+
+    #[test]
+    fn no_numbers_and_why() {
+        for (text, part) in [
+            ("", "empty"),
+            ("nan", "finite"),
+            ("-inf", "finite"),
+            ("1e999", "finite"),
+            ("1,5", "write `1.5`"),
+            ("-0,25", "write `-0.25`"),
+            ("2 bar", "write `2` and put the unit"),
+            ("20%", "write `20`"),
+            ("1.5e1N", "write `1.5e1`"),
+            ("abc", "`abc` is not a number"),
+            ("1 000", "not a number"),
+            ("1.2.3", "not a number"),
+            ("\u{1f600}", "not a number"),
+        ] {
+            let message = number(text).unwrap_err().to_string();
+            assert!(message.contains(part), "{text}: {message}");
+        }
+    }
+
+    #[test]
+    fn directions() {
+        for (text, sign) in [
+            ("up", 1),
+            ("Shortening", 1),
+            ("contracting", 1),
+            ("+1", 1),
+            ("1.0", 1),
+            ("DOWN", -1),
+            ("lengthening", -1),
+            ("extending", -1),
+            ("-1", -1),
+            ("0", 0),
+            ("rest", 0),
+        ] {
+            assert_eq!(direction(text), Ok(sign), "{text}");
+        }
+        assert!(direction("2").unwrap_err().to_string().contains("`2` is not a direction"));
+        assert_eq!(direction(""), Err(CellError::Empty));
+    }
+}

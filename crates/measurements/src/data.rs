@@ -1,0 +1,372 @@
+//! The data set: checked columns, files, specimens and sweeps.
+
+use crate::columns::{Columns, Trace, picked};
+use crate::error::MeasurementError;
+use crate::resolution::{Resolution, bounds};
+use crate::source::{Source, SourceFile, fingerprint};
+use crate::stretch::{self, DeadBand, Stretch};
+use crate::sweep::{self, Sweep, SweepKind};
+use std::ops::Range;
+use std::path::Path;
+
+/// How the motion was measured, as measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Motion<'a> {
+    /// Contraction 1 - l/l0.
+    Contraction(&'a [f64]),
+    /// Length l between the fittings \[m\].
+    Length(&'a [f64]),
+}
+
+/// A set of measurements: at least pressure, motion and force of each row, all finite, in SI.
+///
+/// Rows with a time or a sweep label are a path: they follow each other, and [`Data::history`] says how the muscle moved. Without both
+/// they are a static map. Sweeps are the runs with one label; without labels a new one begins with another file or specimen, where the
+/// time goes back or pauses for more than 20 times the median time between rows, and where an isobaric run ends and another begins: pressure and
+/// motion jump within one row by more than 5 % of their range and 20 times their median change, between rows that move at constant pressure.
+///
+/// ```
+/// use bulge_measurements::{Data, SweepKind};
+/// let text = "\
+/// pressure [bar], length [mm], force [N], time [s]
+/// 2, 300, 900, 0.0
+/// 2, 290, 700, 0.1
+/// 2, 280, 520, 0.2
+/// ";
+/// let data = Data::from_csv(text, "pull.csv")?;
+/// assert_eq!((data.pressure()[0], data.sweeps()[0].kind), (2e5, SweepKind::Shortening));
+/// assert_eq!(data.contraction(0.3)[0], 0.0);
+/// let rate = data.history(0.3).rate[1];
+/// assert!((rate - 1.0 / 3.0).abs() < 1e-9);
+/// # Ok::<(), bulge_measurements::MeasurementError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Data {
+    columns: Columns,
+    files: Vec<SourceFile>,
+    lines: Vec<u32>,
+    specimen: Vec<u32>,
+    specimens: Vec<String>,
+    sweeps: Vec<Sweep>,
+    pub(crate) structure: Structure,
+}
+
+/// What follows from columns and sweeps.
+#[derive(Debug, Clone)]
+pub(crate) struct Structure {
+    /// The monotone stretches of each sweep; none in a static map.
+    pub(crate) stretches: Vec<Vec<Stretch>>,
+    /// Of the motion.
+    pub(crate) resolution: Resolution,
+    pub(crate) band: DeadBand,
+    /// 1 for contractions, the longest length for lengths: what a share of the muscle is, where l0 isn't known.
+    pub(crate) scale: f64,
+}
+
+impl Data {
+    /// Reads files of CSV or Parquet: by their extension, else by their first bytes. Several files are one analysis; they need the same columns,
+    /// and their sweeps are distinct. Without a column `specimen` all is about specimen "1".
+    ///
+    /// # Errors
+    /// If a file can't be read or isn't a table of measurements: the message names file, line, column and cure.
+    pub fn read(paths: &[impl AsRef<Path>]) -> Result<Self, MeasurementError> {
+        let mut all: Option<Self> = None;
+        for path in paths {
+            let source = Source::read(path.as_ref())?;
+            match &mut all {
+                None => all = Some(Self::start(source)),
+                Some(all) => all.add(source)?,
+            }
+        }
+        all.map(Self::structured).ok_or(MeasurementError::NoFile)
+    }
+
+    /// Reads CSV; `origin` is the name that messages give it.
+    ///
+    /// # Errors
+    /// If it isn't a table of measurements.
+    pub fn from_csv(text: &str, origin: &str) -> Result<Self, MeasurementError> {
+        Ok(Self::start(Source::csv(origin, text.as_bytes())?).structured())
+    }
+
+    /// Takes the columns of a program.
+    ///
+    /// # Errors
+    /// If there are no rows, the columns differ in length, or a value isn't finite.
+    pub fn from_columns(columns: Columns) -> Result<Self, MeasurementError> {
+        Ok(Self::start(Source::columns(columns)?).structured())
+    }
+
+    /// One file; specimens and sweeps come with `structured`.
+    fn start(source: Source) -> Self {
+        Self {
+            columns: source.table.columns,
+            files: vec![source.file],
+            lines: source.table.lines,
+            specimen: Vec::new(),
+            specimens: Vec::new(),
+            sweeps: Vec::new(),
+            structure: Structure {
+                stretches: Vec::new(),
+                resolution: Resolution::default(),
+                band: DeadBand::new(&Resolution::default(), 0, 1.0),
+                scale: 1.0,
+            },
+        }
+    }
+
+    fn add(&mut self, source: Source) -> Result<(), MeasurementError> {
+        let name = &source.file.name;
+        if let Some(same) = self.files.iter().find(|file| file.sha256 == source.file.sha256) {
+            return Err(MeasurementError::SameContent { first: same.name.clone(), second: name.clone() });
+        }
+        let first = self.files[0].name.clone();
+        self.columns.append(&source.table.columns, [&first, name])?;
+        self.lines.extend(source.table.lines);
+        self.files.push(source.file);
+        Ok(())
+    }
+
+    fn structured(mut self) -> Self {
+        let rows = self.len();
+        (self.specimen, self.specimens) = match &self.columns.specimen {
+            Some(labels) => (labels.rows().to_vec(), labels.names().to_vec()),
+            None => (vec![0; rows], vec!["1".to_owned()]),
+        };
+        let is_one = self.files.len() == 1;
+        let mut start = 0;
+        let files: Vec<_> = self
+            .files
+            .iter()
+            .map(|file| {
+                let rows = start..start + file.rows;
+                start = rows.end;
+                let stem = Path::new(&file.name).file_stem().unwrap_or_default().to_string_lossy();
+                (rows, if is_one { String::new() } else { format!("{stem}/") })
+            })
+            .collect();
+        self.sweeps = sweep::find(&self.columns, &self.specimen, &files);
+        self.finished()
+    }
+
+    /// Finds the stretches and the kinds of the sweeps.
+    fn finished(mut self) -> Self {
+        let motion = self.columns.motion.values();
+        let rows: Vec<Range<usize>> = self.sweeps.iter().map(|sweep| sweep.rows.clone()).collect();
+        let resolution = Resolution::of(motion, &rows);
+        let scale = match &self.columns.motion {
+            Trace::Contraction(_) => 1.0,
+            Trace::Length(lengths) => bounds(lengths).1,
+        };
+        let band = DeadBand::new(&resolution, rows.iter().map(Range::len).max().unwrap_or(0), scale);
+        let mut stretches = Vec::new();
+        if self.is_path() {
+            let shortening = self.shortening();
+            let largest = self.columns.pressure_pa.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+            let time = self.columns.time_s.as_deref();
+            for sweep in &mut self.sweeps {
+                let found = stretch::find(&shortening, time, &sweep.rows, band);
+                let (pressure, motion) =
+                    (&self.columns.pressure_pa[sweep.rows.clone()], &shortening[sweep.rows.clone()]);
+                sweep.kind = sweep::kind(&found, pressure, motion, scale, largest);
+                stretches.push(found);
+            }
+        }
+        self.structure = Structure { stretches, resolution, band, scale };
+        self
+    }
+
+    /// Whether rows follow each other: they have a time or a sweep label.
+    #[must_use]
+    pub fn is_path(&self) -> bool {
+        self.columns.time_s.is_some() || self.columns.sweep.is_some()
+    }
+
+    /// What grows when the muscle shortens: the contraction, or the negative length \[m\].
+    pub(crate) fn shortening(&self) -> Vec<f64> {
+        match &self.columns.motion {
+            Trace::Contraction(values) => values.clone(),
+            Trace::Length(values) => values.iter().map(|length| -length).collect(),
+        }
+    }
+
+    /// What a shortening of 1 is as a contraction, for a muscle of length `l0`.
+    pub(crate) fn contraction_per_shortening(&self, l0: f64) -> f64 {
+        match &self.columns.motion {
+            Trace::Contraction(_) => 1.0,
+            Trace::Length(_) => 1.0 / l0,
+        }
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Whether no row is left, which only [`Data::subset`] can bring about.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Gauge pressure of each row \[Pa\].
+    #[must_use]
+    pub fn pressure(&self) -> &[f64] {
+        &self.columns.pressure_pa
+    }
+
+    /// Contraction or length of each row, whichever was measured.
+    #[must_use]
+    pub fn motion(&self) -> Motion<'_> {
+        match &self.columns.motion {
+            Trace::Contraction(values) => Motion::Contraction(values),
+            Trace::Length(values) => Motion::Length(values),
+        }
+    }
+
+    /// Contraction of each row, 1 - l/l0 where the length was measured. `l0` is the length of the unpressurised muscle \[m\], > 0.
+    #[must_use]
+    pub fn contraction(&self, l0: f64) -> Vec<f64> {
+        match &self.columns.motion {
+            Trace::Contraction(values) => values.clone(),
+            Trace::Length(values) => values.iter().map(|length| 1.0 - length / l0).collect(),
+        }
+    }
+
+    /// Force of each row \[N\].
+    #[must_use]
+    pub fn force(&self) -> &[f64] {
+        &self.columns.force_n
+    }
+
+    /// Time of each row \[s\].
+    #[must_use]
+    pub fn time(&self) -> Option<&[f64]> {
+        self.columns.time_s.as_deref()
+    }
+
+    /// Temperature of each row \[K\].
+    #[must_use]
+    pub fn temperature(&self) -> Option<&[f64]> {
+        self.columns.temperature_k.as_deref()
+    }
+
+    /// Largest diameter of each row \[m\].
+    #[must_use]
+    pub fn diameter(&self) -> Option<&[f64]> {
+        self.columns.diameter_m.as_deref()
+    }
+
+    /// Enclosed volume of each row \[m^3\].
+    #[must_use]
+    pub fn volume(&self) -> Option<&[f64]> {
+        self.columns.volume_m3.as_deref()
+    }
+
+    /// Standard deviation of the force of each row \[N\].
+    #[must_use]
+    pub fn force_sd(&self) -> Option<&[f64]> {
+        self.columns.force_sd_n.as_deref()
+    }
+
+    /// Number of the load cycle of each row, as stated.
+    #[must_use]
+    pub fn cycle(&self) -> Option<&[i64]> {
+        self.columns.cycle.as_deref()
+    }
+
+    /// Direction of each row as stated: +1 shortening, -1 lengthening, 0 at rest. How it moved is in [`Data::history`].
+    #[must_use]
+    pub fn stated_direction(&self) -> Option<&[i8]> {
+        self.columns.direction.as_deref()
+    }
+
+    /// For each row, the place of its specimen in [`Data::specimens`].
+    #[must_use]
+    pub fn specimen(&self) -> &[u32] {
+        &self.specimen
+    }
+
+    /// Names of the specimens, in the order in which they appear.
+    #[must_use]
+    pub fn specimens(&self) -> &[String] {
+        &self.specimens
+    }
+
+    /// The sweeps, in order; their rows follow each other and are all rows.
+    #[must_use]
+    pub fn sweeps(&self) -> &[Sweep] {
+        &self.sweeps
+    }
+
+    /// Index of the file of a row, and its line there (CSV) or its number (Parquet), counted from 1; line 0 if there is no such row.
+    #[must_use]
+    pub fn line(&self, row: usize) -> (usize, usize) {
+        let mut end = 0;
+        let file = self.files.iter().position(|file| {
+            end += file.rows;
+            row < end
+        });
+        (file.unwrap_or(0), self.lines.get(row).map_or(0, |line| *line as usize))
+    }
+
+    /// The files.
+    #[must_use]
+    pub fn files(&self) -> &[SourceFile] {
+        &self.files
+    }
+
+    /// SHA-256 of the file, in hexadecimal; of several files, that of their digests written one after another.
+    #[must_use]
+    pub fn sha256(&self) -> String {
+        match self.files.as_slice() {
+            [file] => file.sha256.clone(),
+            files => {
+                fingerprint(files.iter().map(|file| file.sha256.as_str()).collect::<String>().as_bytes())
+            }
+        }
+    }
+
+    /// The rows that are kept, as a data set of its own; a row beyond `keep` is not kept.
+    ///
+    /// A sweep that loses rows stays one sweep, one that loses all of them is gone. Files and specimens keep their places. How the muscle moved is found
+    /// anew from what is left: to keep what all rows say, take [`crate::History::subset`] of the whole.
+    #[must_use]
+    pub fn subset(&self, keep: &[bool]) -> Self {
+        let is_kept = |row: &usize| keep.get(*row).copied().unwrap_or(false);
+        let kept: Vec<usize> = (0..self.len()).filter(is_kept).collect();
+        let count = |rows: &Range<usize>| {
+            kept.partition_point(|row| *row < rows.start)..kept.partition_point(|row| *row < rows.end)
+        };
+        let mut found = self.clone();
+        found.columns.filter(&kept);
+        found.lines = picked(&self.lines, &kept);
+        found.specimen = picked(&self.specimen, &kept);
+        let mut start = 0;
+        for file in &mut found.files {
+            let rows = start..start + file.rows;
+            start = rows.end;
+            file.rows = count(&rows).len();
+        }
+        found.sweeps.iter_mut().for_each(|sweep| sweep.rows = count(&sweep.rows));
+        found.sweeps.retain(|sweep| !sweep.rows.is_empty());
+        found.finished()
+    }
+
+    /// All columns.
+    pub(crate) fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    /// The sweep of a row.
+    pub(crate) fn sweep_of(&self, row: usize) -> usize {
+        self.sweeps.partition_point(|sweep| sweep.rows.end <= row)
+    }
+
+    /// Whether the kind of a sweep means that its rows follow each other.
+    pub(crate) fn paths(&self) -> impl Iterator<Item = (&Sweep, &[Stretch])> {
+        let stretches = self.structure.stretches.iter().map(Vec::as_slice);
+        self.sweeps.iter().filter(|sweep| sweep.kind != SweepKind::Static).zip(stretches)
+    }
+}

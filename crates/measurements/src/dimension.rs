@@ -1,0 +1,110 @@
+//! Time and temperature, which only measurements have, and the scale from a column's unit to SI.
+
+use bulge_muscles::units::{Quantity, UnitError, factor};
+
+/// A time in seconds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Time(f64);
+
+impl Quantity for Time {
+    const NAME: &'static str = "time";
+    const EXAMPLE: &'static str = "10 s";
+    const SHOWN: (&'static str, f64) = ("s", 1.0);
+    const UNITS: &'static [(&'static str, f64)] =
+        &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0), ("h", 3600.0)];
+
+    fn from_si(value: f64) -> Self {
+        Self(value)
+    }
+
+    fn si(self) -> f64 {
+        self.0
+    }
+}
+
+/// A temperature in kelvin; the factors are those of differences, the zero points are in [`Scale`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Temperature(f64);
+
+impl Quantity for Temperature {
+    const NAME: &'static str = "temperature";
+    const EXAMPLE: &'static str = "20 degC";
+    const SHOWN: (&'static str, f64) = ("degC", 1.0);
+    const UNITS: &'static [(&'static str, f64)] = &[("K", 1.0), ("C", 1.0), ("degC", 1.0)];
+
+    fn from_si(value: f64) -> Self {
+        Self(value)
+    }
+
+    fn si(self) -> f64 {
+        self.0
+    }
+}
+
+/// 0 degC in kelvin.
+const CELSIUS_ZERO: f64 = 273.15;
+
+/// From numbers in a unit to SI: `si = number * factor + zero`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Scale {
+    factor: f64,
+    /// 1/factor where that is a whole number: 5 um divided by 1e6 is the same number as 5e-6, multiplied it is not.
+    divisor: Option<f64>,
+    zero: f64,
+}
+
+impl Scale {
+    /// Pure numbers and SI units.
+    pub(crate) const SI: Self = Self { factor: 1.0, divisor: None, zero: 0.0 };
+
+    /// The scale of a unit of a dimension.
+    pub(crate) fn of<Q: Quantity>(unit: &str) -> Result<Self, UnitError> {
+        let factor = factor::<Q>(unit)?;
+        let inverse = (1.0 / factor).round();
+        let is_whole = inverse > 1.0 && (inverse * factor - 1.0).abs() <= 2.0 * f64::EPSILON;
+        Ok(Self { factor, divisor: is_whole.then_some(inverse), zero: 0.0 })
+    }
+
+    /// The scale of a unit of temperature.
+    pub(crate) fn of_temperature(unit: &str) -> Result<Self, UnitError> {
+        let scale = Self::of::<Temperature>(unit)?;
+        let is_celsius = unit.trim_end().ends_with('C');
+        Ok(Self { zero: if is_celsius { CELSIUS_ZERO } else { 0.0 }, ..scale })
+    }
+
+    /// A number in SI.
+    pub(crate) fn si(self, number: f64) -> f64 {
+        self.divisor.map_or_else(|| number * self.factor, |divisor| number / divisor) + self.zero
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_muscles::{Length, Pressure, Ratio};
+
+    #[test]
+    fn numbers_become_si() {
+        let of_time = |unit, number| Scale::of::<Time>(unit).map(|scale| scale.si(number));
+        assert_eq!(of_time("s", 2.5), Ok(2.5));
+        assert_eq!(of_time("ms", 250.0), Ok(0.25));
+        assert_eq!(of_time("min", 1.5), Ok(90.0));
+        assert_eq!(of_time("h", 0.5), Ok(1800.0));
+        let kelvin = |unit, number| Scale::of_temperature(unit).map(|scale| scale.si(number));
+        assert_eq!(kelvin("K", 293.0), Ok(293.0));
+        for unit in ["C", "degC", "\u{b0}C", " degC "] {
+            assert_eq!(kelvin(unit, 20.0), Ok(293.15), "{unit}");
+        }
+        assert!(kelvin("degF", 68.0).unwrap_err().to_string().contains("degC"));
+        assert!(of_time("sec", 1.0).unwrap_err().to_string().contains("ms"));
+    }
+
+    #[test]
+    fn decimal_units_are_the_literal() {
+        assert_eq!(Scale::of::<Length>("mm").map(|s| s.si(296.0)), Ok(0.296));
+        assert_eq!(Scale::of::<Length>("um").map(|s| s.si(5.0)), Ok(5e-6));
+        assert_eq!(Scale::of::<Ratio>("%").map(|s| s.si(7.0)), Ok(0.07));
+        assert_eq!(Scale::of::<Pressure>("kPa").map(|s| s.si(35.0)), Ok(35_000.0));
+        assert_eq!(Scale::SI.si(0.1), 0.1);
+    }
+}

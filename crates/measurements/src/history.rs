@@ -1,0 +1,173 @@
+//! How the muscle moved: direction, rate, reversals and cycles of each row.
+
+use crate::columns::picked;
+use crate::data::Data;
+use crate::rate;
+use crate::stretch::Stretch;
+use crate::sweep::Sweep;
+use serde::Serialize;
+
+/// How the muscle moved, one value per row.
+///
+/// Directions come from turning points: a row is one if the contraction goes back from it by more than a dead band before it goes on. The band is the
+/// largest of 1.5 quantisation steps, 2 (1 + sqrt(2 ln n)) standard deviations of the noise (n rows in the longest sweep), and 1/1000 of the travel.
+/// Rows that stay within the band for three times as long as a sine near its turning point are at rest. A turning point belongs to the
+/// stretch that it ends, so that a row's direction is that of the motion that led to it; the first row of a sweep takes that of the second.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct History {
+    /// +1 shortening, -1 lengthening, 0 at rest. In a static map: as stated, else 0.
+    pub direction: Vec<f64>,
+    /// Direction of the last motion, also at rest: the branch of a hysteresis loop on which the row lies; 0 before any motion.
+    pub approach: Vec<f64>,
+    /// Rate of contraction \[1/s\], positive when shortening; 0 at rest, without time and in a static map.
+    pub rate: Vec<f64>,
+    /// Contraction since the last reversal, or since the start of the sweep, >= 0.
+    pub since_reversal: Vec<f64>,
+    /// Time since the last reversal, or since the start of the sweep \[s\]; 0 without time.
+    pub time_since_reversal: Vec<f64>,
+    /// Time \[s\]; 0 without time.
+    pub time: Vec<f64>,
+    /// Number of the load cycle: as stated, else the full loops that the specimen has done so far, from 0, over all its sweeps. A sweep in the
+    /// direction of the one before it, and from farther back, counts as a loop whose return was not measured.
+    pub cycle: Vec<f64>,
+    /// Number of the monotone stretch in its sweep, from 0; a rest is one too.
+    pub branch: Vec<u32>,
+    /// Whether rows follow each other (they have a time or a sweep label).
+    pub is_path: bool,
+}
+
+impl History {
+    /// The rows that are kept; a row beyond `keep` is not kept.
+    #[must_use]
+    pub fn subset(&self, keep: &[bool]) -> Self {
+        let rows: Vec<usize> =
+            keep.iter().enumerate().filter(|(_, kept)| **kept).map(|(row, _)| row).collect();
+        Self {
+            direction: picked(&self.direction, &rows),
+            approach: picked(&self.approach, &rows),
+            rate: picked(&self.rate, &rows),
+            since_reversal: picked(&self.since_reversal, &rows),
+            time_since_reversal: picked(&self.time_since_reversal, &rows),
+            time: picked(&self.time, &rows),
+            cycle: picked(&self.cycle, &rows),
+            branch: picked(&self.branch, &rows),
+            is_path: self.is_path,
+        }
+    }
+}
+
+impl Data {
+    /// How the muscle moved. `l0` is the length of the unpressurised muscle \[m\], > 0; it matters only where the length was measured.
+    #[must_use]
+    pub fn history(&self, l0: f64) -> History {
+        let rows = self.len();
+        let mut history = History {
+            direction: vec![0.0; rows],
+            approach: vec![0.0; rows],
+            rate: vec![0.0; rows],
+            since_reversal: vec![0.0; rows],
+            time_since_reversal: vec![0.0; rows],
+            time: self.time().map_or_else(|| vec![0.0; rows], <[f64]>::to_vec),
+            cycle: vec![0.0; rows],
+            branch: vec![0; rows],
+            is_path: self.is_path(),
+        };
+        if history.is_path {
+            let shortening = self.shortening();
+            let mut loops: Vec<Loops> = vec![Loops::default(); self.specimens().len()];
+            for (sweep, stretches) in self.paths() {
+                self.follow(sweep, stretches, &shortening, self.contraction_per_shortening(l0), &mut history);
+                if let Some(loops) = loops.get_mut(sweep.specimen as usize) {
+                    loops.count(sweep, stretches, &shortening, self.structure.band.width, &mut history.cycle);
+                }
+            }
+        } else if let Some(stated) = self.stated_direction() {
+            history.direction = stated.iter().map(|direction| f64::from(*direction)).collect();
+            history.approach.clone_from(&history.direction);
+            for sweep in self.sweeps() {
+                let runs = stated[sweep.rows.clone()].chunk_by(|a, b| a == b);
+                let branches =
+                    runs.zip(0_u32..).flat_map(|(run, branch)| std::iter::repeat_n(branch, run.len()));
+                history.branch.splice(sweep.rows.clone(), branches);
+            }
+        }
+        if let Some(cycle) = self.cycle() {
+            history.cycle = cycle.iter().map(|cycle| *cycle as f64).collect();
+        }
+        history
+    }
+
+    /// Directions, rates and reversals of one sweep.
+    fn follow(
+        &self,
+        sweep: &Sweep,
+        stretches: &[Stretch],
+        s: &[f64],
+        contraction: f64,
+        history: &mut History,
+    ) {
+        let time = self.time();
+        let (mut approach, mut reversal) = (0_i8, sweep.rows.start);
+        for (stretch, branch) in stretches.iter().zip(0_u32..) {
+            let from = stretch.from(&sweep.rows);
+            if stretch.direction != 0 {
+                if approach == -stretch.direction {
+                    reversal = from;
+                }
+                approach = stretch.direction;
+            }
+            for row in stretch.rows.clone() {
+                history.direction[row] = f64::from(stretch.direction);
+                history.approach[row] = f64::from(approach);
+                history.branch[row] = branch;
+                history.since_reversal[row] = ((s[row] - s[reversal]) * contraction).abs();
+                history.time_since_reversal[row] =
+                    time.map_or(0.0, |time| (time[row] - time[reversal]).max(0.0));
+            }
+            if let Some(time) = time
+                && stretch.direction != 0
+            {
+                let all = from..stretch.rows.end;
+                let resolution = &self.structure.resolution;
+                let rates = rate::along(&s[all.clone()], &time[all.clone()], stretch.direction, resolution);
+                let own = rates.iter().skip(stretch.rows.start - from).map(|rate| rate * contraction);
+                history.rate.splice(stretch.rows.clone(), own);
+            }
+        }
+    }
+}
+
+/// Full loops of a specimen so far.
+#[derive(Debug, Clone, Copy, Default)]
+struct Loops {
+    /// Direction in which it moved first; 0 before any motion.
+    first: i8,
+    /// Direction and end of the last motion.
+    last: i8,
+    end: f64,
+    done: u32,
+}
+
+impl Loops {
+    fn count(&mut self, sweep: &Sweep, stretches: &[Stretch], s: &[f64], band: f64, cycle: &mut [f64]) {
+        for (i, stretch) in stretches.iter().enumerate() {
+            let direction = stretch.direction;
+            if direction != 0 {
+                let start = s[stretch.from(&sweep.rows)];
+                let is_back = (self.end - start) * f64::from(direction) > band;
+                let is_new_sweep = stretches[..i].iter().all(|earlier| earlier.direction == 0);
+                let returns = if direction == self.last {
+                    is_new_sweep && is_back
+                } else {
+                    self.last != 0 && direction == self.first
+                };
+                self.done += u32::from(returns);
+                if self.first == 0 {
+                    self.first = direction;
+                }
+                (self.last, self.end) = (direction, s[stretch.rows.end - 1]);
+            }
+            cycle[stretch.rows.clone()].fill(f64::from(self.done));
+        }
+    }
+}

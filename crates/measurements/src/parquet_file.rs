@@ -1,0 +1,176 @@
+//! Parquet: the same columns and checks as in CSV; a column's name is its heading, such as `length [mm]`.
+
+use crate::csv_file::{MOST_ROWS, Table};
+use crate::error::{CellError, MeasurementError};
+use crate::heading;
+use crate::quote::quoted;
+use crate::slot::{Slot, columns};
+use parquet::basic::{ConvertedType, LogicalType};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::DataType;
+use parquet::errors::ParquetError;
+use parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
+use parquet::schema::types::ColumnDescriptor;
+
+/// Rows that are decoded at a time.
+const BATCH: usize = 1 << 14;
+
+/// Reads Parquet. `file` is its name, for messages.
+pub(crate) fn read<R: ChunkReader + 'static>(file: &str, source: R) -> Result<Table, MeasurementError> {
+    let refused = |error: &ParquetError| MeasurementError::Parquet {
+        file: file.to_owned(),
+        why: quoted(&error.to_string()),
+    };
+    let reader = SerializedFileReader::new(source).map_err(|error| refused(&error))?;
+    let schema = reader.metadata().file_metadata().schema_descr();
+    let names: Vec<String> = schema.columns().iter().map(|column| column.path().string()).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let headings = heading::read(file, 1, &names)?;
+    for (column, heading) in schema.columns().iter().zip(&headings) {
+        checked_type(file, column, &heading.text)?;
+    }
+    let mut slots: Vec<Slot> = headings.into_iter().map(|heading| Slot::new(heading, 0)).collect();
+    let mut rows = vec![0; slots.len()];
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group).map_err(|error| refused(&error))?;
+        for (i, (slot, rows)) in slots.iter_mut().zip(&mut rows).enumerate() {
+            let column = group.get_column_reader(i).map_err(|error| refused(&error))?;
+            let found = match column {
+                ColumnReader::Int32ColumnReader(column) => {
+                    numbers(column, rows, slot, |value| f64::from(*value))
+                }
+                ColumnReader::Int64ColumnReader(column) => numbers(column, rows, slot, |value| *value as f64),
+                ColumnReader::FloatColumnReader(column) => {
+                    numbers(column, rows, slot, |value| f64::from(*value))
+                }
+                ColumnReader::DoubleColumnReader(column) => numbers(column, rows, slot, |value| *value),
+                ColumnReader::ByteArrayColumnReader(column) => texts(column, rows, slot),
+                // Refused by `checked_type` already.
+                _ => Ok(()),
+            };
+            found.map_err(|problem| problem.at(file, *rows + 1, slot))?;
+        }
+    }
+    let expected = rows.first().copied().unwrap_or(0);
+    if let Some(found) = rows.iter().find(|rows| **rows != expected) {
+        let why = format!("its columns have {expected} and {found} rows");
+        return Err(MeasurementError::Parquet { file: file.to_owned(), why });
+    }
+    if expected == 0 {
+        return Err(MeasurementError::NoRows { file: file.to_owned() });
+    }
+    let last = u32::try_from(expected).unwrap_or(u32::MAX);
+    Ok(Table { columns: columns(slots), lines: (1..=last).collect() })
+}
+
+/// A plain column of numbers or text. A date or a decimal is stored as an integer too, in a unit of its own.
+fn checked_type(file: &str, column: &ColumnDescriptor, heading: &str) -> Result<(), MeasurementError> {
+    use parquet::basic::Type;
+    let logical = column.logical_type_ref();
+    let is_plain = match logical {
+        None => matches!(
+            column.converted_type(),
+            ConvertedType::NONE
+                | ConvertedType::UTF8
+                | ConvertedType::ENUM
+                | ConvertedType::INT_8
+                | ConvertedType::INT_16
+                | ConvertedType::INT_32
+                | ConvertedType::INT_64
+                | ConvertedType::UINT_8
+                | ConvertedType::UINT_16
+        ),
+        Some(LogicalType::String | LogicalType::Enum) => true,
+        // Large unsigned numbers would be read as negative ones.
+        Some(LogicalType::Integer(integer)) => integer.is_signed || integer.bit_width < 32,
+        Some(_) => false,
+    };
+    let physical = column.physical_type();
+    let is_known =
+        matches!(physical, Type::INT32 | Type::INT64 | Type::FLOAT | Type::DOUBLE | Type::BYTE_ARRAY);
+    if is_plain && is_known && column.max_rep_level() == 0 {
+        return Ok(());
+    }
+    let found = match logical {
+        _ if column.max_rep_level() > 0 => format!("list of {physical}"),
+        Some(logical) => format!("{physical} as {logical:?}"),
+        None => format!("{physical} as {}", column.converted_type()),
+    };
+    Err(MeasurementError::ParquetType {
+        file: file.to_owned(),
+        column: heading.to_owned(),
+        found: quoted(&found),
+    })
+}
+
+/// Why a column can't be read; the row is the one after those that could.
+enum Problem {
+    Cell(CellError),
+    Reader(ParquetError),
+    TooMany,
+}
+
+impl Problem {
+    fn at(self, file: &str, line: usize, slot: &Slot) -> MeasurementError {
+        let file = file.to_owned();
+        match self {
+            Self::Cell(problem) => {
+                MeasurementError::Cell { file, line, column: slot.heading.text.clone(), problem }
+            }
+            Self::Reader(error) => MeasurementError::Parquet { file, why: quoted(&error.to_string()) },
+            Self::TooMany => MeasurementError::TooManyRows { file, line, limit: MOST_ROWS },
+        }
+    }
+}
+
+fn numbers<T: DataType>(
+    column: ColumnReaderImpl<T>,
+    rows: &mut usize,
+    slot: &mut Slot,
+    number: impl Fn(&T::T) -> f64,
+) -> Result<(), Problem> {
+    each(column, rows, |value| slot.push_number(number(value)))
+}
+
+fn texts(
+    column: ColumnReaderImpl<parquet::data_type::ByteArrayType>,
+    rows: &mut usize,
+    slot: &mut Slot,
+) -> Result<(), Problem> {
+    each(column, rows, |value| {
+        let text = std::str::from_utf8(value.data())
+            .map_err(|_| CellError::NotANumber { text: "text that is not UTF-8".to_owned() })?;
+        slot.push_text(text.trim())
+    })
+}
+
+/// Hands over every value of a column; counts the rows that were taken.
+fn each<T: DataType>(
+    mut column: ColumnReaderImpl<T>,
+    rows: &mut usize,
+    mut take: impl FnMut(&T::T) -> Result<(), CellError>,
+) -> Result<(), Problem> {
+    let (mut values, mut levels) = (Vec::new(), Vec::new());
+    loop {
+        values.clear();
+        levels.clear();
+        let (records, count, _) =
+            column.read_records(BATCH, Some(&mut levels), None, &mut values).map_err(Problem::Reader)?;
+        if records == 0 {
+            return Ok(());
+        }
+        if *rows + records > MOST_ROWS {
+            return Err(Problem::TooMany);
+        }
+        // A value that is missing has the level 0 of an optional column.
+        let present =
+            if count == records { records } else { levels.iter().take_while(|level| **level > 0).count() };
+        for value in values.iter().take(present) {
+            take(value).map_err(Problem::Cell)?;
+            *rows += 1;
+        }
+        if count != records {
+            return Err(Problem::Cell(CellError::Empty));
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Files: their format, their fingerprint, and what is read from them.
+
+use crate::columns::Columns;
+use crate::csv_file::{self, Table};
+use crate::error::{CellError, MeasurementError};
+use crate::parquet_file;
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// Most bytes of a file.
+const MOST_BYTES: u64 = 2 << 30;
+/// The first bytes of every Parquet file.
+const PARQUET_MAGIC: &[u8] = b"PAR1";
+
+/// A file of measurements.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct SourceFile {
+    /// Its name, as it was given.
+    pub name: String,
+    /// SHA-256 of its bytes, in hexadecimal.
+    pub sha256: String,
+    /// Its rows in this data set.
+    pub rows: usize,
+}
+
+/// A file as read.
+pub(crate) struct Source {
+    pub(crate) file: SourceFile,
+    pub(crate) table: Table,
+}
+
+impl Source {
+    /// Reads a file: Parquet if the extension says so, or where the extension says nothing, its first bytes; else CSV.
+    pub(crate) fn read(path: &Path) -> Result<Self, MeasurementError> {
+        let name = path.display().to_string();
+        let unreadable =
+            |why: &std::io::Error| MeasurementError::Unreadable { file: name.clone(), why: why.to_string() };
+        let mut file = File::open(path).map_err(|error| unreadable(&error))?;
+        let metadata = file.metadata().map_err(|error| unreadable(&error))?;
+        let too_large = |bytes| MeasurementError::TooLarge { file: name.clone(), bytes, limit: MOST_BYTES };
+        if metadata.is_dir() {
+            let why = "it is a folder".to_owned();
+            return Err(MeasurementError::Unreadable { file: name, why });
+        }
+        if metadata.len() > MOST_BYTES {
+            return Err(too_large(metadata.len()));
+        }
+        let mut bytes = Vec::new();
+        let found = file.by_ref().take(MOST_BYTES + 1).read_to_end(&mut bytes);
+        found.map_err(|error| unreadable(&error))?;
+        if bytes.len() as u64 > MOST_BYTES {
+            return Err(too_large(bytes.len() as u64));
+        }
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let is_parquet = match extension.as_str() {
+            "parquet" | "pq" => true,
+            "csv" | "tsv" | "txt" => false,
+            _ => bytes.starts_with(PARQUET_MAGIC),
+        };
+        if !is_parquet {
+            return Self::csv(&name, &bytes);
+        }
+        let sha256 = fingerprint(&bytes);
+        drop(bytes);
+        Ok(Self::new(&name, sha256, parquet_file::read(&name, file)?))
+    }
+
+    /// Reads CSV.
+    pub(crate) fn csv(name: &str, bytes: &[u8]) -> Result<Self, MeasurementError> {
+        Ok(Self::new(name, fingerprint(bytes), csv_file::read(name, bytes)?))
+    }
+
+    /// Checks the columns of a program.
+    pub(crate) fn columns(columns: Columns) -> Result<Self, MeasurementError> {
+        let name = "columns";
+        checked(name, &columns)?;
+        let mut hash = Sha256::new();
+        for (name, values) in columns.numbers() {
+            hash.update(name);
+            values.iter().for_each(|value| hash.update(value.to_le_bytes()));
+        }
+        for labels in [&columns.sweep, &columns.specimen].into_iter().flatten() {
+            labels.rows().iter().for_each(|row| hash.update(labels.names()[*row as usize].as_bytes()));
+        }
+        columns.cycle.iter().flatten().for_each(|cycle| hash.update(cycle.to_le_bytes()));
+        columns.direction.iter().flatten().for_each(|direction| hash.update(direction.to_le_bytes()));
+        let last = u32::try_from(columns.len()).unwrap_or(u32::MAX);
+        let table = Table { columns, lines: (1..=last).collect() };
+        Ok(Self::new(name, hexadecimal(&hash.finalize()), table))
+    }
+
+    fn new(name: &str, sha256: String, table: Table) -> Self {
+        let file = SourceFile { name: name.to_owned(), sha256, rows: table.lines.len() };
+        Self { file, table }
+    }
+}
+
+/// Equal lengths, finite numbers, known directions.
+fn checked(file: &str, columns: &Columns) -> Result<(), MeasurementError> {
+    let expected = columns.len();
+    let lengths = columns.numbers().map(|(name, values)| (name, values.len())).chain(columns.marks());
+    for (name, found) in lengths {
+        if found != expected {
+            return Err(MeasurementError::LengthsDiffer { name, found, expected });
+        }
+    }
+    if expected == 0 {
+        return Err(MeasurementError::NoRows { file: file.to_owned() });
+    }
+    if expected > csv_file::MOST_ROWS {
+        let limit = csv_file::MOST_ROWS;
+        return Err(MeasurementError::TooManyRows { file: file.to_owned(), line: limit + 1, limit });
+    }
+    let at = |row: usize, column: &str, problem| MeasurementError::Cell {
+        file: file.to_owned(),
+        line: row + 1,
+        column: column.to_owned(),
+        problem,
+    };
+    for (name, values) in columns.numbers() {
+        if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+            return Err(at(row, name, CellError::NotFinite { text: values[row].to_string() }));
+        }
+    }
+    let directions = columns.direction.iter().flatten();
+    if let Some((row, value)) = directions.enumerate().find(|(_, value)| value.unsigned_abs() > 1) {
+        return Err(at(row, "direction", CellError::NotADirection { text: value.to_string() }));
+    }
+    Ok(())
+}
+
+/// SHA-256 in hexadecimal.
+pub(crate) fn fingerprint(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+fn hexadecimal(digest: &[u8]) -> String {
+    const DIGITS: &[u8; 16] = b"0123456789abcdef";
+    digest
+        .iter()
+        .flat_map(|byte| [byte >> 4, byte & 15])
+        .map(|digit| char::from(DIGITS[usize::from(digit)]))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::Trace;
+
+    #[test]
+    fn fingerprints_are_those_of_the_standard() {
+        // FIPS 180-2, appendix B.1.
+        assert_eq!(fingerprint(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+
+    #[test]
+    fn columns_of_a_program_are_checked() {
+        let columns = || Columns::new(vec![1e5; 2], Trace::Length(vec![0.1; 2]), vec![1.0; 2]);
+        let says = |columns| Source::columns(columns).err().unwrap().to_string();
+        let mut short = columns();
+        short.force_n.pop();
+        assert!(says(short).contains("`force` has 1 values, `pressure` has 2"));
+        let mut infinite = columns();
+        infinite.time_s = Some(vec![0.0, f64::NAN]);
+        assert!(says(infinite).contains("columns:2: column `time`: `NaN`"));
+        let mut odd = columns();
+        odd.direction = Some(vec![0, -3]);
+        assert!(says(odd).contains("`-3` is not a direction"));
+        let none = Columns::new(Vec::new(), Trace::Length(Vec::new()), Vec::new());
+        assert!(says(none).contains("no row"));
+    }
+}

@@ -1,0 +1,350 @@
+//! Monotone stretches of a motion: turning points by a zigzag with a dead band, and rests.
+
+use crate::resolution::{Resolution, median};
+use std::collections::VecDeque;
+use std::ops::Range;
+
+/// Rows over which the motion keeps its direction.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Stretch {
+    /// The rows that belong to it: a turning point belongs to the stretch that it ends.
+    pub(crate) rows: Range<usize>,
+    /// +1 shortening, -1 lengthening, 0 at rest.
+    pub(crate) direction: i8,
+}
+
+impl Stretch {
+    /// The row at which the motion starts: the turning point before it, or the first row of the sweep.
+    pub(crate) fn from(&self, sweep: &Range<usize>) -> usize {
+        if self.rows.start > sweep.start { self.rows.start - 1 } else { self.rows.start }
+    }
+}
+
+/// How large a motion is no noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct DeadBand {
+    /// A reversal counts if the motion goes back by more.
+    pub(crate) width: f64,
+    /// Half the band that noise and quantisation need, without the share of the travel.
+    half_noise: f64,
+}
+
+impl DeadBand {
+    /// Smallest reversal, as a share of all the travel in the data.
+    const OF_TRAVEL: f64 = 1e-3;
+    /// Noise of a contraction is not worse; a larger zigzag is motion, such as a list of set points. Same for lengths, as a share of the longest.
+    const MOST_NOISE: f64 = 0.003;
+    /// Steps of a length sensor are not wider; a wider grid is a list of set points.
+    const WIDEST_STEP: f64 = 0.005;
+
+    /// For a motion read with this resolution, in sweeps of at most `rows` rows; `scale` is 1 for contractions and the longest length for lengths.
+    ///
+    /// The band is the largest of 1.5 quantisation steps (a reading flips by one step), 2 (1 + sqrt(2 ln n)) standard deviations
+    /// of the noise (n normal numbers stay within +-sqrt(2 ln n), nearly always within one more), and 1/1000 of the travel.
+    pub(crate) fn new(resolution: &Resolution, rows: usize, scale: f64) -> Self {
+        let noise = resolution.noise.min(Self::MOST_NOISE * scale);
+        let step = if resolution.step <= Self::WIDEST_STEP * scale { resolution.step } else { 0.0 };
+        let spread = 1.0 + (2.0 * (rows.max(2) as f64).ln()).sqrt();
+        let half_noise = (0.75 * step).max(spread * noise);
+        Self { width: (2.0 * half_noise).max(Self::OF_TRAVEL * resolution.range), half_noise }
+    }
+}
+
+/// The stretches of one sweep, in order, covering `rows`. `shortening` is the contraction or the negative length, `time` is that of all rows.
+pub(crate) fn find(
+    shortening: &[f64],
+    time: Option<&[f64]>,
+    rows: &Range<usize>,
+    band: DeadBand,
+) -> Vec<Stretch> {
+    let s = shortening.get(rows.clone()).unwrap_or_default();
+    if s.is_empty() {
+        return Vec::new();
+    }
+    let legs = legs(s, band.width);
+    // The direction of the step that leads to each row.
+    let mut directions = Vec::with_capacity(s.len());
+    for leg in &legs {
+        directions.resize(leg.end + 1, leg.direction);
+    }
+    let time = time.and_then(|time| time.get(rows.clone())).filter(|t| t.windows(2).all(|w| w[0] <= w[1]));
+    for rest in rests(s, time, &legs, band) {
+        directions[rest.start + 1..rest.end].fill(0);
+    }
+    // No step leads to the first row: it begins what follows.
+    if let Some(second) = directions.get(1).copied() {
+        directions[0] = second;
+    }
+    let mut found = Vec::new();
+    let mut start = 0;
+    for part in directions.chunk_by(|a, b| a == b) {
+        let end = start + part.len();
+        found.push(Stretch { rows: rows.start + start..rows.start + end, direction: part[0] });
+        start = end;
+    }
+    found
+}
+
+/// From one turning point to the next; the rows count from the start of the sweep.
+struct Leg {
+    start: usize,
+    end: usize,
+    direction: i8,
+}
+
+/// The zigzag: a row is a turning point if the motion goes back from it by more than the band before it goes on.
+fn legs(s: &[f64], band: f64) -> Vec<Leg> {
+    let mut found: Vec<Leg> = Vec::new();
+    let (mut lowest, mut highest, mut direction) = (0, 0, 0_i8);
+    let mut close = |end: usize, direction: i8| {
+        let start = found.last().map_or(0, |leg| leg.end);
+        found.push(Leg { start, end, direction });
+    };
+    for (i, value) in s.iter().enumerate() {
+        if *value > s[highest] {
+            highest = i;
+        }
+        if *value < s[lowest] {
+            lowest = i;
+        }
+        if direction <= 0 && value - s[lowest] > band {
+            if direction < 0 {
+                close(lowest, -1);
+            }
+            (direction, highest) = (1, i);
+        } else if direction >= 0 && s[highest] - value > band {
+            if direction > 0 {
+                close(highest, 1);
+            }
+            (direction, lowest) = (-1, i);
+        }
+    }
+    close(s.len() - 1, direction);
+    found
+}
+
+/// Rests, as ranges of rows from the first to the last row that stand still.
+///
+/// Rows stand still while they stay within the band for much longer than a sine would near its turning point. A sine of height H that takes the
+/// time D from one turning point to the next is within b of one of them for (2/pi) D sqrt(b/H); three times as long is a rest.
+/// The time is counted in rows where none was measured.
+fn rests(s: &[f64], time: Option<&[f64]>, legs: &[Leg], band: DeadBand) -> Vec<Range<usize>> {
+    /// 3 * 2/pi, rounded.
+    const TIMES: f64 = 2.0;
+    let clock = |row: usize| time.map_or(row as f64, |time| time[row]);
+    let longest: Vec<f64> = legs
+        .iter()
+        .map(|leg| {
+            let height = (s[leg.end] - s[leg.start]).abs().max(band.width);
+            let share = if height > 0.0 { (band.width / height).sqrt() } else { 0.0 };
+            TIMES * share * (clock(leg.end) - clock(leg.start))
+        })
+        .collect();
+    let allowed = |first: usize, last: usize| {
+        let from = legs.partition_point(|leg| leg.end <= first);
+        legs.iter()
+            .zip(&longest)
+            .skip(from)
+            .take_while(|(leg, _)| leg.start < last)
+            .map(|(_, d)| d)
+            .sum::<f64>()
+    };
+    let is_rest =
+        |first: usize, last: usize| last >= first + 2 && clock(last) - clock(first) > allowed(first, last);
+    if legs.iter().all(|leg| leg.direction == 0) {
+        return std::iter::once(0..s.len()).collect();
+    }
+    let tolerance = band.half_noise.max(0.25 * band.width);
+    let mut found = Vec::new();
+    let mut window = Window::new(s);
+    let mut first = 0;
+    while first < s.len() {
+        let last = window.last_within(first, band.width);
+        if !is_rest(first, last) {
+            first += 1;
+            continue;
+        }
+        let middle = median(&mut s[first..=last].to_vec());
+        let is_still = |row: &usize| (s[*row] - middle).abs() <= tolerance;
+        let start = (first..=last).find(is_still).unwrap_or(first);
+        let end = (first..=last).rev().find(is_still).unwrap_or(last);
+        if is_rest(start, end) {
+            found.push(start..end + 1);
+            first = end.max(first + 1);
+        } else {
+            // Slow, but not still: half of the rows are looked at again.
+            first += (last - first) / 2 + 1;
+        }
+    }
+    found
+}
+
+/// The longest run of rows from a given one whose values stay within a band, for rows asked in rising order, in O(n) altogether.
+struct Window<'a> {
+    s: &'a [f64],
+    /// Rows that could be the lowest and the highest of the window, in order.
+    low: VecDeque<usize>,
+    high: VecDeque<usize>,
+    /// The first row that is not in the window.
+    end: usize,
+}
+
+impl<'a> Window<'a> {
+    fn new(s: &'a [f64]) -> Self {
+        Self { s, low: VecDeque::new(), high: VecDeque::new(), end: 0 }
+    }
+
+    fn last_within(&mut self, first: usize, band: f64) -> usize {
+        let s = self.s;
+        for rows in [&mut self.low, &mut self.high] {
+            while rows.front().is_some_and(|row| *row < first) {
+                rows.pop_front();
+            }
+        }
+        self.end = self.end.max(first);
+        while self.end < s.len() {
+            let value = s[self.end];
+            let low = self.low.front().map_or(value, |row| s[*row].min(value));
+            let high = self.high.front().map_or(value, |row| s[*row].max(value));
+            if high - low > band {
+                break;
+            }
+            while self.low.back().is_some_and(|row| s[*row] >= value) {
+                self.low.pop_back();
+            }
+            while self.high.back().is_some_and(|row| s[*row] <= value) {
+                self.high.pop_back();
+            }
+            self.low.push_back(self.end);
+            self.high.push_back(self.end);
+            self.end += 1;
+        }
+        self.end.saturating_sub(1).max(first)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulated::Noise;
+
+    #[track_caller]
+    fn directions(s: &[f64]) -> Vec<(usize, i8)> {
+        let rows = 0..s.len();
+        let resolution = Resolution::of(s, std::slice::from_ref(&rows));
+        let found = find(s, None, &rows, DeadBand::new(&resolution, s.len(), 1.0));
+        let mut end = 0;
+        for stretch in &found {
+            assert_eq!(stretch.rows.start, end);
+            end = stretch.rows.end;
+        }
+        assert_eq!(end, s.len());
+        found.iter().map(|stretch| (stretch.rows.end, stretch.direction)).collect()
+    }
+
+    /// Values from corner to corner, with this many steps between them.
+    fn polyline(corners: &[(f64, usize)]) -> Vec<f64> {
+        let mut s = vec![corners[0].0];
+        for pair in corners.windows(2) {
+            let ((from, _), (to, steps)) = (pair[0], pair[1]);
+            s.extend((1..=steps).map(|i| from + (to - from) * i as f64 / steps as f64));
+        }
+        s
+    }
+
+    #[test]
+    fn turning_points_of_a_sine() {
+        let s: Vec<f64> = (0..=800).map(|i| -(f64::from(i) * std::f64::consts::TAU / 400.0).cos()).collect();
+        assert_eq!(directions(&s), [(201, 1), (401, -1), (601, 1), (801, -1)]);
+    }
+
+    #[test]
+    fn triangles_with_minor_loops() {
+        let s = polyline(&[(0.0, 0), (0.2, 100), (0.15, 25), (0.18, 15), (0.0, 90), (0.01, 5), (0.0, 5)]);
+        assert_eq!(directions(&s), [(101, 1), (126, -1), (141, 1), (231, -1), (236, 1), (241, -1)]);
+    }
+
+    #[test]
+    fn rests_between_ramps() {
+        // A rest before, at the top, on the way down, and after.
+        let s = polyline(&[
+            (0.0, 0),
+            (0.0, 30),
+            (0.2, 100),
+            (0.2, 40),
+            (0.1, 50),
+            (0.1, 35),
+            (0.0, 50),
+            (0.0, 30),
+        ]);
+        assert_eq!(directions(&s), [(31, 0), (131, 1), (171, 0), (221, -1), (256, 0), (306, -1), (336, 0)]);
+    }
+
+    #[test]
+    fn noise_flips_nothing() {
+        for seed in 0..20 {
+            let mut noise = Noise::new(seed);
+            let corners =
+                [(0.0, 0), (0.2, 400), (0.2, 300), (0.05, 300), (0.05, 300), (0.2, 300), (0.0, 400)];
+            let mut s = polyline(&corners);
+            for value in &mut s {
+                *value += 2e-4 * noise.normal();
+            }
+            let found = directions(&s);
+            assert_eq!(
+                found.iter().map(|(_, d)| *d).collect::<Vec<_>>(),
+                [1, 0, -1, 0, 1, -1],
+                "{seed}: {found:?}"
+            );
+            for ((end, _), expected) in found.iter().zip([401, 701, 1001, 1301, 1601, 2001]) {
+                assert!(end.abs_diff(expected) <= 6, "{seed}: {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_hold_with_noise_is_one_rest() {
+        for seed in 0..20 {
+            let mut noise = Noise::new(seed);
+            let s: Vec<f64> = (0..5000).map(|_| 0.1 + 1e-4 * noise.normal()).collect();
+            assert_eq!(directions(&s), [(5000, 0)], "{seed}");
+            let coarse: Vec<f64> = s.iter().map(|v| (v / 1e-4).round() * 1e-4).collect();
+            assert_eq!(directions(&coarse), [(5000, 0)], "{seed}");
+        }
+    }
+
+    #[test]
+    fn steps_of_a_coarse_sensor_are_motion() {
+        let s: Vec<f64> = polyline(&[(0.0, 0), (0.1, 2000), (0.0, 2000)]);
+        let coarse: Vec<f64> = s.iter().map(|v| (v / 0.002).round() * 0.002).collect();
+        let found = directions(&coarse);
+        assert_eq!(found.iter().map(|(_, d)| *d).collect::<Vec<_>>(), [1, -1]);
+        assert!(found[0].0.abs_diff(2001) <= 25, "{found:?}");
+    }
+
+    #[test]
+    fn lists_of_set_points() {
+        assert_eq!(directions(&[0.0, 0.05, 0.10, 0.15, 0.10, 0.05, 0.0]), [(4, 1), (7, -1)]);
+        let zigzag = [0.0, 0.10, 0.03, 0.15, 0.07, 0.20];
+        assert_eq!(directions(&zigzag), [(2, 1), (3, -1), (4, 1), (5, -1), (6, 1)]);
+        assert_eq!(directions(&[0.1]), [(1, 0)]);
+        assert_eq!(directions(&[0.1, 0.2]), [(2, 1)]);
+        assert_eq!(directions(&[0.1; 5]), [(5, 0)]);
+        assert_eq!(directions(&[]), []);
+    }
+
+    #[test]
+    fn windows_are_the_longest() {
+        let mut noise = Noise::new(3);
+        let s: Vec<f64> = (0..300).map(|_| noise.normal()).collect();
+        let mut window = Window::new(&s);
+        for first in 0..s.len() {
+            let within = |last: usize| {
+                let (low, high) = crate::resolution::bounds(&s[first..=last]);
+                high - low <= 1.5
+            };
+            let last = (first..s.len()).take_while(|last| within(*last)).last().unwrap();
+            assert_eq!(window.last_within(first, 1.5), last);
+        }
+    }
+}

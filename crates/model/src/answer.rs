@@ -1,0 +1,85 @@
+//! What a base law answers at one pressure and contraction, with derivatives, and how that enters the chain rule.
+
+use bulge_effects::{Jet, LANES};
+use bulge_numerics::Real;
+
+/// Most shape parameters that can be differentiated by at once.
+pub(crate) const SHAPE: usize = 8;
+
+/// A number with its derivatives by pressure, contraction and the shape parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Graded {
+    pub(crate) value: f64,
+    pub(crate) by_pressure: f64,
+    pub(crate) by_contraction: f64,
+    pub(crate) by_shape: [f64; SHAPE],
+}
+
+impl Graded {
+    /// The chain rule: pressure and contraction carry derivatives, and the shape parameter j is the variable of lane `lanes[j]`.
+    pub(crate) fn carry(&self, pressure: Jet, contraction: Jet, lanes: &[Option<usize>]) -> Jet {
+        let [p, e] = [pressure.gradient(), contraction.gradient()];
+        let mut gradient: [f64; LANES] =
+            std::array::from_fn(|i| self.by_pressure * p[i] + self.by_contraction * e[i]);
+        for (j, lane) in lanes.iter().enumerate() {
+            if let Some(lane) = lane {
+                gradient[*lane] += self.by_shape[j];
+            }
+        }
+        Jet::new(self.value, gradient)
+    }
+}
+
+/// Force \[N\], meridional force at mid-length \[N\], radius there \[m\] and volume \[m^3\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Answer {
+    pub(crate) force: Graded,
+    pub(crate) tension: Graded,
+    pub(crate) mid_radius: Graded,
+    pub(crate) volume: Graded,
+}
+
+/// The same as numbers that carry the derivatives of one pass.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Carried {
+    pub(crate) force: Jet,
+    pub(crate) tension: Jet,
+    pub(crate) mid_radius: Jet,
+    pub(crate) volume: Jet,
+    /// dF/d(contraction) and dN/d(contraction).
+    pub(crate) slope: [f64; 2],
+}
+
+impl Carried {
+    /// All four times a number.
+    pub(crate) fn scaled(self, factor: f64) -> Self {
+        Self {
+            force: self.force * factor,
+            tension: self.tension * factor,
+            mid_radius: self.mid_radius * factor,
+            volume: self.volume * factor,
+            slope: self.slope.map(|s| s * factor),
+        }
+    }
+
+    /// The sum of all four.
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self {
+            force: self.force + other.force,
+            tension: self.tension + other.tension,
+            mid_radius: self.mid_radius + other.mid_radius,
+            volume: self.volume + other.volume,
+            slope: [self.slope[0] + other.slope[0], self.slope[1] + other.slope[1]],
+        }
+    }
+
+    /// Forces times a factor that carries derivatives.
+    pub(crate) fn stiffened(self, wall: Jet) -> Self {
+        Self {
+            force: self.force * wall,
+            tension: self.tension * wall,
+            slope: self.slope.map(|s| s * wall.value()),
+            ..self
+        }
+    }
+}

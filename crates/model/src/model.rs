@@ -1,0 +1,291 @@
+//! A model: a muscle (or a force law) with chosen effects, and the list of its numbers.
+
+use bulge_effects::law::{Coefficient, Law, LawGeometry, Role};
+use bulge_effects::{Effect, Group, Moment, Setting, Stage};
+use bulge_muscles::{Muscle, Parameter};
+use serde::Serialize;
+use std::sync::Arc;
+
+use crate::base::{Equilibrium, ShapeVariable};
+use crate::error::ModelError;
+use crate::parameter::ModelParameter;
+
+/// An effect of a model.
+#[derive(Debug, Clone)]
+pub struct Chosen {
+    /// The effect.
+    pub effect: Arc<dyn Effect>,
+    /// Whether its numbers are taken as known.
+    pub fixed: bool,
+    /// Where its numbers start in the model's list, and how many it has for each specimen.
+    pub(crate) place: usize,
+    pub(crate) count: usize,
+    /// Whether each specimen has its own.
+    pub(crate) each_specimen: bool,
+}
+
+/// What gives the force before effects are added.
+#[derive(Debug, Clone)]
+pub(crate) enum Base {
+    Equilibrium,
+    Law { law: &'static Law, geometry: LawGeometry },
+}
+
+/// A base law with effects.
+#[derive(Debug, Clone)]
+pub struct Model {
+    pub(crate) muscle: Muscle,
+    pub(crate) setting: Setting,
+    pub(crate) base: Base,
+    pub(crate) effects: Vec<Chosen>,
+    pub(crate) specimens: Vec<String>,
+    parameters: Vec<ModelParameter>,
+    /// Steps of the lattice are divided by this.
+    pub(crate) refinement: f64,
+}
+
+/// Force of a muscle at rest, part by part.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct AtRest {
+    /// Of the equilibrium, or the law \[N\].
+    pub equilibrium_n: f64,
+    /// With what effects of the load add \[N\].
+    pub force_n: f64,
+    /// What the load cell reads \[N\].
+    pub reading_n: f64,
+}
+
+impl Model {
+    /// The equilibrium of a muscle, without effects beyond what the muscle itself states.
+    #[must_use]
+    pub fn new(muscle: &Muscle) -> Self {
+        Self {
+            muscle: muscle.clone(),
+            setting: Setting::of(muscle),
+            base: Base::Equilibrium,
+            effects: Vec::new(),
+            specimens: vec!["1".to_owned()],
+            parameters: Vec::new(),
+            refinement: 1.0,
+        }
+    }
+
+    /// A force law instead of the equilibrium. Its coefficients are numbers of the model, fixed unless `free`; `values` are where they
+    /// start.
+    #[must_use]
+    pub fn from_law(muscle: &Muscle, law: &'static Law, values: &[f64], free: bool) -> Self {
+        let mut model = Self::new(muscle);
+        let geometry = LawGeometry::from(muscle);
+        model.parameters = law_parameters(law, &geometry, values, free);
+        model.base = Base::Law { law, geometry };
+        model
+    }
+
+    /// The same with an effect more. Its numbers are where a fit starts, or known if `values` are given.
+    ///
+    /// # Errors
+    /// If the muscle is of the other kind, or the effect is there already.
+    pub fn with(&self, effect: &Arc<dyn Effect>, values: Option<&[f64]>) -> Result<Self, ModelError> {
+        let card = effect.card();
+        if let Some(owner) = card.kind.filter(|kind| *kind != self.setting.kind) {
+            let kind = self.setting.kind.name();
+            return Err(ModelError::OtherKind { effect: card.name.to_owned(), owner: owner.name(), kind });
+        }
+        if self.effects.iter().any(|other| other.effect.card().name == card.name) {
+            return Err(ModelError::Twice { effect: card.name.to_owned() });
+        }
+        let mut model = self.clone();
+        let cards: Vec<_> = effect.parameters().into_iter().map(|card| card.of(&self.muscle)).collect();
+        let each_specimen = card.group == Group::Specimen;
+        let copies = if each_specimen { self.specimens.len() } else { 1 };
+        model.effects.push(Chosen {
+            effect: Arc::clone(effect),
+            fixed: values.is_some(),
+            place: model.parameters.len(),
+            count: cards.len(),
+            each_specimen,
+        });
+        for copy in 0..copies {
+            for (i, number) in cards.iter().enumerate() {
+                model.parameters.push(ModelParameter {
+                    effect: card.name.to_owned(),
+                    name: number.name.to_owned(),
+                    key: number.key.to_owned(),
+                    specimen: each_specimen.then(|| self.specimens[copy].clone()),
+                    value: values.and_then(|values| values.get(i).copied()).unwrap_or(number.typical),
+                    low: number.low,
+                    high: number.high,
+                    off: number.off,
+                    prior: number.prior,
+                    plausible: number.plausible.unwrap_or((number.low, number.high)),
+                    logarithmic: number.logarithmic,
+                    unit: number.unit.to_owned(),
+                    factor: number.factor,
+                    fixed: values.is_some(),
+                    about: number.about.to_owned(),
+                });
+            }
+        }
+        Ok(model)
+    }
+
+    /// The same for several specimens, by name; to be called before effects are added.
+    #[must_use]
+    pub fn for_specimens(mut self, specimens: &[String]) -> Self {
+        if !specimens.is_empty() {
+            self.specimens = specimens.to_vec();
+        }
+        self
+    }
+
+    /// The same on a finer lattice: its steps are divided by `refinement` >= 1.
+    #[must_use]
+    pub fn refined(mut self, refinement: f64) -> Self {
+        self.refinement = refinement.max(1.0);
+        self
+    }
+
+    /// The muscle as stated.
+    #[must_use]
+    pub fn muscle(&self) -> &Muscle {
+        &self.muscle
+    }
+
+    /// The name of the force law, if that is the base.
+    #[must_use]
+    pub fn law(&self) -> Option<&'static Law> {
+        if let Base::Law { law, .. } = self.base { Some(law) } else { None }
+    }
+
+    /// The effects in their order.
+    #[must_use]
+    pub fn effects(&self) -> &[Chosen] {
+        &self.effects
+    }
+
+    /// All numbers, in the order in which [`Model::evaluate`] takes them.
+    #[must_use]
+    pub fn parameters(&self) -> &[ModelParameter] {
+        &self.parameters
+    }
+
+    /// Where a fit starts.
+    #[must_use]
+    pub fn start(&self) -> Vec<f64> {
+        self.parameters.iter().map(|parameter| parameter.value).collect()
+    }
+
+    /// The numbers at which no effect does anything.
+    #[must_use]
+    pub fn off(&self) -> Vec<f64> {
+        let coefficient = |p: &ModelParameter| self.law().is_some_and(|law| law.name == p.effect);
+        self.parameters.iter().map(|p| if coefficient(p) { p.value } else { p.off }).collect()
+    }
+
+    /// The numbers of an effect for a specimen.
+    pub(crate) fn range(&self, chosen: &Chosen, specimen: u32) -> std::ops::Range<usize> {
+        let copy = if chosen.each_specimen { (specimen as usize).min(self.specimens.len() - 1) } else { 0 };
+        let start = chosen.place + copy * chosen.count;
+        start..start + chosen.count
+    }
+
+    /// The muscle as the effects of the stage [`Stage::Shape`] change it: for drawings and for other solvers.
+    ///
+    /// # Errors
+    /// If the muscle can't have an effect, or not with these values.
+    pub fn reshaped(&self, theta: &[f64]) -> Result<Muscle, ModelError> {
+        self.reshape(theta, &[]).map(|(muscle, _)| muscle)
+    }
+
+    /// The muscle to solve, and for each of the `wanted` parameters that change it how they do.
+    pub(crate) fn reshape(
+        &self,
+        theta: &[f64],
+        wanted: &[usize],
+    ) -> Result<(Muscle, Vec<(usize, ShapeVariable)>), ModelError> {
+        let mut muscle = self.muscle.clone();
+        let mut variables: Vec<(usize, ShapeVariable)> = Vec::new();
+        let shapes = || self.effects.iter().enumerate().filter(|(_, c)| c.effect.card().stage == Stage::Shape);
+        for (_, chosen) in shapes() {
+            let range = self.range(chosen, 0);
+            let reshaped = chosen.effect.reshape(&muscle, &theta[range.clone()]).map_err(about(chosen))?;
+            muscle = reshaped.muscle;
+            for index in range.clone().filter(|index| wanted.contains(index)) {
+                let moves: Vec<(Parameter, f64)> = reshaped
+                    .moves
+                    .iter()
+                    .filter(|(i, _, _)| range.start + i == index)
+                    .map(|(_, parameter, factor)| (*parameter, *factor))
+                    .collect();
+                variables.push((index, ShapeVariable::Numbers(moves)));
+            }
+        }
+        // Where a number doesn't exist on the final muscle, or nothing is moved, a small change shows the derivative.
+        for (index, variable) in &mut variables {
+            let exists = |moved: &[(Parameter, f64)]| {
+                !moved.is_empty() && moved.iter().all(|(p, _)| muscle.is_stated(*p) || muscle.get(*p).is_some_and(|v| v != 0.0))
+            };
+            if let ShapeVariable::Numbers(moved) = variable
+                && !exists(moved)
+            {
+                let number = &self.parameters[*index];
+                let step = 1e-4 * (number.typical_step());
+                let mut nudged = theta.to_vec();
+                nudged[*index] += step;
+                let (neighbour, _) = self.reshape(&nudged, &[])?;
+                *variable = ShapeVariable::Quotient { muscle: Box::new(neighbour), step };
+            }
+        }
+        Ok((muscle, variables))
+    }
+
+    pub(crate) fn equilibrium(
+        &self,
+        muscle: &Muscle,
+        variables: &[(usize, ShapeVariable)],
+    ) -> Result<Equilibrium, bulge_fibre::FibreError> {
+        Equilibrium::new(muscle, variables.iter().map(|(_, variable)| variable.clone()).collect())
+    }
+
+    /// Force at rest at a true pressure \[Pa\] and contraction: no direction, no rate, the first moment.
+    ///
+    /// # Errors
+    /// If there is no equilibrium.
+    pub fn at_rest(&self, theta: &[f64], pressure: f64, contraction: f64) -> Result<AtRest, ModelError> {
+        self.rest(theta, &Moment::at_rest(pressure, contraction))
+    }
+}
+
+impl ModelParameter {
+    /// A change of the usual size.
+    fn typical_step(&self) -> f64 {
+        let usual = (self.value - self.off).abs();
+        if usual > 0.0 { usual } else { 1e-2 * (self.high - self.low) }
+    }
+}
+
+pub(crate) fn about(chosen: &Chosen) -> impl Fn(bulge_muscles::MuscleError) -> ModelError {
+    let effect = chosen.effect.card().name.to_owned();
+    move |source| ModelError::Reshape { effect: effect.clone(), source: Box::new(source) }
+}
+
+fn law_parameters(law: &'static Law, geometry: &LawGeometry, values: &[f64], free: bool) -> Vec<ModelParameter> {
+    let number = |(i, coefficient): (usize, &Coefficient)| ModelParameter {
+        effect: law.name.to_owned(),
+        name: coefficient.name.to_owned(),
+        key: coefficient.name.to_owned(),
+        specimen: None,
+        value: values.get(i).copied().unwrap_or_else(|| coefficient.start(geometry)),
+        low: coefficient.bounds[0],
+        high: coefficient.bounds[1],
+        off: coefficient.typical,
+        prior: None,
+        plausible: (coefficient.bounds[0], coefficient.bounds[1]),
+        logarithmic: false,
+        unit: coefficient.unit.to_owned(),
+        factor: 1.0,
+        fixed: !free || coefficient.role != Role::Fitted,
+        about: coefficient.meaning.to_owned(),
+    };
+    law.coefficients.iter().enumerate().map(number).collect()
+}

@@ -1,0 +1,197 @@
+//! A measured history made ready for a model: one moment per row, sweep by sweep.
+
+use bulge_effects::Moment;
+use bulge_measurements::{Data, History};
+use std::ops::Range;
+
+/// The rows of a data set as moments, with what was measured.
+#[derive(Debug, Clone)]
+pub struct Record {
+    moments: Vec<Moment>,
+    sweeps: Vec<Range<usize>>,
+    specimens: Vec<String>,
+    force: Vec<f64>,
+    force_sd: Option<Vec<f64>>,
+    is_path: bool,
+    has_time: bool,
+}
+
+impl Record {
+    /// The rows of a data set for a muscle of unpressurised length `l0` \[m\].
+    #[must_use]
+    pub fn new(data: &Data, l0: f64) -> Self {
+        let history = data.history(l0);
+        let sweeps: Vec<Range<usize>> = data.sweeps().iter().map(|sweep| sweep.rows.clone()).collect();
+        let contraction = data.contraction(l0);
+        let mut moments = Vec::with_capacity(data.len());
+        for sweep in &sweeps {
+            append(&mut moments, data, &history, &contraction, sweep.clone());
+        }
+        Self {
+            moments,
+            sweeps,
+            specimens: data.specimens().to_vec(),
+            force: data.force().to_vec(),
+            force_sd: data.force_sd().map(<[f64]>::to_vec),
+            is_path: history.is_path,
+            has_time: data.time().is_some(),
+        }
+    }
+
+    /// From moments that a program made: one sweep after the other, each a range of rows; all rows must be covered, in order.
+    ///
+    /// Returns none if they are not, or the numbers of moments and forces differ.
+    #[must_use]
+    pub fn from_moments(moments: Vec<Moment>, force: Vec<f64>, sweeps: Vec<Range<usize>>) -> Option<Self> {
+        let mut end = 0;
+        for sweep in &sweeps {
+            if sweep.start != end || sweep.end < sweep.start {
+                return None;
+            }
+            end = sweep.end;
+        }
+        let specimens = moments.iter().map(|m| m.specimen).max().map_or(0, |last| last + 1);
+        (end == moments.len() && force.len() == end).then(|| Self {
+            is_path: moments.iter().any(|m| m.direction != 0.0),
+            has_time: moments.iter().any(|m| m.clock != 0.0),
+            moments,
+            sweeps,
+            specimens: (1..=specimens).map(|i| i.to_string()).collect(),
+            force,
+            force_sd: None,
+        })
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.moments.len()
+    }
+
+    /// Whether there are no rows.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.moments.is_empty()
+    }
+
+    /// The moments.
+    #[must_use]
+    pub fn moments(&self) -> &[Moment] {
+        &self.moments
+    }
+
+    /// Measured force \[N\].
+    #[must_use]
+    pub fn force(&self) -> &[f64] {
+        &self.force
+    }
+
+    /// Standard deviation of each force \[N\], where the file states it.
+    #[must_use]
+    pub fn force_sd(&self) -> Option<&[f64]> {
+        self.force_sd.as_deref()
+    }
+
+    /// Rows of each sweep.
+    #[must_use]
+    pub fn sweeps(&self) -> &[Range<usize>] {
+        &self.sweeps
+    }
+
+    /// Names of the specimens.
+    #[must_use]
+    pub fn specimens(&self) -> &[String] {
+        &self.specimens
+    }
+
+    /// Whether the rows are a path (not a static map).
+    #[must_use]
+    pub fn is_path(&self) -> bool {
+        self.is_path
+    }
+
+    /// Whether there is time.
+    #[must_use]
+    pub fn has_time(&self) -> bool {
+        self.has_time
+    }
+}
+
+fn append(
+    moments: &mut Vec<Moment>,
+    data: &Data,
+    history: &History,
+    contraction: &[f64],
+    rows: Range<usize>,
+) {
+    let time = data.time();
+    let start = time.map_or(0.0, |t| t[rows.start]);
+    let origin = time.and_then(|t| t.first().copied()).unwrap_or(0.0);
+    let temperature = data.temperature();
+    let reference = temperature.and_then(|t| t.first().copied()).unwrap_or(0.0);
+    let pressure = data.pressure();
+    let mut largest = f64::NEG_INFINITY;
+    for row in rows.clone() {
+        largest = largest.max(contraction[row]);
+        let begins = row == rows.start;
+        let before = if begins { row } else { row - 1 };
+        let after = if row + 1 == rows.end { row } else { row + 1 };
+        let span = time.map_or(0.0, |t| t[after] - t[before]);
+        moments.push(Moment {
+            pressure: pressure[row],
+            contraction: contraction[row],
+            direction: history.direction[row],
+            rate: history.rate[row],
+            pressure_rate: if span > 0.0 { (pressure[after] - pressure[before]) / span } else { 0.0 },
+            time: time.map_or(0.0, |t| t[row] - start),
+            clock: time.map_or(0.0, |t| t[row] - origin),
+            since: time.map_or(0.0, |t| t[row] - t[before]),
+            // In a static map the order of the rows means nothing.
+            step: if begins || !history.is_path { 0.0 } else { contraction[row] - contraction[before] },
+            temperature: temperature.map_or(0.0, |t| t[row] - reference),
+            cycle: history.cycle[row],
+            largest,
+            begins,
+            specimen: data.specimen()[row],
+        });
+    }
+}
+
+impl Record {
+    /// The record with about `most` rows: every so-manieth of each sweep, its first and last row included, with the rows that were kept.
+    #[must_use]
+    pub fn thinned(&self, most: usize) -> (Self, Vec<usize>) {
+        let stride = self.len().div_ceil(most.max(1)).max(1);
+        if stride == 1 {
+            return (self.clone(), (0..self.len()).collect());
+        }
+        let mut kept = Vec::with_capacity(most + self.sweeps.len());
+        let mut sweeps = Vec::with_capacity(self.sweeps.len());
+        for sweep in &self.sweeps {
+            let start = kept.len();
+            kept.extend(sweep.clone().step_by(stride));
+            if let Some(last) = sweep.clone().next_back().filter(|last| kept.last() != Some(last)) {
+                kept.push(last);
+            }
+            sweeps.push(start..kept.len());
+        }
+        let mut moments: Vec<Moment> = kept.iter().map(|row| self.moments[*row]).collect();
+        for i in 1..moments.len() {
+            if !moments[i].begins {
+                moments[i].since = moments[i].clock - moments[i - 1].clock;
+                // A static map has no steps.
+                moments[i].step = if self.is_path { moments[i].contraction - moments[i - 1].contraction } else { 0.0 };
+            }
+        }
+        let thin = Self {
+            moments,
+            sweeps,
+            specimens: self.specimens.clone(),
+            force: kept.iter().map(|row| self.force[*row]).collect(),
+            force_sd: self.force_sd.as_ref().map(|sd| kept.iter().map(|row| sd[*row]).collect()),
+            is_path: self.is_path,
+            has_time: self.has_time,
+        };
+        (thin, kept)
+    }
+}

@@ -1,0 +1,121 @@
+//! What can't be minimised at all.
+
+use super::Reason;
+
+/// A problem, a start or a request that has no answer. Parameters and rows are counted from 0.
+///
+/// A search that ends without a minimum is no error: its [`super::Certificate`] says so.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LeastSquaresError<E> {
+    /// The residuals can't be evaluated at the start.
+    #[error("the residuals cannot be evaluated at the start: {0}")]
+    Start(E),
+    /// A residual at the start isn't a finite number.
+    #[error("residual {row} is {value} at the start; choose a start where all residuals are finite")]
+    Residual {
+        /// The row.
+        row: usize,
+        /// Its residual.
+        value: f64,
+    },
+    /// A derivative at the start isn't a finite number.
+    #[error("the derivative of residual {row} by parameter {parameter} is {value} at the start; choose a start where all derivatives are finite")]
+    Derivative {
+        /// The row.
+        row: usize,
+        /// The parameter.
+        parameter: usize,
+        /// The derivative.
+        value: f64,
+    },
+    /// Squares overflow.
+    #[error("the sum of squares of the residuals, or of their derivatives by one parameter, overflows at the start; scale them to below 1e150")]
+    Overflow,
+    /// A list doesn't have an entry for each parameter.
+    #[error("{what} has {found} entries; the problem has {parameters} parameters")]
+    Length {
+        /// Which list.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// Number of parameters.
+        parameters: usize,
+    },
+    /// The start is outside the bounds or not finite.
+    #[error("the start of parameter {parameter} is {value}, outside its bounds [{lower}, {upper}]")]
+    Outside {
+        /// The parameter.
+        parameter: usize,
+        /// Its start.
+        value: f64,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
+    },
+    /// Bounds that no value meets.
+    #[error("the bounds of parameter {parameter} are [{lower}, {upper}]; the first must be at most the second, and neither NaN")]
+    Crossed {
+        /// The parameter.
+        parameter: usize,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
+    },
+    /// An option out of its range.
+    #[error("the option {name} is {value}; it must be {range}")]
+    Option {
+        /// Name of the field.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Values that it may have.
+        range: &'static str,
+    },
+    /// Starts asked for in an unbounded box.
+    #[error("starts in a box need finite bounds; those of parameter {parameter} are [{lower}, {upper}]")]
+    Unbounded {
+        /// The parameter.
+        parameter: usize,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
+    },
+    /// No starts.
+    #[error("no start was given; give at least one")]
+    NoStart,
+    /// A parameter that isn't there, or is fixed, can't be profiled.
+    #[error("parameter {parameter} cannot be profiled: the problem has {parameters} parameters, and this one must not be fixed")]
+    NotProfiled {
+        /// The parameter.
+        parameter: usize,
+        /// Number of parameters.
+        parameters: usize,
+    },
+    /// The minimisation over the other parameters failed on the profile.
+    #[error("with parameter {parameter} held at {value} the search over the others ended without a minimum ({reason:?})")]
+    ProfileUnsolved {
+        /// The parameter.
+        parameter: usize,
+        /// Where it was held.
+        value: f64,
+        /// Why the search ended.
+        reason: Reason,
+    },
+    /// The profile passed through a lower sum of squares than the minimum it started from.
+    #[error("with parameter {parameter} at {value} the sum of squares is {cost}, below that of the given minimum, {minimum}; minimise again from there")]
+    LowerCost {
+        /// The parameter.
+        parameter: usize,
+        /// Where it was held.
+        value: f64,
+        /// Sum of squares there.
+        cost: f64,
+        /// Sum of squares of the given minimum.
+        minimum: f64,
+        /// All parameters of the lower point.
+        theta: Vec<f64>,
+    },
+}

@@ -1,0 +1,182 @@
+//! Evaluation in blocks: the residuals, their triangular linearisation `|J p + r|^2 = |R p + q|^2 + rest^2`, and the gradient `J^T r`.
+//!
+//! Blocks are combined in a fixed binary tree, so that the sums are the same bytes for any number of threads.
+
+use super::residuals::Residuals;
+use super::triangle::{Triangle, dot, norm};
+use std::ops::Range;
+
+/// Why a point has no value.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Failure<E> {
+    Evaluation(E),
+    Residual { row: usize, value: f64 },
+    Derivative { row: usize, parameter: usize, value: f64 },
+    Overflow,
+}
+
+/// Residuals at a point, linearised.
+#[derive(Debug, Clone)]
+pub(super) struct Linear {
+    /// Triangular factor of the Jacobian, `k x k`.
+    pub(super) r: Triangle,
+    /// The residuals turned by the same reflections: the first `k` entries.
+    pub(super) q: Vec<f64>,
+    /// Sum of squares.
+    pub(super) cost: f64,
+    /// Norms of the Jacobian's columns.
+    pub(super) norms: Vec<f64>,
+}
+
+impl Linear {
+    /// `J^T r`, half the gradient of the sum of squares.
+    pub(super) fn gradient(&self) -> Vec<f64> {
+        self.r.transposed_times(&self.q)
+    }
+}
+
+/// Evaluates blocks of rows and merges what they give, in a tree that depends on the numbers of rows alone.
+fn in_blocks<T: Send, E: Send>(
+    residuals: &mut [f64],
+    first: usize,
+    block: usize,
+    leaf: &(impl Fn(Range<usize>, &mut [f64]) -> Result<T, E> + Sync),
+    merge: &(impl Fn(T, T) -> T + Sync),
+) -> Result<T, E> {
+    let blocks = residuals.len().div_ceil(block);
+    if blocks <= 1 {
+        return leaf(first..first + residuals.len(), residuals);
+    }
+    let split = blocks / 2 * block;
+    let (left, right) = residuals.split_at_mut(split);
+    let (left, right) = rayon::join(
+        || in_blocks(left, first, block, leaf, merge),
+        || in_blocks(right, first + split, block, leaf, merge),
+    );
+    Ok(merge(left?, right?))
+}
+
+fn finite<E>(rows: &Range<usize>, residuals: &[f64]) -> Result<(), Failure<E>> {
+    match residuals.iter().position(|r| !r.is_finite()) {
+        Some(i) => Err(Failure::Residual { row: rows.start + i, value: residuals[i] }),
+        None => Ok(()),
+    }
+}
+
+/// Writes the residuals and returns their sum of squares.
+pub(super) fn values<P: Residuals>(
+    problem: &P,
+    theta: &[f64],
+    residuals: &mut [f64],
+) -> Result<f64, Failure<P::Error>> {
+    let leaf = |rows: Range<usize>, residuals: &mut [f64]| {
+        problem.evaluate(theta, rows.clone(), residuals, None).map_err(Failure::Evaluation)?;
+        finite(&rows, residuals)?;
+        Ok(dot(residuals, residuals))
+    };
+    let cost = in_blocks(residuals, 0, problem.block().max(1), &leaf, &|a, b| a + b)?;
+    if cost.is_finite() { Ok(cost) } else { Err(Failure::Overflow) }
+}
+
+/// `Q^T w` for the reflections `Q` that make the Jacobian at `theta` triangular: the first `k` entries.
+pub(super) fn turned<P: Residuals>(
+    problem: &P,
+    theta: &[f64],
+    w: &[f64],
+) -> Result<Vec<f64>, Failure<P::Error>> {
+    let mut residuals = vec![0.0; w.len()];
+    let (whole, _) = triangle(problem, theta, &mut residuals, Some(w))?;
+    Ok(whole.column(theta.len())[..theta.len()].to_vec())
+}
+
+/// Residuals and Jacobian of a block, both finite.
+fn derivatives<P: Residuals>(
+    problem: &P,
+    theta: &[f64],
+    rows: &Range<usize>,
+    residuals: &mut [f64],
+) -> Result<Vec<f64>, Failure<P::Error>> {
+    let k = theta.len();
+    let mut jacobian = vec![0.0; rows.len() * k];
+    problem
+        .evaluate(theta, rows.clone(), residuals, Some(&mut jacobian))
+        .map_err(Failure::Evaluation)?;
+    finite(rows, residuals)?;
+    match jacobian.iter().position(|x| !x.is_finite()) {
+        Some(i) => {
+            Err(Failure::Derivative { row: rows.start + i / k, parameter: i % k, value: jacobian[i] })
+        }
+        None => Ok(jacobian),
+    }
+}
+
+/// Writes the residuals and linearises them.
+pub(super) fn linearise<P: Residuals>(
+    problem: &P,
+    theta: &[f64],
+    residuals: &mut [f64],
+) -> Result<Linear, Failure<P::Error>> {
+    let k = theta.len();
+    let (whole, cost) = triangle(problem, theta, residuals, None)?;
+    let r = whole.leading(k);
+    let q = whole.column(k)[..k].to_vec();
+    let norms = r.column_norms();
+    if !cost.is_finite() || norms.iter().chain(&q).any(|x| !x.is_finite()) {
+        return Err(Failure::Overflow);
+    }
+    Ok(Linear { r, q, cost, norms })
+}
+
+/// The triangle of the Jacobian with one more column, the residuals or else `last`; and the sum of squares of the residuals.
+fn triangle<P: Residuals>(
+    problem: &P,
+    theta: &[f64],
+    residuals: &mut [f64],
+    last: Option<&[f64]>,
+) -> Result<(Triangle, f64), Failure<P::Error>> {
+    let k = theta.len();
+    let leaf = |rows: Range<usize>, residuals: &mut [f64]| {
+        let jacobian = derivatives(problem, theta, &rows, residuals)?;
+        let m = rows.len();
+        let mut columns = vec![0.0; m * (k + 1)];
+        for (i, row) in jacobian.chunks_exact(k.max(1)).enumerate() {
+            for (j, x) in row.iter().enumerate() {
+                columns[j * m + i] = *x;
+            }
+        }
+        columns[k * m..].copy_from_slice(last.map_or(&*residuals, |last| &last[rows]));
+        Ok((Triangle::of_columns(&mut columns, m, k + 1), dot(residuals, residuals)))
+    };
+    let merge = |a: (Triangle, f64), b: (Triangle, f64)| (a.0.above(b.0), a.1 + b.1);
+    in_blocks(residuals, 0, problem.block().max(1), &leaf, &merge)
+}
+
+/// `J^T r`, half the gradient of the sum of squares.
+pub(super) fn gradient<P: Residuals>(problem: &P, theta: &[f64]) -> Result<Vec<f64>, Failure<P::Error>> {
+    let k = theta.len();
+    let leaf = |rows: Range<usize>, residuals: &mut [f64]| {
+        let jacobian = derivatives(problem, theta, &rows, residuals)?;
+        let mut sum = vec![0.0; k];
+        for (row, r) in jacobian.chunks_exact(k.max(1)).zip(residuals.iter()) {
+            sum.iter_mut().zip(row).for_each(|(s, x)| *s += x * r);
+        }
+        Ok(sum)
+    };
+    let merge = |mut a: Vec<f64>, b: Vec<f64>| {
+        a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
+        a
+    };
+    let mut residuals = vec![0.0; problem.rows()];
+    let sum = in_blocks(&mut residuals, 0, problem.block().max(1), &leaf, &merge)?;
+    if norm(&sum).is_finite() { Ok(sum) } else { Err(Failure::Overflow) }
+}
+
+/// Decrease of the sum of squares from `old` to `new` residuals, `sum (r - r')(r + r')`: near a minimum far more exact than the difference of two
+/// sums.
+pub(super) fn decrease(old: &[f64], new: &[f64]) -> f64 {
+    let mut parts = Vec::with_capacity(old.len().div_ceil(4096));
+    for (old, new) in old.chunks(4096).zip(new.chunks(4096)) {
+        parts.push(old.iter().zip(new).map(|(a, b)| (a - b) * (a + b)).sum::<f64>());
+    }
+    parts.iter().sum()
+}

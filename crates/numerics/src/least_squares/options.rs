@@ -1,0 +1,54 @@
+//! Settings of the search, with defaults that suit residuals computed to nearly full precision.
+
+use super::LeastSquaresError;
+
+/// Settings of a search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// The search has converged when the linearised residuals can be lowered by no more than this part of their norm (the cosine between the
+    /// residuals and the space of residual changes that the free parameters can make; D. M. Bates, D. G. Watts, *Technometrics* 23 (1981) 179). The parameters
+    /// are then off by about this part of `sqrt(rows - parameters)` standard deviations. In (0, 1); default 1e-10. If the derivatives are inexact, choose
+    /// ten times their relative error.
+    pub tolerance: f64,
+    /// Directions in which residuals change by less than this part of the largest change, parameters scaled by the norms of their columns, are
+    /// flat: no step is made along them and they are reported. In \[1e-14, 1); default 1e-10.
+    pub rank_tolerance: f64,
+    /// Radius of the first trust region in parts of the norm of the start, parameters scaled by the norms of their columns. Positive; default 1.
+    pub first_radius: f64,
+    /// Most evaluations of all residuals, with or without derivatives. At least 1; default 2000.
+    pub max_evaluations: usize,
+    /// Whether a stationary point is examined for directions of negative curvature (at the cost of one gradient per free parameter), along which a
+    /// saddle is left. Default true.
+    pub check_curvature: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-10,
+            rank_tolerance: 1e-10,
+            first_radius: 1.0,
+            max_evaluations: 2000,
+            check_curvature: true,
+        }
+    }
+}
+
+impl Options {
+    pub(super) fn check<E>(&self) -> Result<(), LeastSquaresError<E>> {
+        let wrong = |name, value, range| Err(LeastSquaresError::Option { name, value, range });
+        if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
+            return wrong("tolerance", self.tolerance, "above 0 and below 1");
+        }
+        if !(self.rank_tolerance >= 1e-14 && self.rank_tolerance < 1.0) {
+            return wrong("rank_tolerance", self.rank_tolerance, "at least 1e-14 and below 1");
+        }
+        if !(self.first_radius > 0.0 && self.first_radius < f64::INFINITY) {
+            return wrong("first_radius", self.first_radius, "positive and finite");
+        }
+        if self.max_evaluations == 0 {
+            return wrong("max_evaluations", 0.0, "at least 1");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,80 @@
+//! The problem of nonlinear least squares: residuals with derivatives, evaluated in blocks of rows, and bounds of the parameters.
+
+use std::ops::Range;
+
+/// Residuals `r_i(theta)` with their derivatives, `i` in `0..rows`.
+///
+/// The minimiser asks for one block of rows after the other, from several threads at once, and keeps of a block's derivatives only a
+/// triangular factor: whatever the number of rows, a thread's memory is one block.
+pub trait Residuals: Sync {
+    /// Why the residuals can't be evaluated at some parameters.
+    type Error: Send;
+
+    /// Number of residuals.
+    fn rows(&self) -> usize;
+
+    /// Number of parameters.
+    fn parameters(&self) -> usize;
+
+    /// Rows that are evaluated together; every block but the last has this many.
+    ///
+    /// The default makes a block of some 256 KiB. Return [`Residuals::rows`] to be asked for all rows at once, or a multiple of the rows that
+    /// share work. Results don't depend on the number of threads, but in the last bits on this number. 0 counts as 1.
+    fn block(&self) -> usize {
+        let width = self.parameters() + 1;
+        (32_768 / width).max(4 * width)
+    }
+
+    /// Writes the residuals of `rows` into `residuals` and, if asked for, the derivatives `dr_i/dtheta_j` into `jacobian`, one row of
+    /// [`Residuals::parameters`] numbers after the other. Residuals must not depend on whether derivatives are asked for.
+    ///
+    /// # Errors
+    /// Parameters at which the residuals have no value. Within the search such a point (as one with a number that isn't finite) only shortens the step.
+    fn evaluate(
+        &self,
+        theta: &[f64],
+        rows: Range<usize>,
+        residuals: &mut [f64],
+        jacobian: Option<&mut [f64]>,
+    ) -> Result<(), Self::Error>;
+}
+
+/// An end of a parameter's range.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The lower bound.
+    Lower,
+    /// The upper bound.
+    Upper,
+}
+
+/// Ranges of the parameters: `lower[j] <= theta[j] <= upper[j]`, either of which may be infinite; equal ends fix the parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bounds {
+    /// Least values.
+    pub lower: Vec<f64>,
+    /// Greatest values.
+    pub upper: Vec<f64>,
+}
+
+impl Bounds {
+    /// No bounds for this many parameters.
+    #[must_use]
+    pub fn none(parameters: usize) -> Self {
+        Self { lower: vec![f64::NEG_INFINITY; parameters], upper: vec![f64::INFINITY; parameters] }
+    }
+
+    /// With parameter number `index` (from 0) held at `value`.
+    #[must_use]
+    pub fn with_fixed(mut self, index: usize, value: f64) -> Self {
+        self.lower[index] = value;
+        self.upper[index] = value;
+        self
+    }
+
+    /// Whether the ends of a parameter's range are equal.
+    #[must_use]
+    pub fn is_fixed(&self, index: usize) -> bool {
+        self.lower[index] >= self.upper[index]
+    }
+}

@@ -1,0 +1,427 @@
+//! The search: Levenberg-Marquardt steps in a trust region, scaled by the norms of the columns, until the residuals are orthogonal to
+//! what the free parameters can change.
+//!
+//! J. J. Moré, *The Levenberg-Marquardt algorithm: implementation and theory*, Lecture Notes in Mathematics 630, Springer 1978,
+//! p. 105, with bounds exact in each step. Near a minimum, where the sum of squares is blunted by rounding, steps are judged by the gradient.
+
+use super::curvature::{self, Probe};
+use super::linear::{Failure, Linear, decrease, linearise, turned, values};
+use super::minimum::{End, Minimum, Reason};
+use super::residuals::{Bounds, Residuals, Side};
+use super::step::{Step, StepBox, damped, of_length};
+use super::triangle::norm;
+use super::{LeastSquaresError, Options};
+
+/// A step is kept if it achieves this part of the predicted decrease (Moré's value).
+const ENOUGH: f64 = 1e-4;
+/// Below this cosine between residuals and tangent space a step may be judged by the gradient: the decrease that it predicts is 1e-8 of the sum of squares.
+const POLISH: f64 = 1e-4;
+/// Trials of one iteration, each at least half as long as allowed before.
+const TRIALS: usize = 100;
+/// Times that a saddle is left.
+const ESCAPES: usize = 10;
+
+/// Least sum of squares of the residuals within the bounds, from a start.
+///
+/// ```
+/// use bulge_numerics::least_squares::{Bounds, Options, Residuals, minimise};
+/// use std::convert::Infallible;
+///
+/// /// `r = (10 (y - x^2), 1 - x)`.
+/// struct Rosenbrock;
+///
+/// impl Residuals for Rosenbrock {
+///     type Error = Infallible;
+///     fn rows(&self) -> usize {
+///         2
+///     }
+///     fn parameters(&self) -> usize {
+///         2
+///     }
+///     fn evaluate(
+///         &self,
+///         theta: &[f64],
+///         rows: std::ops::Range<usize>,
+///         residuals: &mut [f64],
+///         jacobian: Option<&mut [f64]>,
+///     ) -> Result<(), Infallible> {
+///         let [x, y] = [theta[0], theta[1]];
+///         residuals.copy_from_slice(&[10.0 * (y - x * x), 1.0 - x][rows.clone()]);
+///         if let Some(jacobian) = jacobian {
+///             jacobian.copy_from_slice(&[-20.0 * x, 10.0, -1.0, 0.0][2 * rows.start..2 * rows.end]);
+///         }
+///         Ok(())
+///     }
+/// }
+///
+/// let minimum = minimise(&Rosenbrock, &[-1.2, 1.0], &Bounds::none(2), &Options::default())?;
+/// assert!(minimum.certificate.converged);
+/// assert!((minimum.theta[0] - 1.0).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`LeastSquaresError`] for a start outside the bounds or without finite residuals and derivatives, crossed bounds, lists of the wrong length, or an
+/// option out of range. A search that ends without a minimum is no error: see [`super::Certificate::converged`].
+pub fn minimise<P: Residuals>(
+    problem: &P,
+    start: &[f64],
+    bounds: &Bounds,
+    options: &Options,
+) -> Result<Minimum, LeastSquaresError<P::Error>> {
+    options.check()?;
+    check_start(problem.parameters(), start, bounds)?;
+    let mut residuals = vec![0.0; problem.rows()];
+    let linear = linearise(problem, start, &mut residuals).map_err(|failure| match failure {
+        Failure::Evaluation(error) => LeastSquaresError::Start(error),
+        Failure::Residual { row, value } => LeastSquaresError::Residual { row, value },
+        Failure::Derivative { row, parameter, value } => {
+            LeastSquaresError::Derivative { row, parameter, value }
+        }
+        Failure::Overflow => LeastSquaresError::Overflow,
+    })?;
+    Ok(Search::new(problem, bounds, options, start.to_vec(), residuals, linear).run())
+}
+
+pub(super) fn check_start<E>(k: usize, start: &[f64], bounds: &Bounds) -> Result<(), LeastSquaresError<E>> {
+    let lists =
+        [("the start", start), ("the list of lower bounds", &bounds.lower), ("the list of upper bounds", &bounds.upper)];
+    for (what, list) in lists {
+        if list.len() != k {
+            return Err(LeastSquaresError::Length { what, found: list.len(), parameters: k });
+        }
+    }
+    for (parameter, value) in start.iter().copied().enumerate() {
+        let (lower, upper) = (bounds.lower[parameter], bounds.upper[parameter]);
+        if lower.is_nan() || upper.is_nan() || lower > upper {
+            return Err(LeastSquaresError::Crossed { parameter, lower, upper });
+        }
+        if !value.is_finite() || value < lower || value > upper {
+            return Err(LeastSquaresError::Outside { parameter, value, lower, upper });
+        }
+    }
+    Ok(())
+}
+
+/// The search at its current point.
+pub(super) struct Search<'a, P> {
+    pub(super) problem: &'a P,
+    pub(super) bounds: &'a Bounds,
+    options: &'a Options,
+    pub(super) theta: Vec<f64>,
+    pub(super) residuals: Vec<f64>,
+    pub(super) linear: Linear,
+    /// Largest norm of each column so far: the scale of the trust region.
+    pub(super) scale: Vec<f64>,
+    radius: f64,
+    damping: f64,
+    iterations: usize,
+    pub(super) evaluations: usize,
+    pub(super) linearisations: usize,
+}
+
+/// A trial point.
+struct Trial {
+    theta: Vec<f64>,
+    /// Length of the step in the scale of the trust region.
+    length: f64,
+    predicted: f64,
+    /// Whether it is the linearised minimum.
+    full: bool,
+}
+
+/// How an iteration ended.
+enum Progress {
+    Moved,
+    Stuck,
+    Budget,
+}
+
+impl<'a, P: Residuals> Search<'a, P> {
+    fn new(
+        problem: &'a P,
+        bounds: &'a Bounds,
+        options: &'a Options,
+        theta: Vec<f64>,
+        residuals: Vec<f64>,
+        linear: Linear,
+    ) -> Self {
+        let scale = linear.norms.clone();
+        let size = norm(&product(&scale, &theta));
+        // From the origin, the residuals are the only measure of a step.
+        let radius = options.first_radius * if size > 0.0 { size } else { linear.cost.sqrt() };
+        Self {
+            problem,
+            bounds,
+            options,
+            theta,
+            residuals,
+            linear,
+            scale,
+            radius,
+            damping: 0.0,
+            iterations: 0,
+            evaluations: 0,
+            linearisations: 1,
+        }
+    }
+
+    fn run(mut self) -> Minimum {
+        let mut escapes = 0;
+        let mut least_curvature = None;
+        let reason = loop {
+            let reason = self.descend();
+            if !reason.is_converged() || !self.options.check_curvature {
+                break reason;
+            }
+            match curvature::probe(&mut self) {
+                Probe::Minimum(curvature) => {
+                    least_curvature = curvature;
+                    break reason;
+                }
+                Probe::Lower { curvature, .. } if escapes == ESCAPES => {
+                    least_curvature = Some(curvature);
+                    break Reason::Saddle;
+                }
+                Probe::Lower { theta, length, .. } => {
+                    escapes += 1;
+                    if !self.move_to(theta) {
+                        break Reason::Saddle;
+                    }
+                    self.radius = length;
+                }
+            }
+        };
+        let newton = self.newton();
+        let end = End {
+            bounds: self.bounds,
+            reason,
+            newton: &newton,
+            rank_tolerance: self.options.rank_tolerance,
+            least_curvature,
+            iterations: self.iterations,
+            evaluations: self.evaluations,
+            linearisations: self.linearisations,
+        };
+        end.minimum(self.theta, self.residuals, &self.linear)
+    }
+
+    /// Steps until one of the reasons to end holds.
+    fn descend(&mut self) -> Reason {
+        if (0..self.theta.len()).all(|j| self.bounds.is_fixed(j)) {
+            return Reason::NothingFree;
+        }
+        loop {
+            let newton = self.newton();
+            if let Some(reason) = self.stationary(&newton) {
+                return reason;
+            }
+            match self.advance(&newton) {
+                Progress::Moved => self.iterations += 1,
+                Progress::Budget => return Reason::Budget,
+                Progress::Stuck if newton.predicted <= self.rounding() => {
+                    return Reason::DecreaseBelowRounding;
+                }
+                Progress::Stuck => return Reason::Stagnated,
+            }
+        }
+    }
+
+    /// The step to the linearised minimum within the bounds, scaled by the current norms; flat directions damped.
+    pub(super) fn newton(&self) -> Step {
+        let (a, limits) = self.scaled_by(&self.linear.norms);
+        damped(&a, &self.linear.q, self.options.rank_tolerance.powi(2), &limits)
+    }
+
+    fn stationary(&self, newton: &Step) -> Option<Reason> {
+        let cost = self.linear.cost;
+        if cost == 0.0 {
+            return Some(Reason::ExactFit);
+        }
+        if newton.predicted <= self.options.tolerance.powi(2) * cost {
+            return Some(Reason::Orthogonal);
+        }
+        (newton.predicted.sqrt() <= self.rounding_of_parameters()).then_some(Reason::StepBelowRounding)
+    }
+
+    /// Change of the residuals when the parameters are rounded.
+    fn rounding_of_parameters(&self) -> f64 {
+        f64::EPSILON * norm(&product(&self.linear.norms, &self.theta))
+    }
+
+    /// Change of the sum of squares by rounding of the residuals and of the sum.
+    fn rounding(&self) -> f64 {
+        let (length, change) = (self.linear.cost.sqrt(), 8.0 * self.rounding_of_parameters());
+        8.0 * f64::EPSILON * self.linear.cost + 2.0 * length * change + change * change
+    }
+
+    /// The triangle with columns divided by a scale, and the box of steps times this scale. Parameters without influence stay.
+    fn scaled_by(&self, scale: &[f64]) -> (super::triangle::Triangle, StepBox) {
+        let inverse: Vec<f64> = scale.iter().map(|s| if *s > 0.0 { 1.0 / s } else { 0.0 }).collect();
+        let reach = |ends: &[f64]| -> Vec<f64> {
+            (0..scale.len())
+                .map(|j| if self.linear.norms[j] > 0.0 { (ends[j] - self.theta[j]) * scale[j] } else { 0.0 })
+                .collect()
+        };
+        let limits = StepBox { lower: reach(&self.bounds.lower), upper: reach(&self.bounds.upper) };
+        (self.linear.r.scaled(&inverse), limits)
+    }
+
+    /// The point reached by a scaled step; at a bound exactly where the step is.
+    fn point(&self, step: &Step, scale: &[f64]) -> Vec<f64> {
+        let moved = |j: usize| match step.held[j] {
+            _ if scale[j] == 0.0 || step.z[j] == 0.0 => self.theta[j],
+            Some(Side::Lower) => self.bounds.lower[j],
+            Some(Side::Upper) => self.bounds.upper[j],
+            None => (self.theta[j] + step.z[j] / scale[j]).clamp(self.bounds.lower[j], self.bounds.upper[j]),
+        };
+        (0..self.theta.len()).map(moved).collect()
+    }
+
+    /// The trial within the trust region.
+    fn trial(&mut self, newton: &Step, newton_length: f64) -> Trial {
+        if newton_length <= self.radius {
+            let theta = self.point(newton, &self.linear.norms);
+            return Trial { theta, length: newton_length, predicted: newton.predicted, full: true };
+        }
+        let (a, limits) = self.scaled_by(&self.scale);
+        let (step, damping) = of_length(&a, &self.linear.q, self.radius, self.damping, &limits);
+        self.damping = damping;
+        let theta = self.point(&step, &self.scale);
+        Trial { theta, length: norm(&step.z), predicted: step.predicted, full: false }
+    }
+
+    /// One iteration: shorter and shorter trials until one is kept.
+    fn advance(&mut self, newton: &Step) -> Progress {
+        let in_region = |j: usize| {
+            let norm = self.linear.norms[j];
+            if norm > 0.0 { newton.z[j] * (self.scale[j] / norm) } else { 0.0 }
+        };
+        let newton_length = norm(&(0..self.theta.len()).map(in_region).collect::<Vec<_>>());
+        let mut residuals = vec![0.0; self.residuals.len()];
+        for _ in 0..TRIALS {
+            if self.evaluations + self.linearisations >= self.options.max_evaluations {
+                return Progress::Budget;
+            }
+            let trial = self.trial(newton, newton_length);
+            if trial.theta == self.theta {
+                return Progress::Stuck;
+            }
+            self.evaluations += 1;
+            if values(self.problem, &trial.theta, &mut residuals).is_err() {
+                self.radius = 0.25 * trial.length;
+                continue;
+            }
+            let actual = decrease(&self.residuals, &residuals);
+            let ratio = actual / trial.predicted;
+            if ratio >= ENOUGH && ratio < knob("EARLY", 0.0) && self.bend(&trial, &residuals) { return Progress::Moved; }
+            if ratio >= ENOUGH {
+                let slope = self.slope(&trial.theta);
+                if self.move_to(trial.theta) {
+                    self.resize(ratio, actual, slope, trial.length, trial.full);
+                    return Progress::Moved;
+                }
+                self.radius = 0.25 * trial.length;
+                continue;
+            }
+            if trial.full && trial.predicted <= POLISH.powi(2) * self.linear.cost && self.polish(&trial) {
+                return Progress::Moved;
+            }
+            if self.bend(&trial, &residuals) {
+                return Progress::Moved;
+            }
+            let slope = self.slope(&trial.theta);
+            self.resize(ratio, actual, slope, trial.length, trial.full);
+        }
+        Progress::Stuck
+    }
+
+    /// Bends a rejected step along the curvature that its residuals show, and keeps it if it is good then.
+    ///
+    /// With `c = r(theta + p) - r - J p`, half the second derivative along `p`, the bend `a` minimises the damped `|J a + c|^2`: the
+    /// geodesic acceleration of M. K. Transtrum, J. P. Sethna (arXiv:1201.5885), from a finite step.
+    fn bend(&mut self, trial: &Trial, residuals: &[f64]) -> bool {
+        let scale = if trial.full { &self.linear.norms } else { &self.scale };
+        let damping = if trial.full { self.options.rank_tolerance.powi(2) } else { self.damping };
+        let Ok(turned) = turned(self.problem, &self.theta, residuals) else { return false };
+        self.linearisations += 1;
+        let step: Vec<f64> = trial.theta.iter().zip(&self.theta).map(|(t, s)| t - s).collect();
+        let linear = self.linear.r.times(&step);
+        let c: Vec<f64> = (0..step.len()).map(|i| turned[i] - self.linear.q[i] - linear[i]).collect();
+        let (a, mut limits) = self.scaled_by(scale);
+        for j in 0..step.len() {
+            limits.lower[j] = (limits.lower[j] - step[j] * scale[j]).min(0.0);
+            limits.upper[j] = (limits.upper[j] - step[j] * scale[j]).max(0.0);
+        }
+        let bend = damped(&a, &c, damping, &limits);
+        let lambda = norm(&bend.z);
+        if lambda > knob("BEND", 0.75) * trial.length { return false }
+        let theta: Vec<f64> = (0..step.len()).map(|j| match bend.held[j] {
+            _ if scale[j] == 0.0 || bend.z[j] == 0.0 => trial.theta[j],
+            Some(Side::Lower) => self.bounds.lower[j],
+            Some(Side::Upper) => self.bounds.upper[j],
+            None => (trial.theta[j] + bend.z[j] / scale[j]).clamp(self.bounds.lower[j], self.bounds.upper[j]),
+        }).collect();
+        let mut residuals = vec![0.0; self.residuals.len()];
+        self.evaluations += 1;
+        if values(self.problem, &theta, &mut residuals).is_err() { return false }
+        let ratio = decrease(&self.residuals, &residuals) / trial.predicted;
+        if ratio < knob("BENDOK", 0.25) || !self.move_to(theta) { return false }
+        let g = if ratio >= knob("BENDHIGH", 0.75) { knob("BENDGROW", 2.0) } else { 1.0 };
+        self.radius = g * trial.length;
+        true
+    }
+
+    /// Derivative of the sum of squares along the step to a point; negative.
+    fn slope(&self, theta: &[f64]) -> f64 {
+        let gradient = self.linear.gradient();
+        (0..theta.len()).map(|j| 2.0 * gradient[j] * (theta[j] - self.theta[j])).sum()
+    }
+
+    /// The radius after a trial, by the ratio of actual to predicted decrease.
+    fn resize(&mut self, ratio: f64, actual: f64, slope: f64, length: f64, full: bool) {
+        if ratio <= 0.25 {
+            // Minimum of the parabola through both sums of squares with the slope at the first.
+            let part = slope / (2.0 * (slope + actual));
+            let part = if actual < 0.0 && part.is_finite() { part.clamp(0.1, 0.5) } else { 0.5 };
+            self.radius = part * length;
+        } else if full || ratio >= 0.75 {
+            self.radius = knob("GROW", 2.0) * length;
+        }
+    }
+
+    /// Linearises at a point and stays there; false, and back, if that fails.
+    fn move_to(&mut self, theta: Vec<f64>) -> bool {
+        let mut residuals = vec![0.0; self.residuals.len()];
+        self.linearisations += 1;
+        let Ok(linear) = linearise(self.problem, &theta, &mut residuals) else { return false };
+        for (scale, norm) in self.scale.iter_mut().zip(&linear.norms) {
+            *scale = scale.max(*norm);
+        }
+        self.theta = theta;
+        self.residuals = residuals;
+        self.linear = linear;
+        true
+    }
+
+    /// Keeps a full step that shortens the distance to the linearised minimum although rounding hides the decrease of the sum of squares.
+    fn polish(&mut self, trial: &Trial) -> bool {
+        let before = (self.theta.clone(), self.residuals.clone(), self.linear.clone(), self.scale.clone());
+        if self.move_to(trial.theta.clone())
+            && self.linear.cost <= before.2.cost * (1.0 + POLISH.powi(2))
+            && self.newton().predicted <= 0.81 * trial.predicted
+        {
+            self.radius = self.radius.max(2.0 * trial.length);
+            return true;
+        }
+        (self.theta, self.residuals, self.linear, self.scale) = before;
+        false
+    }
+}
+
+/// Products entry by entry.
+pub(super) fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a * b).collect()
+}
+
+pub(crate) fn knob(n:&str,d:f64)->f64{std::env::var(n).map_or(d,|s|s.parse().unwrap())}
