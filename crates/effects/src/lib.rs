@@ -20,6 +20,7 @@ mod probe;
 mod rig;
 mod specimen;
 mod unit;
+pub mod user;
 
 pub use card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 pub use catalogue::{Catalogue, CatalogueError};

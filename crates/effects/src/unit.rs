@@ -8,7 +8,6 @@ pub(crate) const PERCENT: Unit = ("%", 0.01);
 pub(crate) const MILLIMETRE: Unit = ("mm", 1e-3);
 pub(crate) const DEGREE: Unit = ("deg", std::f64::consts::PI / 180.0);
 pub(crate) const NEWTON: Unit = ("N", 1.0);
-pub(crate) const PASCAL: Unit = ("Pa", 1.0);
 pub(crate) const KILOPASCAL: Unit = ("kPa", 1e3);
 pub(crate) const MEGAPASCAL: Unit = ("MPa", 1e6);
 pub(crate) const NEWTON_PER_BAR: Unit = ("N/bar", 1e-5);

@@ -3,6 +3,7 @@ pub mod closed_form;
 mod cylinder;
 mod draw;
 mod error;
+mod groups;
 mod isobars;
 mod linearised;
 mod lobes;

@@ -10,6 +10,7 @@ use bulge_numerics::{Dual, Real};
 use crate::FibreError;
 use crate::outcome::{Approach, Outcome};
 use crate::problem::{Problem, Variable};
+use crate::shape::Convergence;
 use crate::shooting::{Total, Unknowns};
 
 /// A value with its derivatives, in SI.
@@ -48,6 +49,8 @@ pub struct Linearised {
     pub mid_radius_m: Linear,
     /// Enclosed volume with the cross-section that carries the pressure \[m^3\].
     pub volume_polygon_m3: Linear,
+    /// How the search converged.
+    pub convergence: Convergence,
     start: Option<Start>,
 }
 
@@ -71,8 +74,8 @@ pub struct Start {
     by_variable: [[f64; Variable::COUNT]; 2],
 }
 
-/// Largest move of an unknown along its derivative; beyond it the derivative says little.
-const FARTHEST: f64 = 1.0;
+/// Largest moves of the unknowns along their derivatives; beyond them the derivatives say little. (ln|k| of a long braid moves fast, but straight.)
+const FARTHEST: [f64; 2] = [0.5, 20.0];
 
 impl Start {
     /// The unknowns to start with at a contraction of another problem.
@@ -84,7 +87,7 @@ impl Start {
         let logs = std::array::from_fn(|z| {
             let along: f64 = self.by_variable[z].iter().zip(&change).map(|(slope, step)| slope * step).sum();
             let step = along + self.by_contraction[z] * (contraction - self.contraction);
-            self.unknowns.logs[z] + if step.is_finite() { step.clamp(-FARTHEST, FARTHEST) } else { 0.0 }
+            self.unknowns.logs[z] + if step.is_finite() { step.clamp(-FARTHEST[z], FARTHEST[z]) } else { 0.0 }
         });
         Unknowns { logs, ..self.unknowns }
     }
@@ -168,6 +171,7 @@ impl Problem {
             equator_force_n: linear(unit_force * (force + section)),
             mid_radius_m: linear(radius * mid),
             volume_polygon_m3: linear(volume),
+            convergence: outcome.convergence,
             start: self.start(ask.contraction, &outcome, seeds),
         })
     }

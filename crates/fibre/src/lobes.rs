@@ -130,7 +130,7 @@ impl<D: Real> Lobes<D> {
     }
 
     /// The same for other scalars.
-    pub(crate) fn map<E>(&self, f: impl Fn(D) -> E) -> Lobes<E> {
+    pub(crate) fn map<E>(&self, mut f: impl FnMut(D) -> E) -> Lobes<E> {
         Lobes {
             fibres: f(self.fibres),
             width: f(self.width),

@@ -282,7 +282,7 @@ impl<D: Real> Net<D> {
 
 impl<D: Real> Net<D> {
     /// The same net for another scalar.
-    pub(crate) fn map<E>(&self, f: impl Fn(D) -> E) -> Net<E> {
+    pub(crate) fn map<E>(&self, mut f: impl FnMut(D) -> E) -> Net<E> {
         Net {
             end_radius: f(self.end_radius),
             half_fibre: f(self.half_fibre),
@@ -292,7 +292,7 @@ impl<D: Real> Net<D> {
             compliance: f(self.compliance),
             area_factor: f(self.area_factor),
             depth: f(self.depth),
-            lobes: self.lobes.map(|lobes| lobes.map(&f)),
+            lobes: self.lobes.map(|lobes| lobes.map(&mut f)),
             bladder: self.bladder.map(|b| Bladder { c10: f(b.c10), c01: f(b.c01) }),
             cloth: self.cloth.map(|c| Cloth { stiffness: f(c.stiffness), radius: f(c.radius) }),
         }

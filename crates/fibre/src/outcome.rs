@@ -54,6 +54,12 @@ pub(crate) struct Outcome<const N: usize> {
 }
 
 impl Problem {
+    /// Whether an equilibrium takes an integration of the ODE: there is no closed form.
+    #[must_use]
+    pub fn shoots(&self) -> bool {
+        self.method(Approach::Auto) == Ok(Method::Shooting)
+    }
+
     /// The method that `approach` means for this muscle.
     pub(crate) fn method(&self, approach: Approach) -> Result<Method, FibreError> {
         if self.is_cylinder() {

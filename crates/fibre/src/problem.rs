@@ -138,7 +138,8 @@ impl Problem {
     }
 
     /// Whether shape, force/p and volume are the same at every pressure.
-    pub(crate) fn is_scale_free(&self) -> bool {
+    #[must_use]
+    pub fn is_scale_free(&self) -> bool {
         self.net.compliance == 0.0 && self.net.bladder.is_none() && self.net.cloth.is_none()
     }
 

@@ -289,7 +289,8 @@ impl Problem {
     }
 
     /// Whether the force grows without bound as the contraction goes to 0: straight inextensible fibres.
-    pub(crate) fn is_singular(&self) -> bool {
+    #[must_use]
+    pub fn is_singular(&self) -> bool {
         self.net.turn == 0.0 && self.net.compliance == 0.0
     }
 

@@ -25,7 +25,7 @@ pub(crate) fn along(s: &[f64], time: &[f64], direction: i8, resolution: &Resolut
                 bounds
             };
             let (mut first, mut end) = window();
-            while (first, end) != (0, last) && (s[end] - s[first]).abs() < needed {
+            while (first, end) != (0, last) && (end - first < 4 || (s[end] - s[first]).abs() < needed) {
                 (first, end) = window();
             }
             half /= 2;

@@ -155,7 +155,7 @@ fn rests(s: &[f64], time: Option<&[f64]>, legs: &[Leg], band: DeadBand) -> Vec<R
         return std::iter::once(0..s.len()).collect();
     }
     let tolerance = band.half_noise.max(0.25 * band.width);
-    let mut found = Vec::new();
+    let mut found: Vec<Range<usize>> = Vec::new();
     let mut window = Window::new(s);
     let mut first = 0;
     while first < s.len() {
@@ -167,14 +167,19 @@ fn rests(s: &[f64], time: Option<&[f64]>, legs: &[Leg], band: DeadBand) -> Vec<R
         let middle = median(&mut s[first..=last].to_vec());
         let is_still = |row: &usize| (s[*row] - middle).abs() <= tolerance;
         let start = (first..=last).find(is_still).unwrap_or(first);
-        let end = (first..=last).rev().find(is_still).unwrap_or(last);
-        if is_rest(start, end) {
-            found.push(start..end + 1);
-            first = end.max(first + 1);
-        } else {
+        // The window held some rows of the motion before; without them it reaches farther.
+        let last = window.last_within(start, band.width);
+        let end = (start..=last).rev().find(is_still).unwrap_or(last);
+        if !is_rest(start, end) {
             // Slow, but not still: half of the rows are looked at again.
-            first += (last - first) / 2 + 1;
+            first = start + (last - start) / 2 + 1;
+            continue;
         }
+        match found.last_mut() {
+            Some(Range { end: before, .. }) if *before >= start => *before = end + 1,
+            _ => found.push(start..end + 1),
+        }
+        first = end + 1;
     }
     found
 }
@@ -272,8 +277,8 @@ mod tests {
             (0.0, 30),
             (0.2, 100),
             (0.2, 40),
-            (0.1, 50),
-            (0.1, 35),
+            (0.0937, 50),
+            (0.0937, 35),
             (0.0, 50),
             (0.0, 30),
         ]);

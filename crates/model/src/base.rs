@@ -74,10 +74,10 @@ impl Equilibrium {
         let here = self.problem.at_pressure(Pressure::pa(pressure))?;
         let found = here.linearised(contraction, &self.numbers, Approach::Auto)?;
         let mut answer = Answer {
-            force: plain(&found, |f| f.force_n),
-            tension: plain(&found, |f| f.equator_force_n),
-            mid_radius: plain(&found, |f| f.mid_radius_m),
-            volume: plain(&found, |f| f.volume_polygon_m3),
+            force: plain(&found.force_n),
+            tension: plain(&found.equator_force_n),
+            mid_radius: plain(&found.mid_radius_m),
+            volume: plain(&found.volume_polygon_m3),
         };
         for (j, variable) in self.variables.iter().enumerate().take(SHAPE) {
             let slopes = self.by_shape(j, variable, &found, pressure, contraction)?;
@@ -114,7 +114,7 @@ impl Equilibrium {
             if let Some(place) = place {
                 let outputs = [&found.force_n, &found.equator_force_n, &found.mid_radius_m, &found.volume_polygon_m3];
                 for (slope, output) in slopes.iter_mut().zip(outputs) {
-                    *slope += factor * output.by_variable[place];
+                    *slope += factor * output.by_variable()[place];
                 }
             }
         }
@@ -123,8 +123,7 @@ impl Equilibrium {
 }
 
 /// One of the outputs without derivatives by the shape.
-fn plain(found: &Linearised, output: impl Fn(&Linearised) -> &bulge_fibre::Derived) -> Graded {
-    let output = output(found);
+fn plain(output: &bulge_fibre::Linear) -> Graded {
     Graded {
         value: output.value,
         by_pressure: output.by_pressure,

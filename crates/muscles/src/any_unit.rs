@@ -27,7 +27,7 @@ pub struct Any {
 /// ```
 ///
 /// # Errors
-/// If the text is not a finite number with such a unit, see [`unit`].
+/// If the text is not a finite number with such a unit, see [`unit()`].
 pub fn any(text: &str) -> Result<Any, AnyUnitError> {
     let (number, unit) = split(text)?;
     in_any(text, number, unit)
@@ -69,7 +69,7 @@ pub fn any_with_width(text: &str) -> Result<(Any, Option<f64>), AnyUnitError> {
 }
 
 /// Writes an SI value in a unit so that [`any`] gives back exactly the same number, with as few digits as that takes;
-/// where the unit cannot do that, in SI units; as a pure number if the unit is none that [`unit`] reads.
+/// where the unit cannot do that, in SI units; as a pure number if the unit is none that [`unit()`] reads.
 ///
 /// ```
 /// use bulge_muscles::units;

@@ -158,18 +158,21 @@ impl Dimension {
         [(symbol, power), ("kg", kilogram), ("m", metre), ("s", second), ("K", kelvin)]
     }
 
-    /// The shortest way of writing it: the one with the smallest sum of exponents, base units first.
+    /// The shortest way of writing it, with the smallest sum of exponents: in newtons before the others, in base units
+    /// only where that is shorter by more than one power (a damping is N s/m, not kg/s).
     fn shortest(self) -> [(&'static str, i16); 5] {
         let length = |factors: &[(&str, i16); 5]| factors.iter().map(|(_, half)| half.abs()).sum::<i16>();
-        let mut best = self.split("", 0);
-        let power = self.halves[1];
+        let [_, power, second, _] = self.halves;
+        let base = self.split("", 0);
+        let mut best = base;
+        let mut least = length(&base) + if power != 0 && second != 0 { 3 } else { 0 };
         for (symbol, unit) in DERIVED {
             let rest = unit.power(f64::from(power) / 2.0).and_then(|derived| self.over(derived));
-            if let Some(other) = rest.map(|rest| rest.split(symbol, power))
-                && length(&other) < length(&best)
-                // Joules and metres together would be newtons.
-                && (symbol != "J" || other[2].1 == 0)
-            {
+            let Some(other) = rest.map(|rest| rest.split(symbol, power)) else { continue };
+            // Joules and metres together would be newtons.
+            let is_clear = symbol != "J" || other[2].1 == 0;
+            if is_clear && length(&other) < least {
+                least = length(&other);
                 best = other;
             }
         }
@@ -220,6 +223,8 @@ mod tests {
         };
         for (dimension, text) in [
             (D::NONE, "1"),
+            (product(&[(D::FORCE, 1.0), (D::TIME, 1.0), (D::LENGTH, -1.0)]), "N s/m"),
+            (D::MASS, "kg"),
             (D::FORCE, "N"),
             (D::PRESSURE, "Pa"),
             (D::AREA, "m^2"),
@@ -260,7 +265,10 @@ mod tests {
     #[test]
     fn arithmetic_stays_within_its_range() {
         let large = Dimension::LENGTH.power(64.0).unwrap();
-        assert_eq!((large.to_string(), large.exponents()[0].to_bits()), ("m^64".to_owned(), 64.0_f64.to_bits()));
+        assert_eq!(
+            (large.to_string(), large.exponents()[0].to_bits()),
+            ("m^64".to_owned(), 64.0_f64.to_bits())
+        );
         assert_eq!(large.times(Dimension::LENGTH), None);
         assert_eq!(large.power(-1.0).and_then(|small| small.over(Dimension::LENGTH)), None);
         assert_eq!(Dimension::LENGTH.power(64.5), None);

@@ -343,7 +343,7 @@ mod tests {
         reads("m^0.5", 1.0, "m^0.5");
         reads("m^(-1.5)", 1.0, "1/m^1.5");
         reads("J/(kg K)", 1.0, "m^2/(s^2 K)");
-        reads("(N/m)^2 s", 1.0, "kg^2/s^3");
+        reads("(N/m)^2 s", 1.0, "N^2 s/m^2");
         reads("N/m/s", 1.0, "N/(m s)");
         reads("g", 1e-3, "kg");
         reads("N/(bar h)", 1.0 / (1e5 * 3600.0), "m^2/s");

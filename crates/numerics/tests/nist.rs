@@ -12,9 +12,9 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 const NAMES: [&str; 27] = [
-    "Misra1a", "Chwirut2", "Chwirut1", "Lanczos3", "Gauss1", "Gauss2", "DanWood", "Misra1b", "Kirby2", "Hahn1",
-    "Nelson", "MGH17", "Lanczos1", "Lanczos2", "Gauss3", "Misra1c", "Misra1d", "Roszman1", "ENSO", "MGH09",
-    "Thurber", "BoxBOD", "Rat42", "MGH10", "Eckerle4", "Rat43", "Bennett5",
+    "Misra1a", "Chwirut2", "Chwirut1", "Lanczos3", "Gauss1", "Gauss2", "DanWood", "Misra1b", "Kirby2",
+    "Hahn1", "Nelson", "MGH17", "Lanczos1", "Lanczos2", "Gauss3", "Misra1c", "Misra1d", "Roszman1", "ENSO",
+    "MGH09", "Thurber", "BoxBOD", "Rat42", "MGH10", "Eckerle4", "Rat43", "Bennett5",
 ];
 
 /// Most parameters of a problem.
@@ -35,9 +35,8 @@ impl Problem {
     fn read(name: &'static str) -> Self {
         let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("reference/nist/{name}.dat"));
         let text = fs::read_to_string(path).unwrap();
-        let numbers = |line: &str| -> Vec<f64> {
-            line.split_whitespace().map(|word| word.parse().unwrap()).collect()
-        };
+        let numbers =
+            |line: &str| -> Vec<f64> { line.split_whitespace().map(|word| word.parse().unwrap()).collect() };
         let rows: Vec<Vec<f64>> = text
             .lines()
             .filter_map(|line| line.trim_start().strip_prefix('b')?.split_once('='))
@@ -86,9 +85,7 @@ impl Problem {
             "Nelson" => b[0] - b[1] * x0 * decay(x[1], b[2]),
             "MGH17" => b[0] + b[1] * decay(x0, b[3]) + b[2] * decay(x0, b[4]),
             "Roszman1" => b[0] - b[1] * x0 - (b[2] / (-b[3] + x0)).atan() / PI,
-            "ENSO" => {
-                b[0] + wave(D::from(12.0), &b[1..3]) + wave(b[3], &b[4..6]) + wave(b[6], &b[7..9])
-            }
+            "ENSO" => b[0] + wave(D::from(12.0), &b[1..3]) + wave(b[3], &b[4..6]) + wave(b[6], &b[7..9]),
             "MGH09" => b[0] * (b[1] * x0 + x0 * x0) / (b[2] * x0 + b[3] + x0 * x0),
             "Rat42" => b[0] / ((b[1] - b[2] * x0).exp() + 1.0),
             "Rat43" => b[0] / power((b[1] - b[2] * x0).exp() + 1.0, one / b[3]),
@@ -161,18 +158,35 @@ fn compare(problem: &Problem, minimum: &Minimum) -> [f64; 3] {
 
 #[test]
 fn all_problems_from_both_starts() {
-    println!("{:<10}{:>6}{:>12}{:>11}{:>9}{:>7}{:>7}  end", "problem", "start", "parameters", "deviation", "squares", "steps", "cond");
+    println!(
+        "{:<10}{:>6}{:>12}{:>11}{:>9}{:>7}{:>7}  end",
+        "problem", "start", "parameters", "deviation", "squares", "steps", "cond"
+    );
     for name in NAMES {
         let problem = Problem::read(name);
         for (i, start) in problem.starts.iter().enumerate() {
             let mut options = Options::default();
-            if let Ok(r) = std::env::var("RADIUS") { options.first_radius = r.parse().unwrap(); }
+            if let Ok(r) = std::env::var("RADIUS") {
+                options.first_radius = r.parse().unwrap();
+            }
             let minimum = minimise(&problem, start, &Bounds::none(start.len()), &options).unwrap();
             let found = compare(&problem, &minimum);
             let c = &minimum.certificate;
             println!(
                 "{name:<10}{:>6}{:>12.1}{:>11.1}{:>9.1}{:>7}{:>5}{:>8.0e}  {:?} off {:.1e} cos {:.1e} step {:.1e} curv {:?} flat {}",
-                i + 1, found[0], found[1], found[2], minimum.iterations, minimum.evaluations, c.condition, c.reason, c.relative_decrease.sqrt(), c.gradient_cosine, c.relative_step, c.least_curvature, c.flat.len()
+                i + 1,
+                found[0],
+                found[1],
+                found[2],
+                minimum.iterations,
+                minimum.evaluations,
+                c.condition,
+                c.reason,
+                c.relative_decrease.sqrt(),
+                c.gradient_cosine,
+                c.relative_step,
+                c.least_curvature,
+                c.flat.len()
             );
         }
     }

@@ -129,14 +129,14 @@ impl Compiler<'_> {
                     return Err(self.error(&node.span, what, "write a smaller one, or `exp`"));
                 }
                 self.steps.pop();
-                if exponent.fract() == 0.0 {
-                    #[expect(clippy::cast_possible_truncation, reason = "whole and at most 1000")]
-                    let whole = *exponent as i32;
-                    Step::WholePower(whole)
-                } else if *exponent == 0.5 {
-                    Step::Call(Function::Sqrt)
-                } else {
-                    Step::RealPower(*exponent)
+                match *exponent {
+                    0.5 => Step::Call(Function::Sqrt),
+                    whole if whole.fract() == 0.0 => {
+                        #[expect(clippy::cast_possible_truncation, reason = "whole and at most 1000")]
+                        let whole = whole as i32;
+                        Step::WholePower(whole)
+                    }
+                    other => Step::RealPower(other),
                 }
             }
             (Part::Operate(operator), _) => Step::Operate(*operator),

@@ -47,7 +47,7 @@ struct Parser<'t> {
 
 type Parsed = Result<(), ExpressionError>;
 
-impl<'t> Parser<'t> {
+impl Parser<'_> {
     fn advance(&mut self) -> Parsed {
         self.end = self.span.end;
         (self.token, self.span) = self.lexer.next()?;

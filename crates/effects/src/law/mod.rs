@@ -21,7 +21,7 @@
 //! let at = LawPoint::mean(Dual::from(1e5), Dual::<1>::variable(0.10, 0));
 //! let force = law.force(at, &muscle, &[]);
 //! assert_eq!(force.value().round(), 1047.0);
-//! assert_eq!((force.gradient()[0] / 100.0).round(), -147.0); // N for each per cent
+//! assert_eq!((force.gradient()[0] / 100.0).round(), -70.0); // N for each 1 % of contraction
 //! ```
 //!
 //! Deliberately absent: laws whose formula the sources do not state completely (stretched-length stiffness, whose

@@ -52,6 +52,8 @@ impl Effect for AsymmetricFriction {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::float_cmp, reason = "sums of 0 and the parameter are exact")]
+
     use super::*;
     use crate::probe::load;
 

@@ -51,7 +51,8 @@ impl Effect for BoucWen {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         vec![
-            ParameterCard::new("force", NEWTON, (0.0, 200.0), 12.0, "friction far from a reversal").prior(0.0, 20.0),
+            ParameterCard::new("force", NEWTON, (0.0, 200.0), 12.0, "friction far from a reversal")
+                .prior(0.0, 20.0),
             ParameterCard::new("distance", PERCENT, (0.02, 10.0), 1.0, "contraction over which it unloads")
                 .off_at(1.0)
                 .logarithmic(),
@@ -102,9 +103,12 @@ mod tests {
 
     #[test]
     fn the_rows_may_lie_at_any_distance() {
-        let way = |n: u32, from: f64, to: f64| (1..=n).map(move |i| from + (to - from) * f64::from(i) / f64::from(n));
+        let way = |n: u32, from: f64, to: f64| {
+            (1..=n).map(move |i| from + (to - from) * f64::from(i) / f64::from(n))
+        };
         let run = |n: u32| {
-            let there: Vec<f64> = [0.0].into_iter().chain(way(n, 0.0, 0.013)).chain(way(n, 0.013, -0.004)).collect();
+            let there: Vec<f64> =
+                [0.0].into_iter().chain(way(n, 0.0, 0.013)).chain(way(n, 0.013, -0.004)).collect();
             path(&BoucWen, &[10.0, 0.01], &there).pop().unwrap()
         };
         assert!((run(1) - run(400)).abs() < 1e-11);

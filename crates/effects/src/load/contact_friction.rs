@@ -31,7 +31,11 @@ impl Effect for ContactFriction {
             group: Group::Load,
             stage: Stage::Load,
             kind: Some(Kind::Braided),
-            signature: Signature { pressure: "1", parity: Parity::Odd, shape: "falls a little with eps; in proportion to l0" },
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Odd,
+                shape: "falls a little with eps; in proportion to l0",
+            },
             twins: &[
                 Twin { name: "crossing-friction", how: "0.999" },
                 Twin { name: "pressure-friction", how: "0.995" },
@@ -56,8 +60,10 @@ impl Effect for ContactFriction {
             let (sine, cosine) = setting.braid_angle.sin_cos();
             let stretch = -balance.contraction + 1.0;
             let squared = -(stretch * cosine).squared() + 1.0;
-            let squared = if squared.value() < LEAST_SINE_SQUARED { Jet::from(LEAST_SINE_SQUARED) } else { squared };
-            let area = Jet::from(2.0 * PI * setting.radius * setting.length * sine) / (stretch * squared.sqrt());
+            let squared =
+                if squared.value() < LEAST_SINE_SQUARED { Jet::from(LEAST_SINE_SQUARED) } else { squared };
+            let area =
+                Jet::from(2.0 * PI * setting.radius * setting.length * sine) / (stretch * squared.sqrt());
             *force = *force - theta[0] * area * balance.pressure * moment.direction;
         }
     }

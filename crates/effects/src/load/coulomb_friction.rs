@@ -49,6 +49,8 @@ impl Effect for CoulombFriction {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::float_cmp, reason = "a product with 1 is exact")]
+
     use super::*;
     use crate::probe::load;
 

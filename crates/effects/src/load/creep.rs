@@ -21,7 +21,11 @@ impl Effect for Creep {
             group: Group::Load,
             stage: Stage::Load,
             kind: None,
-            signature: Signature { pressure: "0", parity: Parity::Even, shape: "logarithm of the time since the sweep began" },
+            signature: Signature {
+                pressure: "0",
+                parity: Parity::Even,
+                shape: "logarithm of the time since the sweep began",
+            },
             twins: &[
                 Twin { name: "force-offset", how: "0.90 (braid), 0.99 (PPAM) unless the sweep is long" },
                 Twin { name: "force-drift", how: "in short tests" },

@@ -43,7 +43,9 @@ impl Effect for CrossingFriction {
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "coefficient of friction times effective radius of a contact, mu rho_e";
         vec![
-            ParameterCard::new("arm", MILLIMETRE, (0.0, 4.0), 0.075, about).prior(0.0, 0.1).plausible(0.0, 0.3),
+            ParameterCard::new("arm", MILLIMETRE, (0.0, 4.0), 0.075, about)
+                .prior(0.0, 0.1)
+                .plausible(0.0, 0.3),
         ]
     }
 

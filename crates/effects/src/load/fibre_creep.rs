@@ -67,6 +67,7 @@ mod tests {
     use super::*;
     use crate::effect::Input;
     use crate::probe::{SETTING, input};
+    use bulge_numerics::Real;
 
     #[test]
     fn a_braid_gives_by_its_fibre_tension() {

@@ -37,7 +37,11 @@ impl Effect for ForceFriction {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "lost part of the force";
-        vec![ParameterCard::new("share", PERCENT, (0.0, 50.0), 1.0, about).prior(0.0, 2.0).plausible(0.0, 15.0)]
+        vec![
+            ParameterCard::new("share", PERCENT, (0.0, 50.0), 1.0, about)
+                .prior(0.0, 2.0)
+                .plausible(0.0, 15.0),
+        ]
     }
 
     fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {

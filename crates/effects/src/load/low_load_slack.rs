@@ -27,7 +27,11 @@ impl Effect for LowLoadSlack {
             group: Group::Load,
             stage: Stage::Output,
             kind: None,
-            signature: Signature { pressure: "all", parity: Parity::Even, shape: "exp(-F/F_c): only at small forces" },
+            signature: Signature {
+                pressure: "all",
+                parity: Parity::Even,
+                shape: "exp(-F/F_c): only at small forces",
+            },
             twins: &[
                 Twin { name: "bladder-axial", how: "-0.90 (braid)" },
                 Twin { name: "limited-unfolding", how: "near where tests end at small forces (PPAM)" },
@@ -39,7 +43,8 @@ impl Effect for LowLoadSlack {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         vec![
-            ParameterCard::new("share", PERCENT, (0.0, 100.0), 100.0, "part of a push that is not read").prior(0.0, 100.0),
+            ParameterCard::new("share", PERCENT, (0.0, 100.0), 100.0, "part of a push that is not read")
+                .prior(0.0, 100.0),
             ParameterCard::new("scale", NEWTON, (1.0, 200.0), 20.0, "force below which it begins")
                 .plausible(2.0, 100.0)
                 .off_at(20.0)
@@ -51,7 +56,8 @@ impl Effect for LowLoadSlack {
         if let Place::Output(_, reading) = place {
             let pull = *reading / theta[1];
             // ln(1 + exp(-x)) without overflow.
-            let excess = if pull.value() < 0.0 { (pull.exp() + 1.0).ln() - pull } else { ((-pull).exp() + 1.0).ln() };
+            let excess =
+                if pull.value() < 0.0 { (pull.exp() + 1.0).ln() - pull } else { ((-pull).exp() + 1.0).ln() };
             *reading += theta[0] * theta[1] * excess;
         }
     }
@@ -59,6 +65,8 @@ impl Effect for LowLoadSlack {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::float_cmp, reason = "off means the same number")]
+
     use super::*;
     use crate::probe::{SETTING, balance};
 

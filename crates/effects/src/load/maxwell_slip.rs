@@ -49,10 +49,17 @@ impl Effect for MaxwellSlip {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         vec![
-            ParameterCard::new("force", NEWTON, (0.0, 200.0), 12.0, "friction far from a reversal").prior(0.0, 20.0),
-            ParameterCard::new("distance", PERCENT, (0.02, 20.0), 2.0, "contraction at which the last element slips")
-                .off_at(2.0)
-                .logarithmic(),
+            ParameterCard::new("force", NEWTON, (0.0, 200.0), 12.0, "friction far from a reversal")
+                .prior(0.0, 20.0),
+            ParameterCard::new(
+                "distance",
+                PERCENT,
+                (0.02, 20.0),
+                2.0,
+                "contraction at which the last element slips",
+            )
+            .off_at(2.0)
+            .logarithmic(),
         ]
     }
 

@@ -1,5 +1,7 @@
 //! Load: friction, hysteresis, rate, time, temperature and thresholds.
 
+#[cfg(test)]
+mod along_paths;
 mod asymmetric_friction;
 mod bouc_wen;
 mod contact_friction;

@@ -21,7 +21,11 @@ impl Effect for PressureCreep {
             group: Group::Load,
             stage: Stage::Load,
             kind: None,
-            signature: Signature { pressure: "1", parity: Parity::Even, shape: "logarithm of the time since the sweep began" },
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Even,
+                shape: "logarithm of the time since the sweep began",
+            },
             twins: &[
                 Twin { name: "creep", how: "at one pressure" },
                 Twin { name: "fibre-creep", how: "at one contraction" },

@@ -23,7 +23,11 @@ impl Effect for PressureThreshold {
             group: Group::Load,
             stage: Stage::Input,
             kind: None,
-            signature: Signature { pressure: "0", parity: Parity::Even, shape: "-F/p; dead below the threshold" },
+            signature: Signature {
+                pressure: "0",
+                parity: Parity::Even,
+                shape: "-F/p; dead below the threshold",
+            },
             twins: &[
                 Twin { name: "pressure-offset", how: "identical above the threshold" },
                 Twin { name: "force-offset", how: "0.92 (braid), 0.94 (PPAM)" },
@@ -52,6 +56,8 @@ impl Effect for PressureThreshold {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::float_cmp, reason = "differences of whole pascals are exact")]
+
     use super::*;
     use crate::effect::Input;
     use crate::probe::{SETTING, input};

@@ -26,7 +26,11 @@ impl Effect for SelfHeating {
             group: Group::Load,
             stage: Stage::Input,
             kind: None,
-            signature: Signature { pressure: "0", parity: Parity::Even, shape: "as the bladder's force, settling with the clock" },
+            signature: Signature {
+                pressure: "0",
+                parity: Parity::Even,
+                shape: "as the bladder's force, settling with the clock",
+            },
             twins: &[
                 Twin { name: "temperature", how: "the same where the temperature is measured" },
                 Twin { name: "force-drift", how: "in tests shorter than tau" },

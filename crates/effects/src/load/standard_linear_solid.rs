@@ -45,9 +45,15 @@ impl Effect for StandardLinearSolid {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         vec![
-            ParameterCard::new("stiffness", NEWTON, (0.0, 1e4), 150.0, "force per contraction of a quick motion")
-                .prior(0.0, 300.0)
-                .plausible(0.0, 3e3),
+            ParameterCard::new(
+                "stiffness",
+                NEWTON,
+                (0.0, 1e4),
+                150.0,
+                "force per contraction of a quick motion",
+            )
+            .prior(0.0, 300.0)
+            .plausible(0.0, 3e3),
             ParameterCard::new("time", SECOND, (0.1, 1e4), 30.0, "time within which it relaxes")
                 .plausible(1.0, 1e3)
                 .off_at(30.0)
@@ -93,7 +99,9 @@ mod tests {
         // 1 % in 1 s with tau = 2 s: 150 N 0.01 2 (1 - exp(-1/2)); then at rest exp(-1/2) per second.
         let out = path(&StandardLinearSolid, &[150.0, 2.0], &[0.0, 0.01, 0.01, 0.01]);
         let first = 3.0 * (1.0 - (-0.5_f64).exp());
-        for (found, expected) in out.iter().zip([0.0, -first, -first * (-0.5_f64).exp(), -first * (-1.0_f64).exp()]) {
+        for (found, expected) in
+            out.iter().zip([0.0, -first, -first * (-0.5_f64).exp(), -first * (-1.0_f64).exp()])
+        {
             assert!((found - expected).abs() < 1e-12, "{found} {expected}");
         }
     }
@@ -117,7 +125,13 @@ mod tests {
                 (moment.since, moment.step) = (60.0 / f64::from(n), 0.05 / f64::from(n));
                 force = Jet::from(0.0);
                 let place = Place::Load(&crate::probe::balance(0.1), &mut force);
-                StandardLinearSolid.act(&moment, &crate::probe::SETTING, &[150.0, 30.0].map(Jet::from), &mut memory, place);
+                StandardLinearSolid.act(
+                    &moment,
+                    &crate::probe::SETTING,
+                    &[150.0, 30.0].map(Jet::from),
+                    &mut memory,
+                    place,
+                );
             }
             force.value()
         };

@@ -27,7 +27,11 @@ impl Effect for StressSoftening {
             group: Group::Load,
             stage: Stage::Input,
             kind: None,
-            signature: Signature { pressure: "0", parity: Parity::Even, shape: "as the bladder's force, dying out with the cycles" },
+            signature: Signature {
+                pressure: "0",
+                parity: Parity::Even,
+                shape: "as the bladder's force, dying out with the cycles",
+            },
             twins: &[
                 Twin { name: "bladder-elasticity", how: "identical within one cycle" },
                 Twin { name: "force-drift", how: "over a few cycles" },
@@ -40,12 +44,24 @@ impl Effect for StressSoftening {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         vec![
-            ParameterCard::new("amplitude", PERCENT, (0.0, 100.0), 20.0, "how much stiffer the first cycle is")
-                .prior(0.0, 30.0)
-                .plausible(0.0, 50.0),
-            ParameterCard::new("cycles", NUMBER, (0.2, 30.0), 1.0, "number of cycles within which it settles")
-                .off_at(1.0)
-                .logarithmic(),
+            ParameterCard::new(
+                "amplitude",
+                PERCENT,
+                (0.0, 100.0),
+                20.0,
+                "how much stiffer the first cycle is",
+            )
+            .prior(0.0, 30.0)
+            .plausible(0.0, 50.0),
+            ParameterCard::new(
+                "cycles",
+                NUMBER,
+                (0.2, 30.0),
+                1.0,
+                "number of cycles within which it settles",
+            )
+            .off_at(1.0)
+            .logarithmic(),
         ]
     }
 

@@ -28,7 +28,10 @@ impl Effect for Temperature {
                 shape: "as the force, and as the bladder's force, times the temperature",
             },
             twins: &[
-                Twin { name: "self-heating", how: "the same where the temperature rises with time and has no sensor" },
+                Twin {
+                    name: "self-heating",
+                    how: "the same where the temperature rises with time and has no sensor",
+                },
                 Twin { name: "force-drift", how: "where the temperature rises steadily" },
                 Twin { name: "bladder-elasticity", how: "at one temperature" },
                 Twin { name: "force-gain", how: "at one temperature" },
@@ -41,9 +44,15 @@ impl Effect for Temperature {
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let per_kelvin = ("1/K", 1.0);
         vec![
-            ParameterCard::new("force", per_kelvin, (-0.05, 0.05), 0.001, "relative change of the force per kelvin")
-                .prior(0.0, 0.003)
-                .plausible(-0.015, 0.015),
+            ParameterCard::new(
+                "force",
+                per_kelvin,
+                (-0.05, 0.05),
+                0.001,
+                "relative change of the force per kelvin",
+            )
+            .prior(0.0, 0.003)
+            .plausible(-0.015, 0.015),
             ParameterCard::new(
                 "modulus",
                 per_kelvin,
@@ -88,7 +97,13 @@ mod tests {
         let setting = Setting { has_bladder: true, ..SETTING };
         let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
         let moment = Moment { temperature: 10.0, ..Moment::at_rest(2e5, 0.1) };
-        Temperature.act(&moment, &setting, &[0.002, 0.0034].map(Jet::from), &mut [], Place::Input(&mut input));
+        Temperature.act(
+            &moment,
+            &setting,
+            &[0.002, 0.0034].map(Jet::from),
+            &mut [],
+            Place::Input(&mut input),
+        );
         assert!((input.area.value() - 1.02).abs() < 1e-15);
         assert!((input.wall.value() - 1.02 * 1.034).abs() < 1e-15);
     }

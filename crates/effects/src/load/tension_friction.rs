@@ -24,7 +24,11 @@ impl Effect for TensionFriction {
             group: Group::Load,
             stage: Stage::Load,
             kind: Some(Kind::Pleated),
-            signature: Signature { pressure: "1", parity: Parity::Odd, shape: "as the fibre tension: nearly constant at large contractions" },
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Odd,
+                shape: "as the fibre tension: nearly constant at large contractions",
+            },
             twins: &[
                 Twin { name: "pressure-friction", how: "0.98" },
                 Twin { name: "coulomb-friction", how: "0.93" },
@@ -36,7 +40,11 @@ impl Effect for TensionFriction {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "lost part of the tension";
-        vec![ParameterCard::new("share", PERCENT, (0.0, 50.0), 0.5, about).prior(0.0, 1.0).plausible(0.0, 10.0)]
+        vec![
+            ParameterCard::new("share", PERCENT, (0.0, 50.0), 0.5, about)
+                .prior(0.0, 1.0)
+                .plausible(0.0, 10.0),
+        ]
     }
 
     fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {

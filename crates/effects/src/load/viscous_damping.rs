@@ -21,7 +21,11 @@ impl Effect for ViscousDamping {
             group: Group::Load,
             stage: Stage::Load,
             kind: None,
-            signature: Signature { pressure: "0", parity: Parity::Odd, shape: "as the speed: 0 at the reversals of a sine" },
+            signature: Signature {
+                pressure: "0",
+                parity: Parity::Odd,
+                shape: "as the speed: 0 at the reversals of a sine",
+            },
             twins: &[
                 Twin { name: "standard-linear-solid", how: "0.94 at one speed" },
                 Twin { name: "maxwell-slip", how: "0.94 at one speed" },
@@ -37,7 +41,9 @@ impl Effect for ViscousDamping {
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "force per rate of contraction";
         vec![
-            ParameterCard::new("damping", ("N s", 1.0), (0.0, 1e5), 4e3, about).prior(0.0, 6e3).plausible(0.0, 4e4),
+            ParameterCard::new("damping", ("N s", 1.0), (0.0, 1e5), 4e3, about)
+                .prior(0.0, 6e3)
+                .plausible(0.0, 4e4),
         ]
     }
 

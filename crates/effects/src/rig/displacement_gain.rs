@@ -38,7 +38,11 @@ impl Effect for DisplacementGain {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "how much more the muscle has moved than the reading says";
-        vec![ParameterCard::new("gain", PERCENT, (-30.0, 30.0), 0.0, about).prior(0.0, 1.0).plausible(-5.0, 5.0)]
+        vec![
+            ParameterCard::new("gain", PERCENT, (-30.0, 30.0), 0.0, about)
+                .prior(0.0, 1.0)
+                .plausible(-5.0, 5.0),
+        ]
     }
 
     fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {

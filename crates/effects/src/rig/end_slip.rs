@@ -35,10 +35,16 @@ impl Effect for EndSlip {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         vec![
-            ParameterCard::new("compliance", ("um/N", 1e-6), (0.0, 10.0), 0.02, "slip of both ends per tension")
-                .prior(0.0, 0.1)
-                .plausible(0.0, 0.4)
-                .reciprocal("stiffness", "N/mm", 1e3),
+            ParameterCard::new(
+                "compliance",
+                ("um/N", 1e-6),
+                (0.0, 10.0),
+                0.02,
+                "slip of both ends per tension",
+            )
+            .prior(0.0, 0.1)
+            .plausible(0.0, 0.4)
+            .reciprocal("stiffness", "N/mm", 1e3),
         ]
     }
 

@@ -25,7 +25,10 @@ impl Effect for ForceDrift {
             twins: &[
                 Twin { name: "creep", how: "in short tests" },
                 Twin { name: "self-heating", how: "in tests shorter than its time" },
-                Twin { name: "pressure-gain", how: "0.97 where pressures were measured one after the other (PPAM)" },
+                Twin {
+                    name: "pressure-gain",
+                    how: "0.97 where pressures were measured one after the other (PPAM)",
+                },
             ],
             separate: "the zero of the load cell at the end of the test; pressures in random order",
             needs: Needs::Time,

@@ -24,9 +24,15 @@ impl Effect for ForceGain {
             signature: Signature { pressure: "1", parity: Parity::Even, shape: "as the force" },
             twins: &[
                 Twin { name: "load-misalignment", how: "identical" },
-                Twin { name: "pressure-gain", how: "identical where the force is proportional to the pressure" },
+                Twin {
+                    name: "pressure-gain",
+                    how: "identical where the force is proportional to the pressure",
+                },
                 Twin { name: "line-drop", how: "identical where the force is proportional to the pressure" },
-                Twin { name: "fibre-count", how: "identical where the force is proportional to the pressure" },
+                Twin {
+                    name: "fibre-count",
+                    how: "identical where the force is proportional to the pressure",
+                },
                 Twin { name: "specimen-spread", how: "identical for a single specimen" },
                 Twin { name: "fibre-misalignment", how: "0.999 (PPAM)" },
             ],
@@ -36,7 +42,11 @@ impl Effect for ForceGain {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        vec![ParameterCard::new("gain", PERCENT, (-20.0, 20.0), 0.0, "relative error").prior(0.0, 1.0).plausible(-5.0, 5.0)]
+        vec![
+            ParameterCard::new("gain", PERCENT, (-20.0, 20.0), 0.0, "relative error")
+                .prior(0.0, 1.0)
+                .plausible(-5.0, 5.0),
+        ]
     }
 
     fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {

@@ -27,7 +27,10 @@ impl Effect for LineDrop {
                 Twin { name: "pressure-gain", how: "identical" },
                 Twin { name: "force-gain", how: "identical where the force is proportional to the pressure" },
                 Twin { name: "fibre-count", how: "identical" },
-                Twin { name: "load-misalignment", how: "identical where the force is proportional to the pressure" },
+                Twin {
+                    name: "load-misalignment",
+                    how: "identical where the force is proportional to the pressure",
+                },
                 Twin { name: "fibre-misalignment", how: "0.999 (PPAM)" },
             ],
             separate: "a pressure sensor at the muscle; closing the supply and watching the pressure fall",

@@ -27,7 +27,10 @@ impl Effect for LoadMisalignment {
             signature: Signature { pressure: "1", parity: Parity::Even, shape: "as the force" },
             twins: &[
                 Twin { name: "force-gain", how: "identical" },
-                Twin { name: "pressure-gain", how: "identical where the force is proportional to the pressure" },
+                Twin {
+                    name: "pressure-gain",
+                    how: "identical where the force is proportional to the pressure",
+                },
                 Twin { name: "line-drop", how: "identical where the force is proportional to the pressure" },
             ],
             separate: "a square",

@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn the_pressure_falls_as_the_volume_grows() {
-        // V/V0 = 1.686416 at 25 deg and 10 %.
+        // V/V0 = 1.686414 at 25 deg and 10 %.
         let found = input(&PressureDroop, &[2e3], |_| ()).pressure.value();
         assert!((2e5 - found - 1372.83).abs() < 0.02, "{found}");
     }

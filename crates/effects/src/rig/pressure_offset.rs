@@ -51,6 +51,8 @@ impl Effect for PressureOffset {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::float_cmp, reason = "differences of whole pascals are exact")]
+
     use super::*;
     use crate::probe::input;
     use bulge_numerics::Real;

@@ -54,6 +54,8 @@ impl Effect for ValveHysteresis {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::float_cmp, reason = "differences of whole pascals are exact")]
+
     use super::*;
     use crate::probe::input;
     use bulge_numerics::Real;

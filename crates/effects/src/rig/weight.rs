@@ -30,7 +30,11 @@ impl Effect for Weight {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "weight below the load cell";
-        vec![ParameterCard::new("weight", NEWTON, (0.0, 300.0), 4.0, about).prior(0.0, 6.0).plausible(0.0, 50.0)]
+        vec![
+            ParameterCard::new("weight", NEWTON, (0.0, 300.0), 4.0, about)
+                .prior(0.0, 6.0)
+                .plausible(0.0, 50.0),
+        ]
     }
 
     fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
@@ -42,6 +46,8 @@ impl Effect for Weight {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::float_cmp, reason = "a sum of whole newtons is exact")]
+
     use super::*;
     use crate::probe::reading;
 

@@ -1,12 +1,12 @@
 //! From the tables of a file to effects: what must be there, and what must agree.
 
+use super::quantity::Quantity;
 use super::value::{Entry, Table};
 use super::{EXAMPLE, EffectFileError, MAX_PARAMETERS, UserEffect, UserParameter};
 use crate::expression::{Expression, VARIABLES, check_name, quoted};
 use bulge_muscles::Dimension;
-use bulge_muscles::units::{self, Any, AnyUnitError};
+use bulge_muscles::units;
 use std::ops::Range;
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Keys of an effect, and of a parameter.
@@ -126,7 +126,7 @@ fn twins(table: &Table<'_>, own: &str) -> Result<Vec<String>, EffectFileError> {
         return Err(table.error(value.span(), what, "name those that are hardest to tell apart"));
     }
     let mut twins: Vec<String> = Vec::new();
-    for item in list.iter() {
+    for item in list {
         let DeValue::String(name) = item.get_ref() else {
             return Err(table.wrong_type("twins", item, wanted, TWINS));
         };
@@ -195,31 +195,10 @@ fn parameter(list: &Table<'_>, entry: &Entry<'_>) -> Result<UserParameter, Effec
             "write `unit = \"N\"`, or `unit = \"1\"` for a pure number",
         )
     })?;
-    let known = Known { table, unit, factor, dimension };
-    let (low, low_place) = known.required("low")?;
-    let (high, high_place) = known.required("high")?;
-    let (typical, typical_place) = known.required("typical")?;
-    let bounds = || format!("{} to {}", known.shown(low), known.shown(high));
-    if low >= high {
-        let what =
-            format!("`low` is {}, but must be less than `high`, {}", known.shown(low), known.shown(high));
-        return Err(known.table.error(low_place.start.max(high_place.start)..low_place.end.max(high_place.end), what,
-            "write the smallest possible value as `low` and the largest as `high`; for a known value, write a number into the formula"));
-    }
-    if !(low..=high).contains(&typical) {
-        let what = format!("`typical` is {}, outside of its bounds {}", known.shown(typical), bounds());
-        return Err(known.table.error(typical_place, what, "write a value between `low` and `high`"));
-    }
-    let prior = known.prior()?;
-    if let Some(((mean, _), place)) = &prior
-        && !(low..=high).contains(mean)
-    {
-        let what =
-            format!("the mean of `prior` is {}, outside of its bounds {}", known.shown(*mean), bounds());
-        return Err(known.table.error(place.clone(), what, "write a mean between `low` and `high`"));
-    }
-    let prior = prior.map(|(prior, _)| prior);
-    let Known { unit, .. } = known;
+    let known = Quantity { table, unit, dimension };
+    let (low, typical, high) = known.bounded()?;
+    let prior = known.prior(low, high)?;
+    let unit = known.unit;
     Ok(UserParameter { name: (*name).to_owned(), unit, factor, dimension, typical, low, high, prior, about })
 }
 
@@ -231,89 +210,5 @@ fn unit_text(table: &Table<'_>) -> Result<Option<(String, Range<usize>)>, Effect
         DeValue::String(text) if text.trim().is_empty() => Ok(Some(("1".to_owned(), value.span()))),
         DeValue::String(text) => Ok(Some((text.trim().to_owned(), value.span()))),
         _ => Err(table.wrong_type("unit", value, "text in quotes", "unit = \"N\"")),
-    }
-}
-
-/// A parameter's table whose unit is known.
-struct Known<'a> {
-    table: Table<'a>,
-    unit: String,
-    factor: f64,
-    dimension: Dimension,
-}
-
-impl Known<'_> {
-    /// An SI value as the file would write it.
-    fn shown(&self, si: f64) -> String {
-        units::exact_any_text(si, &self.unit)
-    }
-
-    fn example(&self, key: &str) -> String {
-        let number = if self.is_plain() { "0.5".to_owned() } else { format!("\"50 {}\"", self.unit) };
-        match key {
-            "prior" if self.is_plain() => "prior = \"0.5 +- 0.1\"".to_owned(),
-            "prior" => format!("prior = \"50 {0} +- 10 {0}\"", self.unit),
-            _ => format!("{key} = {number}"),
-        }
-    }
-
-    /// Whether a bare number is a value in this unit.
-    fn is_plain(&self) -> bool {
-        self.dimension.is_none() && matches!(self.unit.as_str(), "1" | "-" | "rad" | "decade")
-    }
-
-    fn required(&self, key: &str) -> Result<(f64, Range<usize>), EffectFileError> {
-        let Some(value) = self.table.get(key) else {
-            return Err(self.table.missing(key, &self.example(key)));
-        };
-        let text = self.value_text(key, value)?;
-        let found = units::any(&text).map_err(|error| self.no_number(key, value, &error))?;
-        self.check(key, value, &found)?;
-        Ok((found.si, value.span()))
-    }
-
-    /// Mean and standard deviation.
-    fn prior(&self) -> Result<Option<((f64, f64), Range<usize>)>, EffectFileError> {
-        let Some(value) = self.table.get("prior") else { return Ok(None) };
-        let text = self.value_text("prior", value)?;
-        let (mean, width) =
-            units::any_with_width(&text).map_err(|error| self.no_number("prior", value, &error))?;
-        self.check("prior", value, &mean)?;
-        match width {
-            Some(width) => Ok(Some(((mean.si, width), value.span()))),
-            None => {
-                let what = "`prior` has no standard deviation";
-                let instead = format!("write `{}`, or leave it out", self.example("prior"));
-                Err(self.table.error(value.span(), what, instead))
-            }
-        }
-    }
-
-    fn value_text(&self, key: &str, value: &Spanned<DeValue<'_>>) -> Result<String, EffectFileError> {
-        match value.get_ref() {
-            DeValue::String(text) => Ok(text.to_string()),
-            DeValue::Float(number) => Ok(number.as_str().to_owned()),
-            DeValue::Integer(number) if number.radix() == 10 => Ok(number.as_str().to_owned()),
-            _ => Err(self.table.wrong_type(key, value, "a number with its unit", &self.example(key))),
-        }
-    }
-
-    fn no_number(&self, key: &str, value: &Spanned<DeValue<'_>>, error: &AnyUnitError) -> EffectFileError {
-        self.table.error(value.span(), error.to_string(), format!("write `{}`", self.example(key)))
-    }
-
-    /// The unit of a value must be that of the parameter; a bare number is none in per cent or degrees.
-    fn check(&self, key: &str, value: &Spanned<DeValue<'_>>, found: &Any) -> Result<(), EffectFileError> {
-        let wanted = format!("a parameter in `{}` needs {}", self.unit, self.dimension.describe());
-        let what = if found.dimension != self.dimension && found.unit.is_empty() {
-            format!("`{key}` has no unit, but {wanted}")
-        } else if found.dimension != self.dimension {
-            format!("`{key}` is {}, but {wanted}", found.dimension.describe())
-        } else if found.unit.is_empty() && !self.is_plain() {
-            format!("`{key}` has no unit, but the parameter is in `{}`", self.unit)
-        } else {
-            return Ok(());
-        };
-        Err(self.table.error(value.span(), what, format!("write `{}`", self.example(key))))
     }
 }

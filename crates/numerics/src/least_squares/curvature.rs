@@ -59,11 +59,7 @@ fn scales<P: Residuals>(search: &Search<'_, P>) -> Vec<f64> {
 }
 
 /// Second derivatives of half the sum of squares by the scaled free parameters.
-fn hessian<P: Residuals>(
-    search: &mut Search<'_, P>,
-    free: &[usize],
-    scale: &[f64],
-) -> Option<Vec<Vec<f64>>> {
+fn hessian<P: Residuals>(search: &mut Search<'_, P>, free: &[usize], scale: &[f64]) -> Option<Vec<Vec<f64>>> {
     let here = search.linear.gradient();
     let size = norm(&product(scale, &search.theta)).max(search.linear.cost.sqrt());
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(free.len());

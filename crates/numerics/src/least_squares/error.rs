@@ -19,7 +19,9 @@ pub enum LeastSquaresError<E> {
         value: f64,
     },
     /// A derivative at the start isn't a finite number.
-    #[error("the derivative of residual {row} by parameter {parameter} is {value} at the start; choose a start where all derivatives are finite")]
+    #[error(
+        "the derivative of residual {row} by parameter {parameter} is {value} at the start; choose a start where all derivatives are finite"
+    )]
     Derivative {
         /// The row.
         row: usize,
@@ -29,7 +31,9 @@ pub enum LeastSquaresError<E> {
         value: f64,
     },
     /// Squares overflow.
-    #[error("the sum of squares of the residuals, or of their derivatives by one parameter, overflows at the start; scale them to below 1e150")]
+    #[error(
+        "the sum of squares of the residuals, or of their derivatives by one parameter, overflows at the start; scale them to below 1e150"
+    )]
     Overflow,
     /// A list doesn't have an entry for each parameter.
     #[error("{what} has {found} entries; the problem has {parameters} parameters")]
@@ -54,7 +58,9 @@ pub enum LeastSquaresError<E> {
         upper: f64,
     },
     /// Bounds that no value meets.
-    #[error("the bounds of parameter {parameter} are [{lower}, {upper}]; the first must be at most the second, and neither NaN")]
+    #[error(
+        "the bounds of parameter {parameter} are [{lower}, {upper}]; the first must be at most the second, and neither NaN"
+    )]
     Crossed {
         /// The parameter.
         parameter: usize,
@@ -73,21 +79,13 @@ pub enum LeastSquaresError<E> {
         /// Values that it may have.
         range: &'static str,
     },
-    /// Starts asked for in an unbounded box.
-    #[error("starts in a box need finite bounds; those of parameter {parameter} are [{lower}, {upper}]")]
-    Unbounded {
-        /// The parameter.
-        parameter: usize,
-        /// Its lower bound.
-        lower: f64,
-        /// Its upper bound.
-        upper: f64,
-    },
     /// No starts.
     #[error("no start was given; give at least one")]
     NoStart,
     /// A parameter that isn't there, or is fixed, can't be profiled.
-    #[error("parameter {parameter} cannot be profiled: the problem has {parameters} parameters, and this one must not be fixed")]
+    #[error(
+        "parameter {parameter} cannot be profiled: the problem has {parameters} parameters, and this one must not be fixed"
+    )]
     NotProfiled {
         /// The parameter.
         parameter: usize,
@@ -95,7 +93,9 @@ pub enum LeastSquaresError<E> {
         parameters: usize,
     },
     /// The minimisation over the other parameters failed on the profile.
-    #[error("with parameter {parameter} held at {value} the search over the others ended without a minimum ({reason:?})")]
+    #[error(
+        "with parameter {parameter} held at {value} the search over the others ended without a minimum ({reason:?})"
+    )]
     ProfileUnsolved {
         /// The parameter.
         parameter: usize,
@@ -105,7 +105,9 @@ pub enum LeastSquaresError<E> {
         reason: Reason,
     },
     /// The profile passed through a lower sum of squares than the minimum it started from.
-    #[error("with parameter {parameter} at {value} the sum of squares is {cost}, below that of the given minimum, {minimum}; minimise again from there")]
+    #[error(
+        "with parameter {parameter} at {value} the sum of squares is {cost}, below that of the given minimum, {minimum}; minimise again from there"
+    )]
     LowerCost {
         /// The parameter.
         parameter: usize,
@@ -118,4 +120,18 @@ pub enum LeastSquaresError<E> {
         /// All parameters of the lower point.
         theta: Vec<f64>,
     },
+}
+
+/// Bounds that aren't a finite box.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "starts in a box need finite bounds, the lower at most the upper; those of parameter {parameter} are [{lower}, {upper}]"
+)]
+pub struct NotABox {
+    /// The parameter, counted from 0.
+    pub parameter: usize,
+    /// Its lower bound.
+    pub lower: f64,
+    /// Its upper bound.
+    pub upper: f64,
 }

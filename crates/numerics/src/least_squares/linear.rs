@@ -98,14 +98,10 @@ fn derivatives<P: Residuals>(
 ) -> Result<Vec<f64>, Failure<P::Error>> {
     let k = theta.len();
     let mut jacobian = vec![0.0; rows.len() * k];
-    problem
-        .evaluate(theta, rows.clone(), residuals, Some(&mut jacobian))
-        .map_err(Failure::Evaluation)?;
+    problem.evaluate(theta, rows.clone(), residuals, Some(&mut jacobian)).map_err(Failure::Evaluation)?;
     finite(rows, residuals)?;
     match jacobian.iter().position(|x| !x.is_finite()) {
-        Some(i) => {
-            Err(Failure::Derivative { row: rows.start + i / k, parameter: i % k, value: jacobian[i] })
-        }
+        Some(i) => Err(Failure::Derivative { row: rows.start + i / k, parameter: i % k, value: jacobian[i] }),
         None => Ok(jacobian),
     }
 }

@@ -116,9 +116,7 @@ impl Minimum {
         let k = self.theta.len();
         (0..k)
             .map(|j| {
-                self.certificate
-                    .is_determined(j)
-                    .then(|| (self.unit_covariance[j * k + j] * variance).sqrt())
+                self.certificate.is_determined(j).then(|| (self.unit_covariance[j * k + j] * variance).sqrt())
             })
             .collect()
     }
@@ -264,8 +262,7 @@ impl<'a> Spectrum<'a> {
         for (a, i) in self.free.iter().enumerate() {
             for (b, j) in self.free.iter().enumerate() {
                 if certificate.is_determined(*i) && certificate.is_determined(*j) {
-                    let sum: f64 =
-                        self.pairs[..self.rank].iter().map(|(s, v)| (v[a] / s) * (v[b] / s)).sum();
+                    let sum: f64 = self.pairs[..self.rank].iter().map(|(s, v)| (v[a] / s) * (v[b] / s)).sum();
                     inverse[i * k + j] = sum / norms[*i] / norms[*j];
                 }
             }

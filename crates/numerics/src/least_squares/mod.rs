@@ -1,22 +1,32 @@
 //! Bounded nonlinear least squares for many residuals and few parameters: `min sum r_i(theta)^2`, `lower <= theta <= upper`.
 //!
-//! [`minimise`] searches from one start, [`minimise_from_many`] from several ([`starts_in_box`] makes them), [`profile()`] finds
-//! how far one parameter can go before the sum of squares rises by a given amount. The normal equations are never formed: the Jacobian is reduced to a triangle block by block, so that
-//! a million rows need the memory of one block.
+//! [`minimise`] searches from one start, [`minimise_from_many`] from several ([`starts_in_box`] makes them), [`profile()`] finds how far one
+//! parameter can go before the sum of squares rises by a given amount. The normal equations are never formed: the Jacobian is reduced
+//! to a triangle block by block, so that a million rows need the memory of one block.
 
+mod bend;
 mod curvature;
 mod error;
 mod linear;
+mod many;
 mod minimum;
 mod options;
+mod profile;
 mod residuals;
 mod search;
 mod singular;
+mod starts;
 mod step;
 mod triangle;
 
-pub use error::LeastSquaresError;
+#[cfg(test)]
+mod tests;
+
+pub use error::{LeastSquaresError, NotABox};
+pub use many::{DistinctMinimum, ManyStarts, StartEnd, minimise_from_many};
 pub use minimum::{Certificate, Minimum, Reason};
 pub use options::Options;
+pub use profile::{Profile, ProfileEnd, ProfilePoint, profile};
 pub use residuals::{Bounds, Residuals, Side};
 pub use search::minimise;
+pub use starts::starts_in_box;

@@ -2,14 +2,14 @@
 //! what the free parameters can change.
 //!
 //! J. J. Moré, *The Levenberg-Marquardt algorithm: implementation and theory*, Lecture Notes in Mathematics 630, Springer 1978,
-//! p. 105, with bounds exact in each step. Near a minimum, where the sum of squares is blunted by rounding, steps are judged by the gradient.
+//! p. 105, with bounds exact in each step, and with steps that are bent along curved valleys before they are shortened. Near a minimum, where the sum of squares is blunted by rounding, steps are judged by the gradient.
 
 use super::curvature::{self, Probe};
-use super::linear::{Failure, Linear, decrease, linearise, turned, values};
+use super::linear::{Failure, Linear, decrease, linearise, values};
 use super::minimum::{End, Minimum, Reason};
 use super::residuals::{Bounds, Residuals, Side};
 use super::step::{Step, StepBox, damped, of_length};
-use super::triangle::norm;
+use super::triangle::{Triangle, norm};
 use super::{LeastSquaresError, Options};
 
 /// A step is kept if it achieves this part of the predicted decrease (Moré's value).
@@ -72,20 +72,29 @@ pub fn minimise<P: Residuals>(
     options.check()?;
     check_start(problem.parameters(), start, bounds)?;
     let mut residuals = vec![0.0; problem.rows()];
-    let linear = linearise(problem, start, &mut residuals).map_err(|failure| match failure {
+    let linear = linearise(problem, start, &mut residuals).map_err(failed_start)?;
+    Ok(Search::new(problem, bounds, options, start.to_vec(), residuals, linear).run())
+}
+
+/// The error of a start without value.
+pub(super) fn failed_start<E>(failure: Failure<E>) -> LeastSquaresError<E> {
+    match failure {
         Failure::Evaluation(error) => LeastSquaresError::Start(error),
         Failure::Residual { row, value } => LeastSquaresError::Residual { row, value },
         Failure::Derivative { row, parameter, value } => {
             LeastSquaresError::Derivative { row, parameter, value }
         }
         Failure::Overflow => LeastSquaresError::Overflow,
-    })?;
-    Ok(Search::new(problem, bounds, options, start.to_vec(), residuals, linear).run())
+    }
 }
 
+/// Refuses lists of the wrong length, crossed bounds, and starts outside them.
 pub(super) fn check_start<E>(k: usize, start: &[f64], bounds: &Bounds) -> Result<(), LeastSquaresError<E>> {
-    let lists =
-        [("the start", start), ("the list of lower bounds", &bounds.lower), ("the list of upper bounds", &bounds.upper)];
+    let lists = [
+        ("the start", start),
+        ("the list of lower bounds", &bounds.lower),
+        ("the list of upper bounds", &bounds.upper),
+    ];
     for (what, list) in lists {
         if list.len() != k {
             return Err(LeastSquaresError::Length { what, found: list.len(), parameters: k });
@@ -107,27 +116,27 @@ pub(super) fn check_start<E>(k: usize, start: &[f64], bounds: &Bounds) -> Result
 pub(super) struct Search<'a, P> {
     pub(super) problem: &'a P,
     pub(super) bounds: &'a Bounds,
-    options: &'a Options,
+    pub(super) options: &'a Options,
     pub(super) theta: Vec<f64>,
     pub(super) residuals: Vec<f64>,
     pub(super) linear: Linear,
     /// Largest norm of each column so far: the scale of the trust region.
     pub(super) scale: Vec<f64>,
-    radius: f64,
-    damping: f64,
+    pub(super) radius: f64,
+    pub(super) damping: f64,
     iterations: usize,
     pub(super) evaluations: usize,
     pub(super) linearisations: usize,
 }
 
 /// A trial point.
-struct Trial {
-    theta: Vec<f64>,
+pub(super) struct Trial {
+    pub(super) theta: Vec<f64>,
     /// Length of the step in the scale of the trust region.
-    length: f64,
-    predicted: f64,
+    pub(super) length: f64,
+    pub(super) predicted: f64,
     /// Whether it is the linearised minimum.
-    full: bool,
+    pub(super) full: bool,
 }
 
 /// How an iteration ended.
@@ -229,7 +238,7 @@ impl<'a, P: Residuals> Search<'a, P> {
 
     /// The step to the linearised minimum within the bounds, scaled by the current norms; flat directions damped.
     pub(super) fn newton(&self) -> Step {
-        let (a, limits) = self.scaled_by(&self.linear.norms);
+        let (a, limits) = self.scaled_by(&self.linear.norms, &self.theta);
         damped(&a, &self.linear.q, self.options.rank_tolerance.powi(2), &limits)
     }
 
@@ -255,12 +264,12 @@ impl<'a, P: Residuals> Search<'a, P> {
         8.0 * f64::EPSILON * self.linear.cost + 2.0 * length * change + change * change
     }
 
-    /// The triangle with columns divided by a scale, and the box of steps times this scale. Parameters without influence stay.
-    fn scaled_by(&self, scale: &[f64]) -> (super::triangle::Triangle, StepBox) {
+    /// The triangle with columns divided by a scale, and the box of steps from a point times this scale. Parameters without influence stay.
+    pub(super) fn scaled_by(&self, scale: &[f64], from: &[f64]) -> (Triangle, StepBox) {
         let inverse: Vec<f64> = scale.iter().map(|s| if *s > 0.0 { 1.0 / s } else { 0.0 }).collect();
         let reach = |ends: &[f64]| -> Vec<f64> {
             (0..scale.len())
-                .map(|j| if self.linear.norms[j] > 0.0 { (ends[j] - self.theta[j]) * scale[j] } else { 0.0 })
+                .map(|j| if self.linear.norms[j] > 0.0 { (ends[j] - from[j]) * scale[j] } else { 0.0 })
                 .collect()
         };
         let limits = StepBox { lower: reach(&self.bounds.lower), upper: reach(&self.bounds.upper) };
@@ -268,26 +277,26 @@ impl<'a, P: Residuals> Search<'a, P> {
     }
 
     /// The point reached by a scaled step; at a bound exactly where the step is.
-    fn point(&self, step: &Step, scale: &[f64]) -> Vec<f64> {
+    pub(super) fn point(&self, from: &[f64], step: &Step, scale: &[f64]) -> Vec<f64> {
         let moved = |j: usize| match step.held[j] {
-            _ if scale[j] == 0.0 || step.z[j] == 0.0 => self.theta[j],
+            _ if scale[j] == 0.0 || step.z[j] == 0.0 => from[j],
             Some(Side::Lower) => self.bounds.lower[j],
             Some(Side::Upper) => self.bounds.upper[j],
-            None => (self.theta[j] + step.z[j] / scale[j]).clamp(self.bounds.lower[j], self.bounds.upper[j]),
+            None => (from[j] + step.z[j] / scale[j]).clamp(self.bounds.lower[j], self.bounds.upper[j]),
         };
-        (0..self.theta.len()).map(moved).collect()
+        (0..from.len()).map(moved).collect()
     }
 
     /// The trial within the trust region.
     fn trial(&mut self, newton: &Step, newton_length: f64) -> Trial {
         if newton_length <= self.radius {
-            let theta = self.point(newton, &self.linear.norms);
+            let theta = self.point(&self.theta, newton, &self.linear.norms);
             return Trial { theta, length: newton_length, predicted: newton.predicted, full: true };
         }
-        let (a, limits) = self.scaled_by(&self.scale);
+        let (a, limits) = self.scaled_by(&self.scale, &self.theta);
         let (step, damping) = of_length(&a, &self.linear.q, self.radius, self.damping, &limits);
         self.damping = damping;
-        let theta = self.point(&step, &self.scale);
+        let theta = self.point(&self.theta, &step, &self.scale);
         Trial { theta, length: norm(&step.z), predicted: step.predicted, full: false }
     }
 
@@ -314,7 +323,6 @@ impl<'a, P: Residuals> Search<'a, P> {
             }
             let actual = decrease(&self.residuals, &residuals);
             let ratio = actual / trial.predicted;
-            if ratio >= ENOUGH && ratio < knob("EARLY", 0.0) && self.bend(&trial, &residuals) { return Progress::Moved; }
             if ratio >= ENOUGH {
                 let slope = self.slope(&trial.theta);
                 if self.move_to(trial.theta) {
@@ -327,49 +335,13 @@ impl<'a, P: Residuals> Search<'a, P> {
             if trial.full && trial.predicted <= POLISH.powi(2) * self.linear.cost && self.polish(&trial) {
                 return Progress::Moved;
             }
-            if self.bend(&trial, &residuals) {
+            if trial.predicted > self.rounding() && self.bend(&trial, &residuals) {
                 return Progress::Moved;
             }
             let slope = self.slope(&trial.theta);
             self.resize(ratio, actual, slope, trial.length, trial.full);
         }
         Progress::Stuck
-    }
-
-    /// Bends a rejected step along the curvature that its residuals show, and keeps it if it is good then.
-    ///
-    /// With `c = r(theta + p) - r - J p`, half the second derivative along `p`, the bend `a` minimises the damped `|J a + c|^2`: the
-    /// geodesic acceleration of M. K. Transtrum, J. P. Sethna (arXiv:1201.5885), from a finite step.
-    fn bend(&mut self, trial: &Trial, residuals: &[f64]) -> bool {
-        let scale = if trial.full { &self.linear.norms } else { &self.scale };
-        let damping = if trial.full { self.options.rank_tolerance.powi(2) } else { self.damping };
-        let Ok(turned) = turned(self.problem, &self.theta, residuals) else { return false };
-        self.linearisations += 1;
-        let step: Vec<f64> = trial.theta.iter().zip(&self.theta).map(|(t, s)| t - s).collect();
-        let linear = self.linear.r.times(&step);
-        let c: Vec<f64> = (0..step.len()).map(|i| turned[i] - self.linear.q[i] - linear[i]).collect();
-        let (a, mut limits) = self.scaled_by(scale);
-        for j in 0..step.len() {
-            limits.lower[j] = (limits.lower[j] - step[j] * scale[j]).min(0.0);
-            limits.upper[j] = (limits.upper[j] - step[j] * scale[j]).max(0.0);
-        }
-        let bend = damped(&a, &c, damping, &limits);
-        let lambda = norm(&bend.z);
-        if lambda > knob("BEND", 0.75) * trial.length { return false }
-        let theta: Vec<f64> = (0..step.len()).map(|j| match bend.held[j] {
-            _ if scale[j] == 0.0 || bend.z[j] == 0.0 => trial.theta[j],
-            Some(Side::Lower) => self.bounds.lower[j],
-            Some(Side::Upper) => self.bounds.upper[j],
-            None => (trial.theta[j] + bend.z[j] / scale[j]).clamp(self.bounds.lower[j], self.bounds.upper[j]),
-        }).collect();
-        let mut residuals = vec![0.0; self.residuals.len()];
-        self.evaluations += 1;
-        if values(self.problem, &theta, &mut residuals).is_err() { return false }
-        let ratio = decrease(&self.residuals, &residuals) / trial.predicted;
-        if ratio < knob("BENDOK", 0.25) || !self.move_to(theta) { return false }
-        let g = if ratio >= knob("BENDHIGH", 0.75) { knob("BENDGROW", 2.0) } else { 1.0 };
-        self.radius = g * trial.length;
-        true
     }
 
     /// Derivative of the sum of squares along the step to a point; negative.
@@ -386,12 +358,12 @@ impl<'a, P: Residuals> Search<'a, P> {
             let part = if actual < 0.0 && part.is_finite() { part.clamp(0.1, 0.5) } else { 0.5 };
             self.radius = part * length;
         } else if full || ratio >= 0.75 {
-            self.radius = knob("GROW", 2.0) * length;
+            self.radius = 2.0 * length;
         }
     }
 
     /// Linearises at a point and stays there; false, and back, if that fails.
-    fn move_to(&mut self, theta: Vec<f64>) -> bool {
+    pub(super) fn move_to(&mut self, theta: Vec<f64>) -> bool {
         let mut residuals = vec![0.0; self.residuals.len()];
         self.linearisations += 1;
         let Ok(linear) = linearise(self.problem, &theta, &mut residuals) else { return false };
@@ -423,5 +395,3 @@ impl<'a, P: Residuals> Search<'a, P> {
 pub(super) fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a * b).collect()
 }
-
-pub(crate) fn knob(n:&str,d:f64)->f64{std::env::var(n).map_or(d,|s|s.parse().unwrap())}

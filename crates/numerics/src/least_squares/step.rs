@@ -134,8 +134,7 @@ impl ActiveSet<'_> {
                 }
             };
             let parts: Vec<f64> = free.iter().zip(&target).map(|(j, t)| part(*j, *t)).collect();
-            let outside =
-                |j: usize, t: f64| t < self.limits.lower[j] || t > self.limits.upper[j];
+            let outside = |j: usize, t: f64| t < self.limits.lower[j] || t > self.limits.upper[j];
             let blocked: Vec<bool> = free.iter().zip(&target).map(|(j, t)| outside(*j, *t)).collect();
             let least = parts.iter().zip(&blocked).filter(|(_, b)| **b).map(|(p, _)| *p).fold(1.0, f64::min);
             if !blocked.contains(&true) {

@@ -76,7 +76,9 @@ impl Triangle {
     pub(super) fn scaled(&self, factors: &[f64]) -> Self {
         let mut part = self.clone();
         for (column, factor) in part.data.chunks_exact_mut(self.n.max(1)).zip(factors) {
-            column.iter_mut().for_each(|x| *x *= factor);
+            for x in column {
+                *x *= factor;
+            }
         }
         part
     }
@@ -135,7 +137,9 @@ fn reflector(head: &mut f64, tail: &mut [f64]) -> Option<f64> {
     let pivot = *head - image;
     let tau = -pivot / image;
     let inverse = 1.0 / pivot;
-    tail.iter_mut().for_each(|x| *x *= inverse);
+    for x in tail {
+        *x *= inverse;
+    }
     *head = image;
     Some(tau)
 }

@@ -1,0 +1,121 @@
+//! Values of a parameter: numbers with a unit of its dimension, which agree with each other.
+
+use super::EffectFileError;
+use super::value::Table;
+use bulge_muscles::Dimension;
+use bulge_muscles::units::{self, Any, AnyUnitError};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::DeValue;
+
+/// A parameter's table whose unit is known.
+pub(crate) struct Quantity<'a> {
+    pub(crate) table: Table<'a>,
+    pub(crate) unit: String,
+    pub(crate) dimension: Dimension,
+}
+
+impl Quantity<'_> {
+    /// Low, typical and high value, in this order.
+    pub(crate) fn bounded(&self) -> Result<(f64, f64, f64), EffectFileError> {
+        let (low, low_place) = self.required("low")?;
+        let (high, _) = self.required("high")?;
+        let (typical, typical_place) = self.required("typical")?;
+        if low >= high {
+            let (low, high) = (self.shown(low), self.shown(high));
+            let what = format!("`low` is {low}, but must be less than `high`, {high}");
+            let instead = "write the smallest possible value as `low` and the largest as `high`\n\
+                           a value that is known can stand in the formula as a number";
+            return Err(self.table.error(low_place, what, instead));
+        }
+        if !(low..=high).contains(&typical) {
+            let what = format!(
+                "`typical` is {}, outside of its bounds {}",
+                self.shown(typical),
+                self.range(low, high)
+            );
+            return Err(self.table.error(typical_place, what, "write a value between `low` and `high`"));
+        }
+        Ok((low, typical, high))
+    }
+
+    /// Mean, within the bounds, and standard deviation, if they are stated.
+    pub(crate) fn prior(&self, low: f64, high: f64) -> Result<Option<(f64, f64)>, EffectFileError> {
+        let Some(value) = self.table.get("prior") else { return Ok(None) };
+        let text = self.value_text("prior", value)?;
+        let (mean, width) =
+            units::any_with_width(&text).map_err(|error| self.no_number("prior", value, &error))?;
+        self.check("prior", value, &mean)?;
+        let Some(width) = width else {
+            let instead = format!("write `{}`, or leave it out", self.example("prior"));
+            return Err(self.table.error(value.span(), "`prior` has no standard deviation", instead));
+        };
+        if !(low..=high).contains(&mean.si) {
+            let (mean, bounds) = (self.shown(mean.si), self.range(low, high));
+            let what = format!("the mean of `prior` is {mean}, outside of its bounds {bounds}");
+            return Err(self.table.error(value.span(), what, "write a mean between `low` and `high`"));
+        }
+        Ok(Some((mean.si, width)))
+    }
+
+    /// An SI value as the file would write it.
+    fn shown(&self, si: f64) -> String {
+        units::exact_any_text(si, &self.unit)
+    }
+
+    fn range(&self, low: f64, high: f64) -> String {
+        format!("{} to {}", self.shown(low), self.shown(high))
+    }
+
+    fn example(&self, key: &str) -> String {
+        let number = if self.is_plain() { "0.5".to_owned() } else { format!("\"50 {}\"", self.unit) };
+        match key {
+            "prior" if self.is_plain() => "prior = \"0.5 +- 0.1\"".to_owned(),
+            "prior" => format!("prior = \"50 {0} +- 10 {0}\"", self.unit),
+            _ => format!("{key} = {number}"),
+        }
+    }
+
+    /// Whether a bare number is a value in this unit.
+    fn is_plain(&self) -> bool {
+        self.dimension.is_none() && matches!(self.unit.as_str(), "1" | "-" | "rad" | "decade")
+    }
+
+    fn required(&self, key: &str) -> Result<(f64, Range<usize>), EffectFileError> {
+        let Some(value) = self.table.get(key) else {
+            return Err(self.table.missing(key, &self.example(key)));
+        };
+        let text = self.value_text(key, value)?;
+        let found = units::any(&text).map_err(|error| self.no_number(key, value, &error))?;
+        self.check(key, value, &found)?;
+        Ok((found.si, value.span()))
+    }
+
+    fn value_text(&self, key: &str, value: &Spanned<DeValue<'_>>) -> Result<String, EffectFileError> {
+        match value.get_ref() {
+            DeValue::String(text) => Ok(text.to_string()),
+            DeValue::Float(number) => Ok(number.as_str().to_owned()),
+            DeValue::Integer(number) if number.radix() == 10 => Ok(number.as_str().to_owned()),
+            _ => Err(self.table.wrong_type(key, value, "a number with its unit", &self.example(key))),
+        }
+    }
+
+    fn no_number(&self, key: &str, value: &Spanned<DeValue<'_>>, error: &AnyUnitError) -> EffectFileError {
+        self.table.error(value.span(), error.to_string(), format!("write `{}`", self.example(key)))
+    }
+
+    /// The unit of a value must be that of the parameter; a bare number is none in per cent or degrees.
+    fn check(&self, key: &str, value: &Spanned<DeValue<'_>>, found: &Any) -> Result<(), EffectFileError> {
+        let wanted = format!("a parameter in `{}` needs {}", self.unit, self.dimension.describe());
+        let what = if found.dimension != self.dimension && found.unit.is_empty() {
+            format!("`{key}` has no unit, but {wanted}")
+        } else if found.dimension != self.dimension {
+            format!("`{key}` is {}, but {wanted}", found.dimension.describe())
+        } else if found.unit.is_empty() && !self.is_plain() {
+            format!("`{key}` has no unit, but the parameter is in `{}`", self.unit)
+        } else {
+            return Ok(());
+        };
+        Err(self.table.error(value.span(), what, format!("write `{}`", self.example(key))))
+    }
+}

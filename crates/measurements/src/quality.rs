@@ -1,0 +1,235 @@
+//! The quality gate: what looks wrong in a data set, where, and what to do about it. Nothing is changed.
+
+mod clipping;
+mod design;
+mod drift;
+mod labels;
+mod quantisation;
+mod slack;
+mod spikes;
+mod time;
+mod values;
+
+use crate::data::Data;
+use crate::resolution::Resolution;
+use serde::Serialize;
+use std::ops::Range;
+
+/// What is known about the muscle; the gate works without.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct QualityOptions {
+    /// Length of the unpressurised muscle \[m\]: contractions can then be judged where the length was measured.
+    pub l0_m: Option<f64>,
+    /// Radius of the unpressurised muscle \[m\]: forces can then be judged by it.
+    pub radius_m: Option<f64>,
+}
+
+/// What the gate finds, in the order of [`FindingKind`].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Quality {
+    /// The findings.
+    pub findings: Vec<Finding>,
+}
+
+impl Quality {
+    /// The most severe finding.
+    #[must_use]
+    pub fn worst(&self) -> Option<Severity> {
+        self.findings.iter().map(|finding| finding.severity).max()
+    }
+
+    /// The findings of one kind.
+    pub fn of(&self, kind: FindingKind) -> impl Iterator<Item = &Finding> {
+        self.findings.iter().filter(move |finding| finding.kind == kind)
+    }
+}
+
+/// One thing that looks wrong.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Finding {
+    /// What it is.
+    pub kind: FindingKind,
+    /// How bad it is.
+    pub severity: Severity,
+    /// Where: lines of the files, at most [`Finding::MOST_RANGES`] ranges; none if it is about the data as a whole.
+    pub rows: Vec<LineRange>,
+    /// Number of rows in all.
+    pub count: usize,
+    /// What is seen, in a sentence with numbers.
+    pub says: String,
+    /// What to do instead.
+    pub instead: String,
+}
+
+impl Finding {
+    /// Ranges of rows that are listed at most.
+    pub const MOST_RANGES: usize = 1000;
+}
+
+/// Lines of a file (rows of a Parquet file), both ends included; comments may lie between.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct LineRange {
+    /// Index of the file.
+    pub file: usize,
+    /// First line.
+    pub first: usize,
+    /// Last line.
+    pub last: usize,
+}
+
+/// What looks wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FindingKind {
+    /// Fewer rows than anything can be learnt from.
+    TooFewRows,
+    /// Every row is the same.
+    AllRowsIdentical,
+    /// A value that no muscle has.
+    ImpossibleValue,
+    /// The time stands still or goes back.
+    TimeNotMonotone,
+    /// A pause within a run.
+    TimeGap,
+    /// The label of a run returns after others.
+    SweepInterrupted,
+    /// A coarse sensor.
+    Quantised,
+    /// A reading stays at its extreme while others move.
+    Clipped,
+    /// A reading far from its neighbours in time.
+    Spike,
+    /// Near zero force at positive pressure.
+    Slack,
+    /// A force that pushes.
+    NegativeForce,
+    /// Repeats differ by an offset.
+    RepeatDrift,
+    /// Stated directions against the motion.
+    DirectionContradicted,
+    /// A row that is there twice.
+    DuplicateRow,
+    /// All rows have one pressure.
+    OnePressureLevel,
+    /// The muscle never moves.
+    ContractionConstant,
+    /// The temperature changes, perhaps together with something else.
+    TemperatureChanges,
+}
+
+/// How bad a finding is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Severity {
+    /// Good to know.
+    Note,
+    /// Conclusions may be wrong.
+    Warning,
+    /// No conclusion is possible from these rows.
+    Error,
+}
+
+impl Data {
+    /// Looks for what is wrong with the data. A clean data set gives no warning.
+    #[must_use]
+    pub fn quality(&self, options: &QualityOptions) -> Quality {
+        if self.is_empty() {
+            return Quality { findings: Vec::new() };
+        }
+        let gate = Gate::new(self, options);
+        let checks = [
+            design::find,
+            values::find,
+            time::find,
+            labels::find,
+            quantisation::find,
+            clipping::find,
+            spikes::find,
+            slack::find,
+            drift::find,
+        ];
+        let mut findings: Vec<Finding> = checks.iter().flat_map(|check| check(&gate)).collect();
+        findings.sort_by_key(|finding| finding.kind);
+        Quality { findings }
+    }
+}
+
+/// The data with what several checks need.
+struct Gate<'a> {
+    data: &'a Data,
+    options: &'a QualityOptions,
+    motion: &'a [f64],
+    pressure: Resolution,
+    force: Resolution,
+    largest_force: f64,
+    largest_pressure: f64,
+}
+
+impl<'a> Gate<'a> {
+    fn new(data: &'a Data, options: &'a QualityOptions) -> Self {
+        let sweeps: Vec<Range<usize>> = data.sweeps().iter().map(|sweep| sweep.rows.clone()).collect();
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        Self {
+            data,
+            options,
+            motion: data.columns().motion.values(),
+            pressure: Resolution::of(data.pressure(), &sweeps),
+            force: Resolution::of(data.force(), &sweeps),
+            largest_force: largest(data.force()),
+            largest_pressure: largest(data.pressure()),
+        }
+    }
+
+    fn motion_resolution(&self) -> &Resolution {
+        &self.data.structure.resolution
+    }
+
+    /// The name of the column of the motion.
+    fn motion_name(&self) -> &'static str {
+        match self.data.motion() {
+            crate::Motion::Contraction(_) => "contraction",
+            crate::Motion::Length(_) => "length",
+        }
+    }
+
+    /// A finding about some rows, in rising order.
+    fn finding(
+        &self,
+        kind: FindingKind,
+        severity: Severity,
+        rows: &[usize],
+        says: String,
+        instead: &str,
+    ) -> Finding {
+        let mut ranges: Vec<LineRange> = Vec::new();
+        for run in rows.chunk_by(|a, b| a + 1 == *b && self.data.line(*a).0 == self.data.line(*b).0) {
+            if ranges.len() == Finding::MOST_RANGES {
+                break;
+            }
+            let (file, first) = self.data.line(run[0]);
+            let (_, last) = self.data.line(run[run.len() - 1]);
+            ranges.push(LineRange { file, first, last });
+        }
+        Finding { kind, severity, rows: ranges, count: rows.len(), says, instead: instead.to_owned() }
+    }
+
+    /// A finding if there are such rows; the sentence gets their number.
+    fn finding_if_any(
+        &self,
+        kind: FindingKind,
+        severity: Severity,
+        rows: &[usize],
+        says: impl FnOnce(usize) -> String,
+        instead: &str,
+    ) -> Option<Finding> {
+        (!rows.is_empty()).then(|| self.finding(kind, severity, rows, says(rows.len()), instead))
+    }
+}
+
+/// "1 row", "2 rows".
+fn rows_in_words(count: usize) -> String {
+    if count == 1 { "1 row".to_owned() } else { format!("{count} rows") }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,104 @@
+//! Clipped readings: a sensor at the end of its range repeats its extreme value while the others move on.
+
+use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
+use crate::resolution::{Resolution, bounds};
+use std::ops::Range;
+
+/// Equal readings in a row that are no chance.
+const RUN: usize = 5;
+/// How far the force should have moved, in what it resolves, to be called stuck.
+const FORCE_STEPS: f64 = 10.0;
+/// How far the force has to move, as a share of its range, while motion or pressure are stuck and the other keeps still to this share.
+const FORCE_SHARE: f64 = 0.1;
+const STILL: f64 = 0.02;
+
+pub(super) fn find(gate: &Gate) -> Vec<Finding> {
+    let data = gate.data;
+    let (force, pressure, motion) = (data.force(), data.pressure(), gate.motion);
+    let range_in = |values: &[f64], rows: &Range<usize>| {
+        let (low, high) = bounds(&values[rows.clone()]);
+        high - low
+    };
+    let stuck_force = |_: &Range<usize>, run: &Range<usize>| {
+        // Zero is the end of a muscle's range, not of the sensor's.
+        let is_zero = force[run.start].abs() <= 1e-9 * gate.largest_force;
+        let seen = (3.0 * gate.force.noise).max(gate.force.step).max(1e-3 * gate.force.range);
+        !is_zero && expected(gate, run) > FORCE_STEPS * seen
+    };
+    let force_moves = |run: &Range<usize>| range_in(force, run) > FORCE_SHARE * gate.force.range;
+    let stuck_motion = |sweep: &Range<usize>, run: &Range<usize>| {
+        range_in(motion, sweep) > 0.0
+            && force_moves(run)
+            && range_in(pressure, run) <= STILL * gate.largest_pressure
+    };
+    let stuck_pressure = |sweep: &Range<usize>, run: &Range<usize>| {
+        range_in(pressure, sweep) > 0.0
+            && force_moves(run)
+            && range_in(motion, run) <= STILL * gate.motion_resolution().range
+    };
+    [
+        in_column(gate, "force", force, &stuck_force),
+        in_column(gate, gate.motion_name(), motion, &stuck_motion),
+        in_column(gate, "pressure", pressure, &stuck_pressure),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// Runs of the column's largest or smallest value that are stuck, by sweep and run.
+fn in_column(
+    gate: &Gate,
+    name: &str,
+    values: &[f64],
+    is_stuck: &dyn Fn(&Range<usize>, &Range<usize>) -> bool,
+) -> Option<Finding> {
+    let (low, high) = bounds(values);
+    let mut rows = Vec::new();
+    for (sweep, _) in gate.data.paths() {
+        let mut start = sweep.rows.start;
+        for equal in values[sweep.rows.clone()].chunk_by(|a, b| a == b) {
+            let run = start..start + equal.len();
+            start = run.end;
+            let is_extreme = equal[0] == low || equal[0] == high;
+            if equal.len() >= RUN && equal.len() < sweep.rows.len() && is_extreme && is_stuck(&sweep.rows, &run) {
+                rows.extend(run);
+            }
+        }
+    }
+    gate.finding_if_any(
+        FindingKind::Clipped,
+        Severity::Warning,
+        &rows,
+        |count| {
+            let value = rows.first().map_or(0.0, |row| values[*row]);
+            format!("the {name} stays at its extreme value of {value:.6} (SI) in {} while others move", rows_in_words(count))
+        },
+        "remove these rows: the sensor or the amplifier was at the end of its range",
+    )
+}
+
+/// By how much the force should have changed in a run, from how it changed with motion and pressure just before and after.
+pub(super) fn expected(gate: &Gate, run: &Range<usize>) -> f64 {
+    /// Rows that show the slope.
+    const AROUND: usize = 20;
+    let sweep = &gate.data.sweeps()[gate.data.sweep_of(run.start)].rows;
+    let sides = [
+        (run.start.saturating_sub(AROUND).max(sweep.start), run.start),
+        (run.end - 1, (run.end - 1 + AROUND).min(sweep.end - 1)),
+    ];
+    let slope_times_way = |values: &[f64], resolution: &Resolution| {
+        let noise = 6.0 * resolution.noise + resolution.step;
+        let (low, high) = bounds(&values[run.clone()]);
+        let way = (high - low - noise).max(0.0);
+        let along = sides.iter().map(|(from, to)| {
+            let change = (values[*to] - values[*from]).abs();
+            let force = (gate.data.force()[*to] - gate.data.force()[*from]).abs();
+            // A change that is little more than noise shows no slope.
+            if change > 2.0 * noise + 1e-3 * resolution.range { force / change * way } else { 0.0 }
+        });
+        along.fold(0.0, f64::max)
+    };
+    slope_times_way(gate.motion, gate.motion_resolution())
+        .max(slope_times_way(gate.data.pressure(), &gate.pressure))
+}

@@ -1,0 +1,89 @@
+//! Labels against the rows: stated directions, runs that are interrupted, rows that are there twice.
+
+use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
+use std::collections::HashSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// Rows next to a turning point belong to either side.
+const NEAR_TURN: usize = 2;
+
+pub(super) fn find(gate: &Gate) -> Vec<Finding> {
+    [directions(gate), interrupted(gate), duplicates(gate)].into_iter().flatten().collect()
+}
+
+fn directions(gate: &Gate) -> Option<Finding> {
+    let stated = gate.data.stated_direction()?;
+    let (mut wrong, mut moving) = (Vec::new(), 0);
+    for (sweep, stretches) in gate.data.paths() {
+        for stretch in stretches.iter().filter(|stretch| stretch.direction != 0) {
+            // The ends of a sweep are no turning points.
+            let start = stretch.rows.start + if stretch.rows.start > sweep.rows.start { NEAR_TURN } else { 0 };
+            let end = stretch.rows.end.saturating_sub(if stretch.rows.end < sweep.rows.end { NEAR_TURN } else { 0 });
+            moving += end.saturating_sub(start);
+            wrong.extend((start..end).filter(|row| stated[*row] == -stretch.direction));
+        }
+    }
+    let all = if 2 * wrong.len() > moving {
+        "turn the labels over (`up` and `+1` mean shortening), or check the unit and sign of the motion"
+    } else {
+        "correct the labels, or leave the column out: the direction of a path is found from its motion"
+    };
+    gate.finding_if_any(
+        FindingKind::DirectionContradicted,
+        Severity::Warning,
+        &wrong,
+        |count| format!("{} of {moving} that move have a direction against their motion", rows_in_words(count)),
+        all,
+    )
+}
+
+/// Rows at which a label returns after others.
+fn interrupted(gate: &Gate) -> Option<Finding> {
+    let labels = gate.data.columns().sweep.as_ref()?;
+    let mut seen = HashSet::new();
+    let returns = |row: usize| {
+        let is_new = seen.insert((gate.data.line(row).0, gate.data.specimen()[row], labels.rows()[row]));
+        (!is_new).then_some(row)
+    };
+    let rows: Vec<usize> = gate.data.sweeps().iter().map(|sweep| sweep.rows.start).filter_map(returns).collect();
+    gate.finding_if_any(
+        FindingKind::SweepInterrupted,
+        Severity::Warning,
+        &rows,
+        |count| format!("a sweep label returns after others {count} times: each part is taken as a run of its own"),
+        "keep the rows of a run together and in the order in which they were measured",
+    )
+}
+
+/// Rows that say the same as an earlier one in every column. Along a path without times that is no copy: a muscle at rest reads the same again.
+fn duplicates(gate: &Gate) -> Option<Finding> {
+    let data = gate.data;
+    if data.is_path() && data.time().is_none() {
+        return None;
+    }
+    let columns: Vec<&[f64]> = data.columns().numbers().map(|(_, values)| values).collect();
+    let marks = |row: usize| {
+        (data.specimen()[row], data.cycle().map(|cycle| cycle[row]), data.stated_direction().map(|d| d[row]))
+    };
+    let fingerprint = |row: usize| {
+        let mut hasher = DefaultHasher::new();
+        columns.iter().for_each(|values| values[row].to_bits().hash(&mut hasher));
+        marks(row).hash(&mut hasher);
+        (hasher.finish(), row)
+    };
+    let is_same = |a: usize, b: usize| {
+        marks(a) == marks(b) && columns.iter().all(|values| values[a].to_bits() == values[b].to_bits())
+    };
+    let mut prints: Vec<(u64, usize)> = (0..data.len()).map(fingerprint).collect();
+    prints.sort_unstable();
+    let equal = prints.chunk_by(|a, b| a.0 == b.0 && is_same(a.1, b.1));
+    let mut rows: Vec<usize> = equal.flat_map(|same| same[1..].iter().map(|(_, row)| *row)).collect();
+    rows.sort_unstable();
+    gate.finding_if_any(
+        FindingKind::DuplicateRow,
+        Severity::Warning,
+        &rows,
+        |count| format!("{} say the same as an earlier row in every column", rows_in_words(count)),
+        "remove copies: they make the data look more certain than they are",
+    )
+}

@@ -1,0 +1,44 @@
+//! Coarse sensors: few levels between the smallest and the largest reading.
+
+use super::{Finding, FindingKind, Gate, Severity};
+use crate::resolution::Resolution;
+
+/// Fewer levels are worth a note, much fewer a warning.
+const NOTE: f64 = 1000.0;
+const WARNING: f64 = 50.0;
+/// Fewer rows show no sensor's grid.
+const ROWS: usize = 20;
+/// A column that changes in a smaller share of the rows is a list of set points.
+const CHANGES: f64 = 0.05;
+
+pub(super) fn find(gate: &Gate) -> Vec<Finding> {
+    let data = gate.data;
+    let columns = [
+        ("force", data.force(), &gate.force, "N"),
+        (gate.motion_name(), gate.motion, gate.motion_resolution(), "in SI"),
+        ("pressure", data.pressure(), &gate.pressure, "Pa"),
+    ];
+    let of_column = |(name, values, resolution, unit): (&str, &[f64], &Resolution, &str)| {
+        let levels = resolution.levels().filter(|levels| *levels < NOTE)?;
+        // Set points of a static map, or of each sweep, aren't readings.
+        let is_reading = name == "force" || (data.is_path() && share_of_changes(gate, values) > CHANGES);
+        if data.len() < ROWS || !is_reading {
+            return None;
+        }
+        let severity = if levels < WARNING { Severity::Warning } else { Severity::Note };
+        let says = format!(
+            "the {name} is read in steps of {:.4e} {unit}: {levels} levels over its range of {:.4e}",
+            resolution.step, resolution.range
+        );
+        let instead = "use a finer range of the sensor or write more digits; differences below one step mean nothing";
+        Some(gate.finding(FindingKind::Quantised, severity, &[], says, instead))
+    };
+    columns.into_iter().filter_map(of_column).collect()
+}
+
+/// Share of the rows at which a value differs from that of the row before in its sweep.
+fn share_of_changes(gate: &Gate, values: &[f64]) -> f64 {
+    let changes = |rows: &std::ops::Range<usize>| values[rows.clone()].windows(2).filter(|w| w[0] != w[1]).count();
+    let count: usize = gate.data.sweeps().iter().map(|sweep| changes(&sweep.rows)).sum();
+    count as f64 / values.len().max(1) as f64
+}

@@ -1,0 +1,87 @@
+//! Forces at and below zero: a muscle that is slack, or a load cell whose zero is off.
+
+use super::clipping::expected;
+use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
+use std::ops::Range;
+
+/// Forces within this share of the largest are near zero.
+const NEAR_ZERO: f64 = 1e-3;
+/// Pressures above this share of the largest should give a force.
+const PRESSURE: f64 = 0.02;
+/// Readings near zero in a row that aren't a crossing of zero.
+const RUN: usize = 3;
+/// How far the force should have moved, in what counts as near zero, for the muscle to be slack.
+const STEPS: f64 = 5.0;
+/// A negative force beyond this share of the largest is no noise.
+const NEGATIVE: f64 = 0.01;
+
+pub(super) fn find(gate: &Gate) -> Vec<Finding> {
+    let data = gate.data;
+    let level = (3.0 * gate.force.noise).max(gate.force.step).max(NEAR_ZERO * gate.largest_force);
+    // Where nothing was pulled at all there is no zero to stay at.
+    let is_near_zero = |row: usize| {
+        level < gate.largest_force
+            && data.force()[row].abs() <= level
+            && data.pressure()[row] > PRESSURE * gate.largest_pressure
+    };
+    let (mut slack, mut free): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
+    if data.is_path() {
+        for (sweep, _) in data.paths() {
+            let mut take = |run: Range<usize>| {
+                if run.len() >= RUN {
+                    let is_slack = expected(gate, &run) > STEPS * level;
+                    if is_slack { slack.extend(run) } else { free.extend(run) }
+                }
+            };
+            let mut start = None;
+            for row in sweep.rows.clone() {
+                match (is_near_zero(row), start) {
+                    (true, None) => start = Some(row),
+                    (false, Some(first)) => {
+                        take(first..row);
+                        start = None;
+                    }
+                    _ => {}
+                }
+            }
+            if let Some(first) = start {
+                take(first..sweep.rows.end);
+            }
+        }
+    } else {
+        free.extend((0..data.len()).filter(|row| is_near_zero(*row)));
+    }
+    let below = (5.0 * gate.force.noise).max(NEGATIVE * gate.largest_force);
+    let negative: Vec<usize> = (0..data.len()).filter(|row| data.force()[*row] < -below).collect();
+    [
+        gate.finding_if_any(
+            FindingKind::Slack,
+            Severity::Warning,
+            &slack,
+            |count| format!("{} move on at zero force (within {level:.3} N): the muscle was slack", rows_in_words(count)),
+            "keep the row at which the force becomes zero (the free contraction), remove the rest",
+        ),
+        gate.finding_if_any(
+            FindingKind::Slack,
+            Severity::Note,
+            &free,
+            |count| {
+                format!("{} have zero force (within {level:.3} N) at positive pressure: perhaps free contractions", rows_in_words(count))
+            },
+            "nothing, if the muscle just stopped pulling there; remove rows in which it hung slack",
+        ),
+        gate.finding_if_any(
+            FindingKind::NegativeForce,
+            Severity::Warning,
+            &negative,
+            |count| {
+                let lowest = negative.iter().map(|row| data.force()[*row]).fold(0.0, f64::min);
+                format!("{} have a pushing force, down to {lowest:.3} N", rows_in_words(count))
+            },
+            "a muscle only pulls: check zero and sign of the load cell, or remove the rows if the rig pushed",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}

@@ -1,0 +1,54 @@
+//! Bending a step along a curved valley, where the straight step fails.
+//!
+//! The geodesic acceleration of M. K. Transtrum, J. P. Sethna (arXiv:1201.5885), with the second derivative from the residuals of the failed step: it
+//! costs one evaluation of the Jacobian, and only where a step failed.
+
+use super::linear::{decrease, turned, values};
+use super::residuals::Residuals;
+use super::search::{Search, Trial};
+use super::step::damped;
+use super::triangle::norm;
+
+/// Longest bend relative to the step (the paper's value): beyond, the second derivative doesn't describe the residuals.
+const LONGEST: f64 = 0.75;
+/// Part of the predicted decrease that a bent step must achieve.
+const ENOUGH: f64 = 0.1;
+/// Growth of the trust region after a bent step that achieves three quarters of it.
+const GROWTH: f64 = 1.5;
+
+impl<P: Residuals> Search<'_, P> {
+    /// Bends a failed trial with these residuals, and moves there if that is good.
+    ///
+    /// With `c = r(theta + p) - r - J p`, half the second derivative along `p`, the bend `a` minimises the damped `|J a + c|^2` within the bounds.
+    pub(super) fn bend(&mut self, trial: &Trial, residuals: &[f64]) -> bool {
+        let (scale, damping) = if trial.full {
+            (&self.linear.norms, self.options.rank_tolerance.powi(2))
+        } else {
+            (&self.scale, self.damping)
+        };
+        self.linearisations += 1;
+        let Ok(turned) = turned(self.problem, &self.theta, residuals) else { return false };
+        let step: Vec<f64> = trial.theta.iter().zip(&self.theta).map(|(to, from)| to - from).collect();
+        let linear = self.linear.r.times(&step);
+        let c: Vec<f64> = (0..step.len()).map(|i| turned[i] - self.linear.q[i] - linear[i]).collect();
+        let (a, limits) = self.scaled_by(scale, &trial.theta);
+        let bend = damped(&a, &c, damping, &limits);
+        // Both lengths in the scale of the trust region.
+        let stretch = |j: usize| if scale[j] > 0.0 { bend.z[j] * (self.scale[j] / scale[j]) } else { 0.0 };
+        if norm(&(0..step.len()).map(stretch).collect::<Vec<_>>()) > LONGEST * trial.length {
+            return false;
+        }
+        let theta = self.point(&trial.theta, &bend, scale);
+        let mut bent = vec![0.0; residuals.len()];
+        self.evaluations += 1;
+        if values(self.problem, &theta, &mut bent).is_err() {
+            return false;
+        }
+        let ratio = decrease(&self.residuals, &bent) / trial.predicted;
+        if ratio < ENOUGH || !self.move_to(theta) {
+            return false;
+        }
+        self.radius = if ratio >= 0.75 { GROWTH * trial.length } else { trial.length };
+        true
+    }
+}

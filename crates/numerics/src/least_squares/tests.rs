@@ -1,0 +1,553 @@
+//! Searches against known solutions: bounds, rank, scales, saddles, failures, determinism, profiles.
+
+use super::*;
+use std::ops::Range;
+
+type Row = Option<(f64, Vec<f64>)>;
+
+/// A problem by a function of the parameters and the row; `None` where there is no value.
+struct Model<F> {
+    rows: usize,
+    parameters: usize,
+    block: usize,
+    row: F,
+}
+
+impl<F: Fn(&[f64], usize) -> Row + Sync> Residuals for Model<F> {
+    type Error = String;
+
+    fn rows(&self) -> usize {
+        self.rows
+    }
+
+    fn parameters(&self) -> usize {
+        self.parameters
+    }
+
+    fn block(&self) -> usize {
+        self.block
+    }
+
+    fn evaluate(
+        &self,
+        theta: &[f64],
+        rows: Range<usize>,
+        residuals: &mut [f64],
+        mut jacobian: Option<&mut [f64]>,
+    ) -> Result<(), String> {
+        assert!(rows.len() <= self.block && residuals.len() == rows.len());
+        for (i, row) in rows.enumerate() {
+            let (r, derivatives) =
+                (self.row)(theta, row).ok_or_else(|| format!("no value in row {row} at {theta:?}"))?;
+            residuals[i] = r;
+            if let Some(jacobian) = jacobian.as_deref_mut() {
+                jacobian[i * self.parameters..(i + 1) * self.parameters].copy_from_slice(&derivatives);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn model<F: Fn(&[f64], usize) -> Row + Sync>(rows: usize, parameters: usize, row: F) -> Model<F> {
+    Model { rows, parameters, block: 4096, row }
+}
+
+/// `r = (10 (y - x^2), 1 - x)`.
+fn rosenbrock() -> Model<impl Fn(&[f64], usize) -> Row + Sync> {
+    model(2, 2, |p, row| {
+        Some(match row {
+            0 => (10.0 * (p[1] - p[0] * p[0]), vec![-20.0 * p[0], 10.0]),
+            _ => (1.0 - p[0], vec![-1.0, 0.0]),
+        })
+    })
+}
+
+/// A decay `a exp(-b t)` at `t = 0, 0.5, ...` with errors of some per cent; parameters in units of `scale`, rows in the order `order`.
+fn decay(
+    rows: usize,
+    scale: [f64; 2],
+    order: fn(usize, usize) -> usize,
+) -> Model<impl Fn(&[f64], usize) -> Row + Sync> {
+    model(rows, 2, move |p, row| {
+        let (i, a, b) = (order(row, rows), p[0] * scale[0], p[1] * scale[1]);
+        let e = (-b * time(i)).exp();
+        Some((a * e - decay_data(i), vec![e * scale[0], -a * time(i) * e * scale[1]]))
+    })
+}
+
+fn time(i: usize) -> f64 {
+    0.5 * i as f64
+}
+
+fn decay_data(i: usize) -> f64 {
+    3.0 * (-0.7 * time(i)).exp() + 0.05 * ((i * i * 7 + 2 * i) % 11) as f64 / 11.0
+}
+
+fn in_order(row: usize, _: usize) -> usize {
+    row
+}
+
+fn least<P: Residuals<Error = String>>(problem: &P, start: &[f64], bounds: &Bounds) -> Minimum {
+    minimise(problem, start, bounds, &Options::default()).unwrap()
+}
+
+fn free<P: Residuals<Error = String>>(problem: &P, start: &[f64]) -> Minimum {
+    least(problem, start, &Bounds::none(start.len()))
+}
+
+fn assert_close(found: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(found.len(), expected.len());
+    for (f, e) in found.iter().zip(expected) {
+        assert!((f - e).abs() <= tolerance * e.abs().max(1e-3), "{found:?} is not {expected:?}");
+    }
+}
+
+fn bits(x: &[f64]) -> Vec<u64> {
+    x.iter().map(|x| x.to_bits()).collect()
+}
+
+#[test]
+fn an_active_bound_of_a_linear_problem_is_exact() {
+    // (x - 2)^2 + (x + y - 1)^2: free at (2, -1); with y >= 0 at (1.5, 0), where (J^T r)_y = x + y - 1 = 0.5 points outwards.
+    let problem = model(2, 2, |p, row| {
+        Some(if row == 0 { (p[0] - 2.0, vec![1.0, 0.0]) } else { (p[0] + p[1] - 1.0, vec![1.0, 1.0]) })
+    });
+    let bounds = Bounds { lower: vec![f64::NEG_INFINITY, 0.0], upper: vec![f64::INFINITY; 2] };
+    let minimum = least(&problem, &[7.0, 4.0], &bounds);
+    assert_eq!(minimum.theta[1].to_bits(), 0);
+    assert_close(&minimum.theta[..1], &[1.5], 1e-14);
+    assert_close(&minimum.gradient, &[0.0, 0.5], 1e-13);
+    assert_close(&[minimum.cost], &[0.5], 1e-14);
+    let certificate = &minimum.certificate;
+    assert!(certificate.converged && certificate.at_bound == [None, Some(Side::Lower)]);
+    assert_eq!((certificate.rank, minimum.standard_deviations(1.0)[1]), (1, None));
+    // The variance of x alone: 1/(1 + 1).
+    assert_close(&minimum.covariance(1.0), &[0.5, 0.0, 0.0, 0.0], 1e-14);
+    // A bound that the minimum doesn't need is left: from (2, 0) on the bound of an upper limit.
+    let bounds = Bounds { lower: vec![f64::NEG_INFINITY; 2], upper: vec![f64::INFINITY, 0.0] };
+    let minimum = least(&problem, &[2.0, 0.0], &bounds);
+    assert_close(&minimum.theta, &[2.0, -1.0], 1e-14);
+    assert_eq!(minimum.certificate.at_bound, [None, None]);
+}
+
+#[test]
+fn boxes_agree_with_trying_every_active_set() {
+    let mut seed = 1_u32;
+    let mut random = || {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(seed >> 8) / f64::from(1_u32 << 23) - 1.0
+    };
+    for _ in 0..200 {
+        let (a, b): (Vec<f64>, Vec<f64>) =
+            ((0..15).map(|_| random()).collect(), (0..5).map(|_| random()).collect());
+        let bounds = Bounds {
+            lower: (0..3).map(|_| -0.3 * random().abs()).collect(),
+            upper: (0..3).map(|_| 0.3 * random().abs()).collect(),
+        };
+        let residual = |p: &[f64], i: usize| b[i] + (0..3).map(|j| a[3 * i + j] * p[j]).sum::<f64>();
+        let cost = |p: &[f64]| (0..5).map(|i| residual(p, i).powi(2)).sum::<f64>();
+        let problem = model(5, 3, |p, i| Some((residual(p, i), a[3 * i..3 * i + 3].to_vec())));
+        let found = least(&problem, &[0.0; 3], &bounds);
+        assert!(found.certificate.converged, "{found:?}");
+        // Minimum over each of the 27 faces, by coordinate descent; the best feasible one is the answer.
+        let mut best = f64::INFINITY;
+        for face in 0..27 {
+            let side = |j: u32| face / 3_usize.pow(j) % 3;
+            let mut p: Vec<f64> = (0..3)
+                .map(|j| [0.0, bounds.lower[j], bounds.upper[j]][side(u32::try_from(j).unwrap())])
+                .collect();
+            for _ in 0..20_000 {
+                let before = p.clone();
+                for j in (0..3).filter(|j| side(u32::try_from(*j).unwrap()) == 0) {
+                    let column = (0..5).map(|i| a[3 * i + j]);
+                    let slope: f64 = column.clone().zip(0..5).map(|(x, i)| x * residual(&p, i)).sum();
+                    p[j] -= slope / column.map(|x| x * x).sum::<f64>();
+                }
+                if p.iter().zip(&before).all(|(x, y)| (x - y).abs() < 1e-15) {
+                    break;
+                }
+            }
+            if (0..3).all(|j| p[j] >= bounds.lower[j] && p[j] <= bounds.upper[j]) {
+                best = best.min(cost(&p));
+            }
+        }
+        assert!((found.cost - best).abs() < 1e-10, "{} {best}", found.cost);
+    }
+}
+
+#[test]
+fn rosenbrock_free_and_bounded() {
+    let minimum = free(&rosenbrock(), &[-1.2, 1.0]);
+    assert_close(&minimum.theta, &[1.0, 1.0], 1e-13);
+    let bounds = Bounds { lower: vec![-2.0; 2], upper: vec![0.5, 2.0] };
+    let minimum = least(&rosenbrock(), &[-1.2, 1.0], &bounds);
+    assert_eq!(minimum.theta[0].to_bits(), 0.5_f64.to_bits());
+    assert_close(&minimum.theta[1..], &[0.25], 1e-12);
+    assert_close(&minimum.gradient[..1], &[-0.5], 1e-9);
+    assert_eq!(minimum.certificate.at_bound, [Some(Side::Upper), None]);
+    // Fixed: y = 3 leaves 100 (3 - x^2)^2 + (1 - x)^2, stationary where 200 x (x^2 - 3) + x - 1 = 0.
+    let minimum = least(&rosenbrock(), &[1.0, 3.0], &Bounds::none(2).with_fixed(1, 3.0));
+    let x = minimum.theta[0];
+    assert!((200.0 * x * (x * x - 3.0) + x - 1.0).abs() < 1e-9 && x > 1.7);
+    assert_eq!(minimum.theta[1].to_bits(), 3.0_f64.to_bits());
+    let all = minimise(
+        &rosenbrock(),
+        &[0.0, 3.0],
+        &Bounds { lower: vec![0.0, 3.0], upper: vec![0.0, 3.0] },
+        &Options::default(),
+    );
+    assert_eq!(all.unwrap().certificate.reason, Reason::NothingFree);
+}
+
+#[test]
+fn straight_line_has_the_textbook_covariance() {
+    // Points x = 0..9: var(slope) = 1/sum (x - 4.5)^2 = 1/82.5; var(intercept) = 1/10 + 4.5^2/82.5; cov = -4.5/82.5.
+    let problem = model(10, 2, |p, i| {
+        let x = i as f64;
+        Some((p[0] + p[1] * x - (1.0 + 2.0 * x + f64::from(u8::from(i == 3))), vec![1.0, x]))
+    });
+    let minimum = free(&problem, &[0.0, 0.0]);
+    let expected = [0.1 + 20.25 / 82.5, -4.5 / 82.5, -4.5 / 82.5, 1.0 / 82.5];
+    assert_close(&minimum.covariance(4.0), &expected.map(|c| 4.0 * c), 1e-13);
+    let rho = expected[1] / (expected[0] * expected[3]).sqrt();
+    assert_close(&minimum.correlation(), &[1.0, rho, rho, 1.0], 1e-13);
+    let deviation = minimum.standard_deviations(4.0)[1].unwrap();
+    assert_close(&[deviation], &[2.0 / 82.5_f64.sqrt()], 1e-13);
+    assert_close(&[minimum.residual_variance().unwrap()], &[minimum.cost / 8.0], 1e-15);
+    assert!(minimum.certificate.least_curvature.unwrap() > 0.0);
+}
+
+#[test]
+fn what_the_residuals_do_not_determine_is_reported() {
+    // a + b alone matters, c is determined, d is without influence.
+    let problem = model(8, 4, |p, i| {
+        let x = i as f64 - 2.0;
+        let y = 2.0 * x + 5.0 + 0.1 * (x * 3.0).sin();
+        Some(((p[0] + p[1]) * x + p[2] - y, vec![x, x, 1.0, 0.0]))
+    });
+    let minimum = free(&problem, &[1.0, 0.5, 0.0, 3.0]);
+    let certificate = &minimum.certificate;
+    assert!(certificate.converged && certificate.rank == 2 && certificate.condition > 1e10);
+    assert_eq!(certificate.flat.len(), 2);
+    let along = |v: &[f64]| {
+        certificate.flat.iter().map(|f| f.iter().zip(v).map(|(f, v)| f * v).sum::<f64>().powi(2)).sum::<f64>()
+    };
+    let half = 0.5_f64.sqrt();
+    assert!((along(&[half, -half, 0.0, 0.0]) - 1.0).abs() < 1e-12);
+    assert!((along(&[0.0, 0.0, 0.0, 1.0]) - 1.0).abs() < 1e-12);
+    let deviations = minimum.standard_deviations(1.0);
+    assert_eq!(deviations.iter().map(Option::is_some).collect::<Vec<_>>(), [false, false, true, false]);
+    // Along flat directions nothing moved: the steps of a and b are equal, d stays.
+    assert_close(&[minimum.theta[0] - minimum.theta[1], minimum.theta[3]], &[0.5, 3.0], 1e-9);
+    assert!(minimum.covariance(1.0)[..8].iter().all(|c| *c == 0.0));
+    // c as in the problem with a alone: sum 1 = 8, sum x = 12, sum x^2 = 44.
+    assert_close(&[minimum.covariance(1.0)[10]], &[44.0 / (8.0 * 44.0 - 144.0)], 1e-10);
+}
+
+#[test]
+fn fewer_rows_than_parameters_and_no_parameters() {
+    let problem =
+        model(1, 3, |p, _| Some((p[0] + 2.0 * p[1] * p[1] + p[2] - 4.0, vec![1.0, 4.0 * p[1], 1.0])));
+    let minimum = free(&problem, &[0.0, 1.0, 0.0]);
+    assert!(minimum.certificate.converged && minimum.cost < 1e-28);
+    assert_eq!((minimum.certificate.rank, minimum.certificate.flat.len()), (1, 2));
+    assert_eq!(minimum.residual_variance(), None);
+    let empty = model(3, 0, |_, i| Some((i as f64, Vec::new())));
+    let minimum = free(&empty, &[]);
+    assert_eq!(
+        (minimum.cost.to_bits(), minimum.certificate.reason),
+        (5.0_f64.to_bits(), Reason::NothingFree)
+    );
+    let nothing = model(0, 1, |_, _| None);
+    assert_eq!(free(&nothing, &[1.0]).certificate.reason, Reason::ExactFit);
+}
+
+#[test]
+fn powers_of_two_in_the_parameters_give_the_same_path_bit_for_bit() {
+    let plain = free(&decay(40, [1.0, 1.0], in_order), &[1.0, 0.1]);
+    assert!(plain.certificate.converged && plain.iterations > 3);
+    let scale = [2.0_f64.powi(40), 2.0_f64.powi(-30)];
+    let scaled = free(&decay(40, scale, in_order), &[1.0 / scale[0], 0.1 / scale[1]]);
+    let back: Vec<f64> = scaled.theta.iter().zip(scale).map(|(t, s)| t * s).collect();
+    assert_eq!(bits(&back), bits(&plain.theta));
+    assert_eq!(
+        (scaled.iterations, scaled.evaluations, scaled.linearisations),
+        (plain.iterations, plain.evaluations, plain.linearisations)
+    );
+    assert_eq!(bits(&scaled.residuals), bits(&plain.residuals));
+    // Other factors change the rounding alone.
+    let scaled = free(&decay(40, [1e9, 1e-9], in_order), &[1e-9, 1e8]);
+    assert_close(&[scaled.theta[0] * 1e9, scaled.theta[1] * 1e-9], &plain.theta, 1e-9);
+    assert_eq!(scaled.iterations, plain.iterations);
+}
+
+#[test]
+fn order_and_blocks_of_rows_change_the_rounding_alone() {
+    let plain = free(&decay(1000, [1.0, 1.0], in_order), &[1.0, 0.1]);
+    let mut other = decay(1000, [1.0, 1.0], |row, rows| (row * 7 + 3) % rows);
+    for block in [4096, 1, 7, 64] {
+        other.block = block;
+        let found = free(&other, &[1.0, 0.1]);
+        assert_close(&found.theta, &plain.theta, 1e-12);
+        assert_close(&found.covariance(1.0), &plain.covariance(1.0), 1e-11);
+    }
+}
+
+#[test]
+fn bytes_do_not_depend_on_threads_or_repetition() {
+    let mut problem = decay(5000, [1.0, 1.0], in_order);
+    problem.block = 100;
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let found = pool.install(|| free(&problem, &[1.0, 0.1]));
+        [bits(&found.theta), bits(&found.residuals), bits(&found.r), bits(&found.covariance(1.0))]
+    };
+    let one = run(1);
+    assert_eq!(one, run(1));
+    assert_eq!(one, run(4));
+}
+
+#[test]
+fn a_million_rows_pass_through_in_blocks() {
+    let parameters = [1.0, -2.0, 3.0, 0.5, 0.25, -1.0, 2.0, 4.0];
+    let mut problem = model(1_000_000, 8, |p, i| {
+        // Powers of x in [-1, 1] would do; products of tent functions are cheaper and as independent.
+        let mut x = (i as f64).mul_add(0.618_033_988_749_894_9, 0.25).fract();
+        let row: Vec<f64> = (0..8)
+            .map(|_| {
+                x = (x * 3.7 + 0.11).fract();
+                x - 0.4
+            })
+            .collect();
+        let sum = |p: &[f64]| row.iter().zip(p).map(|(a, b)| a * b).sum::<f64>();
+        Some((sum(p) - sum(&parameters), row))
+    });
+    // The model asserts that no block is larger than this.
+    problem.block = 2048;
+    let options = Options { check_curvature: false, ..Options::default() };
+    let minimum = minimise(&problem, &[0.0; 8], &Bounds::none(8), &options).unwrap();
+    assert!(minimum.certificate.converged);
+    assert_close(&minimum.theta, &parameters, 1e-12);
+}
+
+#[test]
+fn stationary_points_that_are_no_minima_are_left() {
+    // Maximum of (x^2 - 1)^2 with a zero Jacobian.
+    let hill = model(1, 1, |p, _| Some((p[0] * p[0] - 1.0, vec![2.0 * p[0]])));
+    let minimum = free(&hill, &[0.0]);
+    assert_close(&[minimum.theta[0].abs()], &[1.0], 1e-12);
+    // x^2 + 4 (1 - x^2)^2 at 0: full rank, J^T r = 0, second derivative of the half: 1 - 8. The minima: x^2 = 1 - 1/8.
+    let saddle = model(2, 1, |p, i| {
+        Some(if i == 0 { (p[0], vec![1.0]) } else { (2.0 * (1.0 - p[0] * p[0]), vec![-4.0 * p[0]]) })
+    });
+    let minimum = free(&saddle, &[0.0]);
+    assert!(minimum.certificate.converged);
+    assert_close(&[minimum.theta[0].abs()], &[0.875_f64.sqrt()], 1e-9);
+    // Half the second derivative there: 1 - 8 + 24 x^2 = 14, of which the column explains |J|^2 = 1 + 16 x^2 = 15.
+    assert_close(&[minimum.certificate.least_curvature.unwrap()], &[14.0 / 15.0], 1e-4);
+    let trusting = Options { check_curvature: false, ..Options::default() };
+    let stationary = minimise(&saddle, &[0.0], &Bounds::none(1), &trusting).unwrap();
+    assert!(stationary.certificate.least_curvature.is_none() && stationary.theta[0] == 0.0);
+    // Held from below, the same point is a minimum over x <= 0 only with the bound; the other side is taken.
+    let bounds = Bounds { lower: vec![-2.0], upper: vec![0.0] };
+    assert_close(&least(&saddle, &[0.0], &bounds).theta, &[-0.875_f64.sqrt()], 1e-9);
+}
+
+#[test]
+fn ends_that_are_no_minima_are_not_called_converged() {
+    let backwards = model(3, 1, |p, i| Some((p[0] - i as f64, vec![-1.0])));
+    let end = free(&backwards, &[5.0]);
+    assert_eq!((end.certificate.reason, end.certificate.converged), (Reason::Stagnated, false));
+    assert!(end.certificate.gradient_cosine > 0.9);
+    let options = Options { max_evaluations: 4, ..Options::default() };
+    let end = minimise(&rosenbrock(), &[-1.2, 1.0], &Bounds::none(2), &options).unwrap();
+    assert_eq!((end.certificate.reason, end.certificate.converged), (Reason::Budget, false));
+    assert!(end.cost < 24.2 && end.evaluations + end.linearisations <= 5);
+    // A jump: the derivative promises a decrease that ends at x = 1.
+    let cliff = model(1, 1, |p, _| Some((if p[0] < 1.0 { 9.0 } else { p[0] }, vec![1.0])));
+    assert_eq!(free(&cliff, &[1.0]).certificate.reason, Reason::Stagnated);
+}
+
+#[test]
+fn trial_points_without_value_shorten_the_step() {
+    // (ln x - ln 1e-3) from x = 2: the Gauss-Newton step goes far below 0.
+    for failing in [true, false] {
+        let problem = model(1, 1, move |p, _| {
+            if failing && p[0] <= 0.0 {
+                return None;
+            }
+            Some((p[0].ln() - 1e-3_f64.ln(), vec![1.0 / p[0]]))
+        });
+        let minimum = free(&problem, &[2.0]);
+        assert!(minimum.certificate.converged);
+        assert_close(&minimum.theta, &[1e-3], 1e-12);
+    }
+    // Derivatives that fail where residuals don't.
+    let problem = model(1, 1, |p, _| Some((p[0] - 4.0, vec![if p[0] > 8.0 { f64::NAN } else { 0.1 }])));
+    assert!(minimise(&problem, &[1.0], &Bounds::none(1), &Options::default()).is_ok());
+}
+
+#[test]
+fn zero_residuals_converge_to_rounding() {
+    // Exact data of a sum of two decays.
+    let problem = model(30, 4, |p, i| {
+        let (e, f) = ((-p[1] * time(i)).exp(), (-p[3] * time(i)).exp());
+        let data = 2.0 * (-0.3 * time(i)).exp() + 5.0 * (-1.7 * time(i)).exp();
+        Some((p[0] * e + p[2] * f - data, vec![e, -p[0] * time(i) * e, f, -p[2] * time(i) * f]))
+    });
+    let minimum = free(&problem, &[1.0, 0.1, 1.0, 1.0]);
+    assert!(minimum.certificate.converged, "{minimum:?}");
+    assert_close(&minimum.theta, &[2.0, 0.3, 5.0, 1.7], 1e-12);
+}
+
+#[test]
+fn unusable_calls_say_what_is_wrong() {
+    let problem = rosenbrock();
+    let text = |start: &[f64], bounds: &Bounds, options: &Options| {
+        minimise(&problem, start, bounds, options).unwrap_err().to_string()
+    };
+    let (none, usual) = (Bounds::none(2), Options::default());
+    let bounds = Bounds { lower: vec![0.0, 2.0], upper: vec![1.0, 3.0] };
+    assert_eq!(
+        text(&[0.5, 4.0], &bounds, &usual),
+        "the start of parameter 1 is 4, outside its bounds [2, 3]"
+    );
+    assert_eq!(text(&[0.5], &bounds, &usual), "the start has 1 entries; the problem has 2 parameters");
+    let crossed = Bounds { lower: vec![0.0, 2.0], upper: vec![1.0, f64::NAN] };
+    assert!(text(&[0.5, 2.0], &crossed, &usual).starts_with("the bounds of parameter 1 are [2, NaN]"));
+    assert!(text(&[f64::NAN, 2.0], &none, &usual).contains("parameter 0 is NaN"));
+    let options = Options { tolerance: 0.0, ..usual };
+    assert_eq!(
+        text(&[0.5, 2.0], &none, &options),
+        "the option tolerance is 0; it must be above 0 and below 1"
+    );
+    assert!(text(&[1e200, 2.0], &none, &usual).contains("residual 0 is -inf"));
+    assert!(text(&[1e80, 2.0], &none, &usual).contains("overflows"));
+    let undefined = model(1, 1, |_, _| None);
+    let error = minimise(&undefined, &[1.0], &Bounds::none(1), &usual).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "the residuals cannot be evaluated at the start: no value in row 0 at [1.0]"
+    );
+    let infinite = model(2, 1, |_, i| Some((1.0, vec![1.0 / (1.0 - i as f64)])));
+    let error = minimise(&infinite, &[1.0], &Bounds::none(1), &usual).unwrap_err();
+    assert_eq!(error, LeastSquaresError::Derivative { row: 1, parameter: 0, value: f64::INFINITY });
+}
+
+/// `((x^2 - 1), (x - 1)/10)`: the least minimum 0 at 1, and another near -1.
+fn two_minima() -> Model<impl Fn(&[f64], usize) -> Row + Sync> {
+    model(2, 1, |p, i| {
+        Some(if i == 0 { (p[0] * p[0] - 1.0, vec![2.0 * p[0]]) } else { (0.1 * (p[0] - 1.0), vec![0.1]) })
+    })
+}
+
+#[test]
+fn many_starts_find_all_minima() {
+    let bounds = Bounds { lower: vec![-3.0], upper: vec![3.0] };
+    let mut starts = starts_in_box(9, &bounds).unwrap();
+    starts.push(vec![5.0]);
+    let found = minimise_from_many(&two_minima(), &starts, &bounds, &Options::default()).unwrap();
+    assert_close(&found.best.theta, &[1.0], 1e-12);
+    assert_eq!((found.minima.len(), found.best.residuals.len(), found.ends.len()), (2, 2, 10));
+    // 2 x (x^2 - 1) + (x - 1)/100 = 0 without the root 1: 2 x (x + 1) + 0.01 = 0.
+    assert_close(&found.minima[1].theta, &[(-1.0 - 0.98_f64.sqrt()) / 2.0], 1e-9);
+    assert_eq!(found.minima[0].starts.len() + found.minima[1].starts.len(), 9);
+    assert!(found.minima.iter().all(|m| !m.starts.is_empty() && m.starts.is_sorted()));
+    assert!(matches!(found.ends[9], Err(LeastSquaresError::Outside { parameter: 0, .. })));
+    let none = minimise_from_many(&two_minima(), &[], &bounds, &Options::default());
+    assert_eq!(none.unwrap_err(), LeastSquaresError::NoStart);
+    let outside = minimise_from_many(&two_minima(), &[vec![5.0], vec![6.0]], &bounds, &Options::default());
+    assert!(matches!(outside.unwrap_err(), LeastSquaresError::Outside { value: 5.0, .. }));
+}
+
+#[test]
+fn profile_of_a_linear_problem_is_the_covariance_interval() {
+    let problem = model(12, 3, |p, i| {
+        let x = 0.3 * i as f64;
+        Some((p[0] + p[1] * x + p[2] * x * x - x.exp(), vec![1.0, x, x * x]))
+    });
+    let minimum = free(&problem, &[0.0; 3]);
+    let rise = 3.841_458_820_694_124_f64;
+    for j in 0..3 {
+        let half = rise.sqrt() * minimum.standard_deviations(1.0)[j].unwrap();
+        let found = profile(&problem, &minimum, &Bounds::none(3), &Options::default(), j, rise).unwrap();
+        let (ProfileEnd::Crossed(lower), ProfileEnd::Crossed(upper)) = (found.lower, found.upper) else {
+            panic!("{found:?}")
+        };
+        assert_close(&[lower, upper], &[minimum.theta[j] - half, minimum.theta[j] + half], 1e-9);
+        assert!(found.points.is_sorted_by(|a, b| a.value < b.value));
+    }
+}
+
+#[test]
+fn profile_of_a_decay_agrees_with_its_closed_form() {
+    let rows = 12;
+    let problem = decay(rows, [1.0, 1.0], in_order);
+    let minimum = free(&problem, &[1.0, 0.1]);
+    // For a given rate the best amplitude is a ratio of sums.
+    let cost = |b: f64| {
+        let e = |i: usize| (-b * time(i)).exp();
+        let (ye, ee): (f64, f64) =
+            ((0..rows).map(|i| e(i) * decay_data(i)).sum(), (0..rows).map(|i| e(i) * e(i)).sum());
+        (0..rows).map(|i| (ye / ee * e(i) - decay_data(i)).powi(2)).sum::<f64>()
+    };
+    // A rise large enough that the interval is visibly lopsided.
+    let rise = 1.0;
+    let edge = |mut inside: f64, mut outside: f64| {
+        for _ in 0..200 {
+            let middle = 0.5 * (inside + outside);
+            if cost(middle) - minimum.cost < rise { inside = middle } else { outside = middle }
+        }
+        inside
+    };
+    let found = profile(&problem, &minimum, &Bounds::none(2), &Options::default(), 1, rise).unwrap();
+    let best = minimum.theta[1];
+    let expected = [edge(best, 0.0), edge(best, 10.0)];
+    let (ProfileEnd::Crossed(lower), ProfileEnd::Crossed(upper)) = (found.lower, found.upper) else {
+        panic!("{found:?}")
+    };
+    assert_close(&[lower, upper], &expected, 1e-9);
+    assert!((upper - best) > 1.2 * (best - lower));
+    assert!(found.points.len() < 30, "{}", found.points.len());
+}
+
+#[test]
+fn open_profiles_say_why() {
+    let (problem, usual) = (decay(12, [1.0, 1.0], in_order), Options::default());
+    let minimum = free(&problem, &[1.0, 0.1]);
+    // A bound before the rise; a rise that a rate of infinity doesn't reach.
+    let bounds = Bounds { lower: vec![f64::NEG_INFINITY, 0.6], upper: vec![f64::INFINITY; 2] };
+    let found = profile(&problem, &minimum, &bounds, &usual, 1, 1.0).unwrap();
+    assert!(matches!(found.lower, ProfileEnd::AtBound { value: 0.6, rise } if rise > 0.0 && rise < 1.0));
+    let found = profile(&problem, &minimum, &Bounds::none(2), &usual, 1, 1e3).unwrap();
+    let all: f64 = (1..12).map(|i| decay_data(i).powi(2)).sum();
+    let ProfileEnd::Unbounded { rise, .. } = found.upper else { panic!("{found:?}") };
+    assert_close(&[rise], &[all - minimum.cost], 1e-9);
+    // Residuals that end at x = 2, in a parabola of one parameter.
+    let ending = model(1, 1, |p, _| (p[0] <= 2.0).then(|| (p[0] - 1.0, vec![1.0])));
+    let found = profile(&ending, &free(&ending, &[0.0]), &Bounds::none(1), &usual, 0, 4.0).unwrap();
+    assert!(matches!(found.lower, ProfileEnd::Crossed(x) if (x + 1.0).abs() < 1e-9));
+    assert!(
+        matches!(found.upper, ProfileEnd::Undefined { value, .. } if (value - 2.0).abs() < 1e-5),
+        "{found:?}"
+    );
+    // From a bound inwards: (x + 1)^2 with x >= 0 rises by 2 x + x^2 = 3 at x = 1.
+    let held = model(1, 1, |p, _| Some((p[0] + 1.0, vec![1.0])));
+    let bounds = Bounds { lower: vec![0.0], upper: vec![f64::INFINITY] };
+    let found = profile(&held, &least(&held, &[5.0], &bounds), &bounds, &usual, 0, 3.0).unwrap();
+    assert_eq!(found.lower, ProfileEnd::AtBound { value: 0.0, rise: 0.0 });
+    assert!(matches!(found.upper, ProfileEnd::Crossed(x) if (x - 1.0).abs() < 1e-9));
+}
+
+#[test]
+fn profiles_refuse_what_is_no_minimum() {
+    let (problem, usual, none) = (two_minima(), Options::default(), Bounds::none(1));
+    // From the upper minimum (cost 0.04) towards the lower one.
+    let minimum = free(&problem, &[-1.0]);
+    let error = profile(&problem, &minimum, &none, &usual, 0, 2.0).unwrap_err();
+    assert!(matches!(error, LeastSquaresError::LowerCost { parameter: 0, .. }), "{error}");
+    let error = profile(&problem, &minimum, &none, &usual, 1, 2.0).unwrap_err();
+    assert_eq!(error, LeastSquaresError::NotProfiled { parameter: 1, parameters: 1 });
+    let error = profile(&problem, &minimum, &none, &usual, 0, -1.0).unwrap_err();
+    assert_eq!(error.to_string(), "the option rise is -1; it must be positive and finite");
+}
