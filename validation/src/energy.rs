@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 
 use crate::check::{Check, Claim, Trouble};
 use crate::difference::derivative;
+use crate::section::area;
 use crate::specimen::{at, every_kind, pressure_only};
 
 const PRESSURE: Pressure = Pressure::bar(2.0);
@@ -117,11 +118,10 @@ fn densities(muscle: &Muscle, point: &MeridianPoint) -> (f64, f64) {
     let sigma = (1.0 + point.fibre_strain) * point.braid_angle_rad.cos();
     let fibres = muscle.fibres().map_or(1.0, f64::from);
     let mut stored = 0.5 * fibres * point.fibre_tension_n * point.fibre_strain;
-    let (mut depth, mut rest) = (0.0, 1.0);
-    match muscle.construction() {
-        Construction::Pleated(pleated) => depth = pleated.pleat_depth().si(),
-        Construction::Braided(braided) => rest = braided.braid_angle().si().cos(),
-    }
+    let rest = match muscle.construction() {
+        Construction::Pleated(_) => 1.0,
+        Construction::Braided(braided) => braided.braid_angle().si().cos(),
+    };
     if let Some(bladder) = muscle.bladder() {
         let (a, b) = ((sigma / rest).powi(2), (r / muscle.radius().si()).powi(2));
         let (i1, i2) = (a + b + 1.0 / (a * b), 1.0 / a + 1.0 / b + a * b);
@@ -134,9 +134,5 @@ fn densities(muscle: &Muscle, point: &MeridianPoint) -> (f64, f64) {
         let developed = 2.0 * PI * cloth.unfolded_radius().si();
         stored += sigma * cloth.hoop_stiffness().si() * (2.0 * PI * taut).powi(2) / (2.0 * developed);
     }
-    let area = match (muscle.is_pleated(), muscle.fibres()) {
-        (true, Some(n)) => 0.5 * f64::from(n) * (2.0 * PI / f64::from(n)).sin(),
-        _ => PI,
-    };
-    (stored, area * (r + depth).powi(2) * sigma * point.slope_rad.cos())
+    (stored, area(muscle, r) * sigma * point.slope_rad.cos())
 }

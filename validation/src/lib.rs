@@ -15,6 +15,7 @@ mod meridian;
 mod published;
 mod reference;
 pub mod sample;
+mod section;
 mod shooting;
 mod specimen;
 
@@ -38,6 +39,7 @@ pub const CHECKS: &[fn() -> Check] = &[
     energy::potential,
     derivative::gradients,
     derivative::gradients_by_shooting,
+    derivative::linearised,
     derivative::stiffness,
     isobars::one_by_one,
     meridian::first_integral,

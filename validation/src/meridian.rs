@@ -70,17 +70,6 @@ fn meridional_force(point: &MeridianPoint) -> f64 {
     point.membrane_force_n_per_m * 2.0 * PI * point.r_m
 }
 
-/// Area of the cross-section that carries the pressure.
-fn area(muscle: &Muscle, r: f64) -> f64 {
-    match muscle.construction() {
-        Construction::Pleated(pleated) => {
-            let n = muscle.fibres().map(f64::from);
-            n.map_or(PI, |n| 0.5 * n * (2.0 * PI / n).sin()) * (r + pleated.pleat_depth().si()).powi(2)
-        }
-        Construction::Braided(_) => PI * r * r,
-    }
-}
-
 /// The drawn polyline of one fibre in space tends to the fibre's stretched length with the square of the spacing.
 pub(crate) fn fibre_length() -> Check {
     Claim {

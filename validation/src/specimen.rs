@@ -53,6 +53,17 @@ pub(crate) fn pressure_only() -> Result<Vec<(&'static str, Muscle, f64)>, Troubl
         ("pleated, l0/R = 200", pleated(Length::m(2.0), Length::mm(10.0), Some(60))?, 0.4),
         ("misaligned by 6 deg", ppam()?.with(Parameter::Misalignment, 6.0_f64.to_radians())?, 0.2),
         ("pleats 3 mm deep", ppam()?.with(Parameter::PleatDepth, 0.003)?, 0.15),
+        ("lobes", ppam()?.with(Parameter::ClothCircumference, 0.33)?, 0.2),
+        ("lobes that touch", ppam()?.with(Parameter::ClothCircumference, 0.52)?, 0.15),
+        ("lobes, nearly open", ppam()?.with(Parameter::ClothCircumference, 0.3)?, 0.28),
+        ("lobes, n = 6", pleated(length, radius, Some(6))?.with(Parameter::ClothCircumference, 0.26)?, 0.12),
+        (
+            "lobes of misaligned fibres",
+            ppam()?.with(Parameter::ClothCircumference, 0.3)?.with(Parameter::Misalignment, 0.08)?,
+            0.22,
+        ),
+        ("braid, gas on the inner wall", braid_25(Length::mm(120.0))?.with(Parameter::GasWall, 0.0015)?, 0.15),
+        ("cylinder, gas on the inner wall", cylinder_25(Length::mm(250.0))?.with(Parameter::GasWall, 0.002)?, 0.2),
         ("braid, 250 mm", braid_25(Length::mm(250.0))?, 0.2),
         ("braid, 30 mm", braid_25(Length::mm(30.0))?, 0.1),
         ("braid, l0/r0 = 90", braid_25(Length::m(0.9))?, 0.25),
@@ -79,6 +90,20 @@ pub(crate) fn storing() -> Result<Vec<(&'static str, Muscle, f64)>, Trouble> {
         ("pleated, elastic, stretched", ppam()?.with_fibre(fibre(3e3)?)?, -0.01),
         ("pleated, taut cloth", ppam()?.with_unfolding(cloth(36.0)?), 0.2),
         ("pleated, everything", everything, 0.15),
+        (
+            "lobes, elastic, taut cloth",
+            ppam()?
+                .with(Parameter::ClothCircumference, 0.31)?
+                .with_fibre(fibre(6e3)?)?
+                .with_unfolding(cloth(38.0)?),
+            0.15,
+        ),
+        ("cylinder, bladder", cylinder_25(Length::mm(250.0))?.with_bladder(rubber)?, 0.15),
+        (
+            "braid, bladder, gas on its inner face",
+            braid_25(length)?.with_bladder(rubber)?.with_gas_wall(None)?,
+            0.12,
+        ),
         ("braid, elastic", counted(length, fitting)?.with_fibre(fibre(200.0)?)?, 0.12),
         ("braid, bladder", braid_25(Length::mm(250.0))?.with_bladder(rubber)?, 0.2),
         ("braid, bladder, short", braid_25(Length::mm(50.0))?.with_bladder(rubber)?, 0.1),

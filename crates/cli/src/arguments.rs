@@ -1,10 +1,12 @@
 //! What several commands take: the muscle, quantities with units, the method.
 
+use bulge_effects::{Catalogue, Effect};
 use bulge_fibre::{Approach, FibreError};
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Muscle, PRESETS, Pressure, preset, read, units};
 use clap::ValueEnum;
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::failure::Failure;
 
@@ -58,4 +60,20 @@ pub(crate) fn about(muscle: &Muscle, pressure: Pressure) -> impl Fn(FibreError) 
         pressure: pressure.clone(),
         source: Box::new(source),
     }
+}
+
+/// The built-in effects, and the user's own if there is a file of them.
+pub(crate) fn catalogue(own: Option<&Path>) -> Result<Catalogue, Failure> {
+    let mut catalogue = Catalogue::builtin();
+    if let Some(path) = own {
+        for effect in bulge_effects::user::read(path)? {
+            catalogue = catalogue.with(effect)?;
+        }
+    }
+    Ok(catalogue)
+}
+
+/// The effects of a list of names, in their order.
+pub(crate) fn effects(catalogue: &Catalogue, names: &[String]) -> Result<Vec<Arc<dyn Effect>>, Failure> {
+    names.iter().map(|name| Ok(Arc::clone(catalogue.find(name.trim())?))).collect()
 }

@@ -1,6 +1,11 @@
 //! What went wrong, as one message and an exit status.
 
+use bulge_effects::CatalogueError;
+use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
+use bulge_inference::InferenceError;
+use bulge_measurements::MeasurementError;
+use bulge_model::ModelError;
 use bulge_muscles::{FileError, PresetError, UnitError};
 use bulge_report::PlotError;
 use bulge_vtk::VtkError;
@@ -25,6 +30,14 @@ pub(crate) enum Failure {
     Vtk(Box<VtkError>),
     #[error("cannot draw the plot: {0}")]
     Plot(Box<PlotError>),
+    #[error("{0}")]
+    Effect(Box<CatalogueError>),
+    #[error("{0}")]
+    EffectFile(Box<EffectFileError>),
+    #[error("{0}")]
+    Measurement(Box<MeasurementError>),
+    #[error("{0}")]
+    Inference(Box<InferenceError>),
     #[error("the result cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
     #[error("{failed} of {all} checks failed:\n{table}")]
@@ -45,9 +58,21 @@ impl Failure {
                 | FibreError::NothingToShoot => 1,
                 _ => 3,
             },
+            Self::Inference(error) => match error.as_ref() {
+                InferenceError::Model { source, .. } => match source.as_ref() {
+                    ModelError::NoEquilibrium { source, .. } => equilibrium_status(source),
+                    _ => 1,
+                },
+                _ => 1,
+            },
             _ => 1,
         }
     }
+}
+
+/// Data that ask for an equilibrium that doesn't exist are wrong input; a search that failed is not.
+fn equilibrium_status(error: &FibreError) -> u8 {
+    if matches!(error, FibreError::NotConverged { .. }) { 4 } else { 1 }
 }
 
 /// Errors of the libraries become failures behind a box: they carry much, and are rare.
@@ -61,4 +86,13 @@ macro_rules! boxed {
     };
 }
 
-boxed!(File(FileError), Preset(PresetError), Vtk(VtkError), Plot(PlotError));
+boxed!(
+    File(FileError),
+    Preset(PresetError),
+    Vtk(VtkError),
+    Plot(PlotError),
+    Effect(CatalogueError),
+    EffectFile(EffectFileError),
+    Measurement(MeasurementError),
+    Inference(InferenceError)
+);

@@ -4,6 +4,10 @@
 //!
 //! - [`muscles`] says what a muscle is; units, TOML files, presets,
 //! - [`fibre`] how it balances; shape, force, volume, derivatives,
+//! - [`measurements`] what was seen; CSV and Parquet files, sweeps, a quality gate,
+//! - [`effects`] what acts; the catalogue of physical effects and force laws,
+//! - [`model`] what it predicts along a measured history,
+//! - [`inference`] whether that matches; fits and the ladder of errors,
 //! - [`vtk`] what it looks like in ParaView,
 //! - [`report`] draws plots,
 //! - [`numerics`] has the integrator, elliptic integrals, dual numbers.
@@ -21,7 +25,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub use bulge_effects as effects;
 pub use bulge_fibre as fibre;
+pub use bulge_inference as inference;
+pub use bulge_measurements as measurements;
+pub use bulge_model as model;
 pub use bulge_muscles as muscles;
 pub use bulge_numerics as numerics;
 pub use bulge_report as report;

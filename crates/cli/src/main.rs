@@ -2,8 +2,10 @@
 
 mod arguments;
 mod characteristics;
+mod compare;
 mod curve;
 mod demo;
+mod effects;
 mod failure;
 mod files;
 mod muscle;
@@ -39,6 +41,10 @@ enum Command {
     Shape(shape::ShapeCommand),
     /// Isobaric characteristics: force and volume over the contraction
     Curve(curve::CurveCommand),
+    /// Model against measurement: where it fails, and how the error falls as effects are added
+    Compare(compare::CompareCommand),
+    /// The catalogue of physical effects, and of the papers' force laws
+    Effects(effects::EffectsCommand),
     /// Shipped muscles: list them, or print one as a file to start from
     Muscle(muscle::MuscleCommand),
     /// The verification tables: every check, its error, its tolerance
@@ -63,6 +69,8 @@ fn main() -> ExitCode {
         Command::Demo(command) => command.run(),
         Command::Shape(command) => command.run(),
         Command::Curve(command) => command.run(),
+        Command::Compare(command) => command.run(),
+        Command::Effects(command) => command.run(),
         Command::Muscle(command) => command.run(),
         Command::Validate(command) => command.run(),
     };

@@ -174,7 +174,8 @@ impl CardDocument {
     #[must_use]
     pub fn of(effect: &dyn Effect) -> Self {
         let card = effect.card();
-        let twins = card.twins.iter().map(|t| TwinDocument { name: t.name.to_owned(), how: t.how.to_owned() });
+        let twins =
+            card.twins.iter().map(|t| TwinDocument { name: t.name.to_owned(), how: t.how.to_owned() });
         let Signature { pressure, parity, shape } = card.signature;
         Self {
             name: card.name.to_owned(),
@@ -222,7 +223,8 @@ impl ParameterDocument {
     /// What it is, its range and the rest in one sentence.
     fn says(&self) -> String {
         let mut says = self.about.clone();
-        let times = self.multiple_of.map_or(String::new(), |of| format!(" times the {}", of.replace('_', " ")));
+        let times =
+            self.multiple_of.map_or(String::new(), |of| format!(" times the {}", of.replace('_', " ")));
         says += &format!(": {} to {}{times}", digits(self.low), digits(self.high));
         if self.typical.to_bits() != self.off.to_bits() {
             says += &format!(", usually {}", digits(self.typical));
@@ -297,7 +299,11 @@ fn shortened(text: &str, room: usize) -> String {
 /// A number with six significant digits at most.
 fn digits(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    if rounded != 0.0 && !(1e-4..1e7).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
+    if rounded != 0.0 && !(1e-4..1e7).contains(&rounded.abs()) {
+        format!("{rounded:e}")
+    } else {
+        rounded.to_string()
+    }
 }
 
 /// Text in lines of [`WIDTH`].

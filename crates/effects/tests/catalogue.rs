@@ -184,7 +184,9 @@ fn the_promised_names_are_there_and_every_name_is_well_formed() {
     let missing: Vec<_> = NAMES.iter().filter(|name| !names.contains(*name)).collect();
     assert!(missing.is_empty(), "missing: {missing:?}");
     for name in names {
-        let is_word = |word: &str| !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
+        let is_word = |word: &str| {
+            !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit())
+        };
         assert!(name.split('-').all(is_word), "{name}");
     }
 }
@@ -215,7 +217,11 @@ fn no_text_is_empty_or_ragged() {
         let parameters = effect.parameters();
         texts.extend(parameters.iter().flat_map(|p| [p.name, p.key, p.unit, p.about]));
         for text in texts {
-            assert!(!text.is_empty() && text.trim() == text && !text.contains('\n'), "{}: {text:?}", card.name);
+            assert!(
+                !text.is_empty() && text.trim() == text && !text.contains('\n'),
+                "{}: {text:?}",
+                card.name
+            );
             assert!(text.is_ascii(), "{}: {text:?}", card.name);
         }
         for text in [card.about, card.title] {
@@ -232,7 +238,11 @@ fn parameters_are_in_order() {
         let parameters = effect.parameters();
         let keys: BTreeSet<&str> = parameters.iter().map(|card| card.key).collect();
         let names: BTreeSet<&str> = parameters.iter().map(|card| card.name).collect();
-        assert_eq!((keys.len(), names.len()), (parameters.len(), parameters.len()), "{name}: keys and names are unique");
+        assert_eq!(
+            (keys.len(), names.len()),
+            (parameters.len(), parameters.len()),
+            "{name}: keys and names are unique"
+        );
         for card in &parameters {
             let at = format!("{name}.{}", card.name);
             let within = |value: f64| value >= card.low && value <= card.high;
@@ -304,37 +314,47 @@ fn derivatives_agree_with_differences() {
         let effect = effect.as_ref();
         assert!(effect.parameters().len() <= PRESSURE, "{}", effect.card().name);
         for muscle in muscles(effect) {
-            let setting = Setting::of(&muscle);
             let cards = cards(effect, &muscle);
-            for _ in 0..4 {
-                let sweep = random.sweep(9);
-                let theta: Vec<f64> = cards.iter().map(|card| random.inside(card)).collect();
-                let lanes: Vec<Jet> = theta.iter().enumerate().map(|(i, v)| Jet::variable(*v, i)).collect();
-                let moved = [PRESSURE, CONTRACTION].map(|lane| Jet::variable(0.0, lane));
-                let exact = run(effect, &setting, &lanes, &sweep, moved);
-                let at = |lane: usize, h: f64| -> Vec<f64> {
-                    let theta = theta.iter().enumerate().map(|(i, v)| Jet::from(if i == lane { v + h } else { *v }));
-                    let moved = [PRESSURE, CONTRACTION].map(|l| Jet::from(if l == lane { h } else { 0.0 }));
-                    let out = run(effect, &setting, &theta.collect::<Vec<_>>(), &sweep, moved);
-                    out.into_iter().map(Jet::value).collect()
+            for trial in 0..8 {
+                // Where the effect is off too: a screen asks for the derivative by an amplitude of 0.
+                let value = |card: &ParameterCard<'_>| {
+                    if trial % 4 > 0 { random.inside(card) } else { card.off.max(card.low) }
                 };
-                let own = cards.iter().zip(&theta).map(|(card, value)| {
-                    if card.logarithmic { value.abs() } else { value.abs().min(card.high - card.low) }
-                });
-                for (lane, scale) in own.enumerate().chain([(PRESSURE, 1e5), (CONTRACTION, 0.1)]) {
-                    let found = difference(|h| at(lane, h), 1e-4 * scale);
-                    for (i, (exact, found)) in exact.iter().zip(found).enumerate() {
-                        let derivative = exact.gradient()[lane];
-                        let size = derivative.abs() + 1e-4 * exact.value().abs() / scale;
-                        assert!(
-                            (derivative - found).abs() <= 1e-6 * size,
-                            "{} on {}, output {i}, lane {lane}: {derivative} against {found} at {theta:?}",
-                            effect.card().name,
-                            muscle.name()
-                        );
-                    }
-                }
+                let theta: Vec<f64> = cards.iter().map(value).collect();
+                check_derivatives(effect, &muscle, &theta, &random.sweep(9));
             }
+        }
+    }
+}
+
+/// Derivatives of all outputs by every parameter, the pressure and the contraction.
+fn check_derivatives(effect: &dyn Effect, muscle: &Muscle, theta: &[f64], sweep: &[Moment]) {
+    let setting = Setting::of(muscle);
+    let lanes: Vec<Jet> = theta.iter().enumerate().map(|(i, v)| Jet::variable(*v, i)).collect();
+    let moved = [PRESSURE, CONTRACTION].map(|lane| Jet::variable(0.0, lane));
+    let exact = run(effect, &setting, &lanes, sweep, moved);
+    let at = |lane: usize, h: f64| -> Vec<f64> {
+        let at = |l: usize, value: f64| Jet::from(if l == lane { value + h } else { value });
+        let theta: Vec<Jet> = theta.iter().enumerate().map(|(i, value)| at(i, *value)).collect();
+        let moved = [PRESSURE, CONTRACTION].map(|l| at(l, 0.0));
+        run(effect, &setting, &theta, sweep, moved).into_iter().map(Jet::value).collect()
+    };
+    let scales = cards(effect, muscle)
+        .into_iter()
+        .zip(theta)
+        .map(|(card, value)| if card.logarithmic { value.abs() } else { 0.1 * (card.high - card.low) });
+    for (lane, scale) in scales.enumerate().chain([(PRESSURE, 1e5), (CONTRACTION, 0.1)]) {
+        let differences = difference(|h| at(lane, h), 1e-4 * scale);
+        for (i, (exact, difference)) in exact.iter().zip(differences).enumerate() {
+            let derivative = exact.gradient()[lane];
+            // The values' rounding errors over the step are far below the second part.
+            let size = derivative.abs() + 1e-4 * exact.value().abs() / scale;
+            assert!(
+                (derivative - difference).abs() <= 1e-6 * size,
+                "{} on {}, output {i}, lane {lane}: {derivative} against {difference} at {theta:?}",
+                effect.card().name,
+                muscle.name()
+            );
         }
     }
 }
@@ -353,12 +373,23 @@ fn moves_agree_with_differences() {
                 // A muscle may be unable to have the effect: no wall, no countable fibres.
                 let Ok(found) = effect.reshape(&muscle, &theta) else { continue };
                 reshaped += usize::from(found.muscle != muscle);
-                assert_eq!(is_shape && !cards.is_empty(), !found.moves.is_empty(), "{name} on {}", muscle.name());
+                assert_eq!(
+                    is_shape && !cards.is_empty(),
+                    !found.moves.is_empty(),
+                    "{name} on {}",
+                    muscle.name()
+                );
                 for (i, parameter, derivative) in found.moves {
                     let get = |h: f64| {
                         let mut moved = theta.clone();
                         moved[i] += h;
-                        effect.reshape(&muscle, &moved).unwrap().muscle.get(parameter).map(|value| vec![value]).unwrap()
+                        effect
+                            .reshape(&muscle, &moved)
+                            .unwrap()
+                            .muscle
+                            .get(parameter)
+                            .map(|value| vec![value])
+                            .unwrap()
                     };
                     let difference = difference(get, 1e-4 * theta[i].abs())[0];
                     let error = (difference / derivative - 1.0).abs();
@@ -411,7 +442,8 @@ fn the_overview_has_a_line_for_each_effect() {
     }
     for effect in effects() {
         let card = effect.card();
-        let lines: Vec<_> = list.lines().filter(|line| line.split_whitespace().next() == Some(card.name)).collect();
+        let lines: Vec<_> =
+            list.lines().filter(|line| line.split_whitespace().next() == Some(card.name)).collect();
         let [line] = lines[..] else { panic!("{}: {lines:?}", card.name) };
         assert!(line.contains(card.title), "{line}");
         let indent = line.len() - line.trim_start().len();

@@ -145,7 +145,7 @@ impl Problem {
         let seeded = self.seeded::<N>(|variable| seeds.places[variable.index()]);
         let net = self.net_of(&seeded);
         let from = ask.start.map(|start| start.towards(self, ask.contraction));
-        let outcome = self.outcome(self.method(ask.approach)?, ask.contraction, &net, from)?;
+        let outcome = self.outcome_of_many(self.method(ask.approach)?, ask.contraction, &net, from)?;
         let with_contraction = |total: &Total<N>| {
             let mut gradient = total.by_parameter;
             gradient[0] = total.by_contraction;

@@ -5,11 +5,12 @@ use bulge_numerics::{Dual, Real};
 use crate::FibreError;
 use crate::closed_form::{self, ClosedForm, Graded};
 use crate::cylinder;
+use crate::groups::Groups;
 use crate::meridian::{COS, SIN, TENSION};
 use crate::net::Net;
 use crate::problem::Problem;
 use crate::shape::{Convergence, Method};
-use crate::shooting::{self, Total, Unknowns};
+use crate::shooting::{self, EXACT, Ending, Total, USUAL, Unknowns};
 
 /// The group of [`FibreError::TooSoft`] beyond which straight fibres balloon: `F(phi_R|m)/(L y) = 1 + kappa/y^2` has a solution in y up to
 /// kappa L^2 = F^2/4, and F is at most 1.854 where the force vanishes (m = 1/2).
@@ -100,6 +101,43 @@ impl Problem {
         net: &Net<Dual<N>>,
         from: Option<Unknowns>,
     ) -> Result<Outcome<N>, FibreError> {
+        self.judged(contraction, || match method {
+            _ if self.is_cylinder() => by_cylinder(net, contraction),
+            Method::ClosedForm => by_closed_form(net, contraction),
+            Method::Shooting => by_shooting(&self.net, net, contraction, from, USUAL),
+        })
+    }
+
+    /// The same for many variables.
+    pub(crate) fn outcome_of_many<const N: usize>(
+        &self,
+        method: Method,
+        contraction: f64,
+        net: &Net<Dual<N>>,
+        from: Option<Unknowns>,
+    ) -> Result<Outcome<N>, FibreError> {
+        self.judged(contraction, || match method {
+            _ if self.is_cylinder() => by_cylinder(net, contraction),
+            Method::ClosedForm => by_closed_form(net, contraction),
+            Method::Shooting => {
+                let groups = Groups::of(net);
+                let plain = &self.net;
+                match groups.count() {
+                    ..=2 => by_groups::<N, 4>(plain, net, &groups, contraction, from),
+                    ..=4 => by_groups::<N, 6>(plain, net, &groups, contraction, from),
+                    ..=6 => by_groups::<N, 8>(plain, net, &groups, contraction, from),
+                    _ => by_groups::<N, 12>(plain, net, &groups, contraction, from),
+                }
+            }
+        })
+    }
+
+    /// What no method can answer, and what an answer that can't be one means.
+    fn judged<const N: usize>(
+        &self,
+        contraction: f64,
+        outcome: impl FnOnce() -> Result<Outcome<N>, FibreError>,
+    ) -> Result<Outcome<N>, FibreError> {
         if !contraction.is_finite() {
             return Err(FibreError::NotFinite { what: "contraction", value: contraction });
         }
@@ -109,13 +147,8 @@ impl Problem {
         if self.is_singular() && contraction <= 0.0 {
             return Err(FibreError::TooLong { contraction, limit: 0.0 });
         }
-        let outcome = match method {
-            _ if self.is_cylinder() => by_cylinder(net, contraction),
-            Method::ClosedForm => by_closed_form(net, contraction),
-            Method::Shooting => by_shooting(&self.net, net, contraction, from),
-        };
         let group = self.elastic_group();
-        match outcome {
+        match outcome() {
             Err(FibreError::NotConverged { .. }) if group > 0.7 * BALLOONING => {
                 Err(FibreError::TooSoft { group, limit: BALLOONING })
             }
@@ -219,8 +252,9 @@ fn by_shooting<const N: usize>(
     net: &Net<Dual<N>>,
     contraction: f64,
     from: Option<Unknowns>,
+    ending: Ending,
 ) -> Result<Outcome<N>, FibreError> {
-    let (unknowns, effort) = shooting::solve(plain, contraction, from)?;
+    let (unknowns, effort) = shooting::solve(plain, contraction, from, ending)?;
     let found = shooting::finish(net, contraction, unknowns)?;
     let run = &found.trajectory;
     let volume = Total {
@@ -244,5 +278,27 @@ fn by_shooting<const N: usize>(
         },
         solution: Solution::Shooting(found.unknowns),
         follow: Some(found.follow),
+    })
+}
+
+/// By shooting with the derivatives by M - 2 groups, from which those by N - 2 variables follow.
+fn by_groups<const N: usize, const M: usize>(
+    plain: &Net<f64>,
+    net: &Net<Dual<N>>,
+    groups: &Groups<N>,
+    contraction: f64,
+    from: Option<Unknowns>,
+) -> Result<Outcome<N>, FibreError> {
+    let found = by_shooting::<M>(plain, &groups.net(net), contraction, from, EXACT)?;
+    Ok(Outcome {
+        force: groups.expand(&found.force),
+        volume: groups.expand(&found.volume),
+        mid_radius: groups.expand(&found.mid_radius),
+        tension: found.tension,
+        end_slope: found.end_slope,
+        method: found.method,
+        convergence: found.convergence,
+        solution: found.solution,
+        follow: found.follow.map(|unknowns| unknowns.map(|total| groups.expand(&total))),
     })
 }

@@ -39,11 +39,27 @@ const STRAIGHT: f64 = 1e-9;
 const FIRST_INTEGRAL: f64 = 1e-9;
 /// Largest step after which a solution is one; [`finish`] corrects the values by it to second order.
 const ACCEPTED: f64 = 1e-6;
-/// After a step of this size, with a trajectory integrated to [`LAST_TOLERANCE`], the next one is usually below [`DERIVATIVES`]: [`finish`],
-/// which has to integrate once anyway, takes it (a third of the time of a braid saved), and one more where it is not.
-const LAST_STEP: f64 = 1e-4;
-/// Looser than this, the next step would be the error of the integration.
-const LAST_TOLERANCE: f64 = 1e-7;
+/// When Newton's method leaves the rest to [`finish`], which has to integrate once anyway and takes the next step itself (a third of the time of
+/// a braid saved); it takes one more where that is not below [`DERIVATIVES`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ending {
+    /// After a step of this size the next one, by its square, is usually small enough.
+    step: f64,
+    /// If the trajectory was integrated to this tolerance at least: else the next step is the error of the integration.
+    tolerance: f64,
+    /// Tolerance to begin with from a start that was given.
+    first: f64,
+    /// Tolerance of what is expected to be the last iteration, at most.
+    last_but_one: f64,
+}
+
+/// Where a second last integration costs as much as the iteration that it saves.
+pub(crate) const USUAL: Ending = Ending { step: 1e-4, tolerance: 1e-7, first: 1e-4, last_but_one: 1e-5 };
+/// Where the last integration carries many derivatives and must not be repeated; and a start that was given lies near.
+pub(crate) const EXACT: Ending =
+    Ending { step: 3e-5, tolerance: 2.5e-10, first: 2.5e-10, last_but_one: 2.5e-10 };
+/// Step after which the next one is expected to be the last.
+const LAST_BUT_ONE: f64 = 1e-2;
 
 /// Which side of the fitting's radius the middle lies on, and the two logarithms.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -163,15 +179,18 @@ pub(crate) fn solve(
     net: &Net<f64>,
     contraction: f64,
     from: Option<Unknowns>,
+    ending: Ending,
 ) -> Result<(Unknowns, Effort), FibreError> {
     let mut effort = Effort::default();
     let contraction = beside_straight(net, contraction);
     if let Some(start) = from
-        && let Ok(found) = newton(net, contraction, start, &mut effort)
+        && let Ok(found) = newton(net, contraction, start, (ending, ending.first), &mut effort)
     {
         return Ok((found, effort));
     }
-    let direct = start(net, contraction).and_then(|start| newton(net, contraction, start, &mut effort).ok());
+    let cold = (ending, USUAL.first);
+    let direct =
+        start(net, contraction).and_then(|start| newton(net, contraction, start, cold, &mut effort).ok());
     let found = match direct {
         Some(found) => Ok(found),
         None if net.cloth.is_some() || net.bladder.is_some() => stiffening(net, contraction, &mut effort)
@@ -192,18 +211,22 @@ fn beside_straight(net: &Net<f64>, contraction: f64) -> f64 {
     }
 }
 
-/// Newton's method with backtracking from `start`.
+/// On the way to the asked equilibrium.
+const ON_THE_WAY: (Ending, f64) = (USUAL, USUAL.first);
+
+/// Newton's method with backtracking from `start`, integrating to the tolerance `first` to begin with.
 fn newton(
     net: &Net<f64>,
     contraction: f64,
     start: Unknowns,
+    (ending, first): (Ending, f64),
     effort: &mut Effort,
 ) -> Result<Unknowns, FibreError> {
     let lifted = net.lift::<2>();
     let mut at = start;
     // Near the straight meridian the shortening that counts is a small difference.
     let excess = straight_contraction(net).map_or(1.0, |straight| (contraction - straight).abs());
-    let mut tolerance = (1e-2 * excess).clamp(TOLERANCE, 1e-4);
+    let mut tolerance = (1e-2 * excess).clamp(TOLERANCE, first);
     let mut previous = f64::INFINITY;
     let mut last_step = [0.0, 0.0];
     let mut halvings = 0;
@@ -242,11 +265,12 @@ fn newton(
         if !moved.is_finite() {
             break;
         }
-        if moved < LAST_STEP && tolerance <= LAST_TOLERANCE {
+        if moved < ending.step && tolerance <= ending.tolerance {
             return Ok(at);
         }
         // The next residual will be about the square of this step: no point in integrating it more exactly than that.
-        tolerance = (1e-2 * moved * moved).clamp(TOLERANCE, 1e-5);
+        let most = if moved < LAST_BUT_ONE { ending.last_but_one } else { 1e-5 };
+        tolerance = (1e-2 * moved * moved).clamp(TOLERANCE, most);
     }
     Err(FibreError::NotConverged { contraction, residual: previous, iterations: MAX_ITERATIONS })
 }
@@ -262,7 +286,7 @@ fn stiffening(net: &Net<f64>, contraction: f64, effort: &mut Effort) -> Result<U
     let mut at = loop {
         let soft = net.with_walls(part);
         if let Some(start) = start(&soft, contraction)
-            && let Ok(found) = newton(&soft, contraction, start, effort)
+            && let Ok(found) = newton(&soft, contraction, start, ON_THE_WAY, effort)
         {
             break found;
         }
@@ -277,7 +301,7 @@ fn stiffening(net: &Net<f64>, contraction: f64, effort: &mut Effort) -> Result<U
         let next = (part * grow).min(1.0);
         let jump = (next / part).ln();
         let guess = Unknowns { logs: [at.logs[0] + rate[0] * jump, at.logs[1] + rate[1] * jump], ..at };
-        if let Ok(found) = newton(&net.with_walls(next), contraction, guess, effort) {
+        if let Ok(found) = newton(&net.with_walls(next), contraction, guess, ON_THE_WAY, effort) {
             rate = [(found.logs[0] - at.logs[0]) / jump, (found.logs[1] - at.logs[1]) / jump];
             (at, part) = (found, next);
             grow = (1.0 + (grow - 1.0) * 1.5).min(10.0);
@@ -301,7 +325,7 @@ fn continuation(net: &Net<f64>, contraction: f64, effort: &mut Effort) -> Result
     let mut at = loop {
         let there = straight + part * whole;
         if let Some(start) = start(net, there)
-            && let Ok(found) = newton(net, there, start, effort)
+            && let Ok(found) = newton(net, there, start, ON_THE_WAY, effort)
         {
             break found;
         }
@@ -317,7 +341,7 @@ fn continuation(net: &Net<f64>, contraction: f64, effort: &mut Effort) -> Result
         let next = (part * grow).min(1.0);
         let jump = (next / part).ln();
         let guess = Unknowns { logs: [at.logs[0] + rate[0] * jump, at.logs[1] + rate[1] * jump], ..at };
-        match newton(net, straight + next * whole, guess, effort) {
+        match newton(net, straight + next * whole, guess, ON_THE_WAY, effort) {
             Ok(found) => {
                 rate = [(found.logs[0] - at.logs[0]) / jump, (found.logs[1] - at.logs[1]) / jump];
                 (at, part) = (found, next);
@@ -465,7 +489,7 @@ mod tests {
         for net in [braid(3.0, 25.0), braid(6.0, 25.0), braid(10.0, 45.0)] {
             let limit = longest(&net);
             let force = |contraction: f64| {
-                let (unknowns, _) = solve(&net, contraction, None)?;
+                let (unknowns, _) = solve(&net, contraction, None, USUAL)?;
                 finish::<2>(&net.lift(), contraction, unknowns).map(|found| found.force.value)
             };
             let forces = [1e-2, 1e-3, 1e-4].map(|part| force(limit * (1.0 - part)).unwrap());
@@ -481,7 +505,7 @@ mod tests {
     fn a_long_braid_is_two_ends_and_a_cylinder() {
         let at = |length: f64| {
             let net = braid(length, 50.0);
-            let (unknowns, _) = solve(&net, 0.05, None).unwrap();
+            let (unknowns, _) = solve(&net, 0.05, None, USUAL).unwrap();
             let found = finish::<2>(&net.lift(), 0.05, unknowns).unwrap();
             (unknowns.logs[1], found.trajectory.first_integral)
         };
@@ -494,9 +518,9 @@ mod tests {
     #[test]
     fn the_start_does_not_matter() {
         let net = braid(25.0, 25.0);
-        let (near, _) = solve(&net, 0.19, None).unwrap();
-        let (cold, effort) = solve(&net, 0.2, None).unwrap();
-        let (warm, _) = solve(&net, 0.2, Some(near)).unwrap();
+        let (near, _) = solve(&net, 0.19, None, USUAL).unwrap();
+        let (cold, effort) = solve(&net, 0.2, None, USUAL).unwrap();
+        let (warm, _) = solve(&net, 0.2, Some(near), USUAL).unwrap();
         let force = |unknowns| finish::<2>(&net.lift(), 0.2, unknowns).unwrap().force.value;
         assert!((force(cold) / force(warm) - 1.0).abs() < 1e-11);
         assert!(effort.iterations < 8);

@@ -93,7 +93,8 @@ impl Problem {
     pub fn gradient(&self, contraction: f64, approach: Approach) -> Result<Gradient, FibreError> {
         const N: usize = 2 + Variable::COUNT;
         let seeded = self.seeded::<N>(|variable| 2 + variable.index());
-        let outcome = self.outcome(self.method(approach)?, contraction, &self.net_of(&seeded), None)?;
+        let outcome =
+            self.outcome_of_many(self.method(approach)?, contraction, &self.net_of(&seeded), None)?;
         let [force, volume] = physical(&outcome, seeded);
         let by_variable = Variable::all()
             .filter(|variable| match variable {

@@ -100,7 +100,7 @@ pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Compar
         base: options.law.as_ref().map_or("equilibrium", |(law, _, _)| law.name).to_owned(),
         data: analysis.summary(),
         quality: data
-            .quality(&QualityOptions { length_m: Some(muscle.length().si()), ..QualityOptions::default() })
+            .quality(&QualityOptions { l0_m: Some(muscle.length().si()), ..QualityOptions::default() })
             .findings,
         noise_floor: floor,
         by: residuals::breakdowns(&analysis, forces),

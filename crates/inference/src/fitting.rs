@@ -173,7 +173,7 @@ fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimu
     })
 }
 
-const fn reason(reason: Reason) -> &'static str {
+fn reason(reason: Reason) -> &'static str {
     if reason.is_converged() {
         "residuals are orthogonal to what the numbers can change"
     } else {

@@ -12,7 +12,7 @@ use crate::comparison::NoiseFloor;
 use crate::levels::sweep_of;
 
 /// Degrees of freedom from which repeats are believed.
-const ENOUGH: usize = 8;
+const ENOUGH: f64 = 8.0;
 /// Rows on which the smooth surface is fitted; more would not make it better.
 const MOST_ROWS: usize = 20_000;
 
@@ -29,7 +29,7 @@ pub(crate) fn noise_floor(
             sd_n: error.sd_n,
             source: "repeats",
             says: format!(
-                "scatter of repeated rows about their means, {} degrees of freedom",
+                "scatter of repeated rows about their means, {:.0} degrees of freedom",
                 error.degrees_of_freedom
             ),
         });

@@ -46,7 +46,7 @@ pub(crate) fn direction(text: &str) -> Result<i8, CellError> {
 
 /// A direction written as a number.
 pub(crate) fn sign(value: f64) -> Option<i8> {
-    [(1.0, 1), (-1.0, -1), (0.0, 0)].into_iter().find(|(known, _)| *known == value).map(|(_, sign)| sign)
+    [-1_i8, 0, 1].into_iter().find(|sign| (f64::from(*sign) - value).abs() == 0.0)
 }
 
 /// Why a text isn't a number.

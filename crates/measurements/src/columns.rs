@@ -217,7 +217,7 @@ impl Columns {
         }
         // A file without specimens is about specimen "1".
         if self.specimen.is_some() || other.specimen.is_some() {
-            let ones = |rows| Labels::from_iter(std::iter::repeat_n("1", rows));
+            let ones = |rows| std::iter::repeat_n("1", rows).collect::<Labels>();
             let rows = self.len();
             let own = self.specimen.get_or_insert_with(|| ones(rows));
             own.append(other.specimen.as_ref().unwrap_or(&ones(other.len())));

@@ -96,7 +96,7 @@ fn read_row<'a>(
 /// UTF-8 without a byte order mark and without NUL.
 fn checked_text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, MeasurementError> {
     let file_name = || file.to_owned();
-    let line_at = |at: usize| bytes[..at].iter().filter(|byte| **byte == b'\n').count() + 1;
+    let line_at = |at: usize| bytes[..at].split(|byte| *byte == b'\n').count();
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err(MeasurementError::Utf16 { file: file_name() });
     }
@@ -140,12 +140,11 @@ fn split<'a>(line: &'a str, separator: u8, fields: &mut Vec<Cow<'a, str>>) -> Op
     let mut rest = line;
     loop {
         let start = rest.trim_start_matches(|c: char| c.is_whitespace() && c != char::from(separator));
-        let (field, after) = match start.strip_prefix('"') {
-            Some(inside) => unquoted(inside)?,
-            None => {
-                let end = start.bytes().position(|byte| byte == separator).unwrap_or(start.len());
-                (Cow::Borrowed(start[..end].trim()), &start[end..])
-            }
+        let (field, after) = if let Some(inside) = start.strip_prefix('"') {
+            unquoted(inside)?
+        } else {
+            let end = start.bytes().position(|byte| byte == separator).unwrap_or(start.len());
+            (Cow::Borrowed(start[..end].trim()), &start[end..])
         };
         fields.push(field);
         let after = after.trim_start_matches(|c: char| c.is_whitespace() && c != char::from(separator));

@@ -105,6 +105,6 @@ mod tests {
         assert_eq!(Scale::of::<Length>("um").map(|s| s.si(5.0)), Ok(5e-6));
         assert_eq!(Scale::of::<Ratio>("%").map(|s| s.si(7.0)), Ok(0.07));
         assert_eq!(Scale::of::<Pressure>("kPa").map(|s| s.si(35.0)), Ok(35_000.0));
-        assert_eq!(Scale::SI.si(0.1), 0.1);
+        assert_eq!(Scale::SI.si(0.1).to_bits(), 0.1_f64.to_bits());
     }
 }

@@ -142,7 +142,7 @@ pub enum MeasurementError {
         /// The heading.
         column: String,
         /// What is wrong with the unit.
-        problem: UnitError,
+        problem: Box<UnitError>,
         /// A heading as it should be.
         example: &'static str,
     },

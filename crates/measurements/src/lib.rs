@@ -12,8 +12,10 @@ mod error;
 mod heading;
 mod history;
 mod parquet_file;
+mod quality;
 mod quote;
 mod rate;
+mod repeats;
 mod resolution;
 #[cfg(test)]
 mod simulated;
@@ -26,5 +28,7 @@ pub use columns::{Columns, Labels, Trace};
 pub use data::{Data, Motion};
 pub use error::{CellError, MeasurementError};
 pub use history::History;
+pub use quality::{Finding, FindingKind, LineRange, Quality, QualityOptions, Severity};
+pub use repeats::{Offset, PureError, RepeatGroup, Repeats, Run};
 pub use source::SourceFile;
 pub use sweep::{Sweep, SweepKind};

@@ -281,7 +281,8 @@ impl Data {
         let mut states: HashMap<(u32, u64, u64, i8), Comparison> = HashMap::new();
         for (row, force) in self.force().iter().enumerate() {
             let direction = self.stated_direction().map_or(0, |stated| stated[row]);
-            let key = (self.specimen()[row], self.pressure()[row].to_bits(), motion[row].to_bits(), direction);
+            let key =
+                (self.specimen()[row], self.pressure()[row].to_bits(), motion[row].to_bits(), direction);
             states.entry(key).or_default().add(*force, 1.0);
         }
         let repeated = states.values().filter(|found| found.points > 1);
@@ -372,7 +373,8 @@ mod tests {
             let found = repeats.pure_error().unwrap();
             within(found, 2.0);
             // A one-sigma interval holds about two thirds: the degrees of freedom are neither too many nor too few.
-            outside += u32::from((found.sd_n / 2.0 - 1.0).abs() > 1.0 / (2.0 * found.degrees_of_freedom).sqrt());
+            outside +=
+                u32::from((found.sd_n / 2.0 - 1.0).abs() > 1.0 / (2.0 * found.degrees_of_freedom).sqrt());
             assert!(found.drift_n.abs() < 4.0 * 2.0 * (2.0 / 140.0_f64).sqrt(), "{found:?}");
         }
         assert!((5..=22).contains(&outside), "{outside} of 40 beyond one standard deviation");
@@ -408,7 +410,10 @@ mod tests {
     #[test]
     fn other_ways_are_no_repeats() {
         for (name, change) in [
-            ("pressure", (|columns, rows| columns.pressure_pa[rows].fill(2.2e5)) as fn(&mut Columns, Range<usize>)),
+            (
+                "pressure",
+                (|columns, rows| columns.pressure_pa[rows].fill(2.2e5)) as fn(&mut Columns, Range<usize>),
+            ),
             ("time", |columns, rows| {
                 let time = columns.time_s.as_mut().unwrap();
                 let start = time[rows.start];
@@ -445,8 +450,7 @@ mod tests {
         }
         let mut columns = Columns::new(p, Trace::Length(l), f);
         let found = Data::from_columns(columns.clone()).unwrap().repeats(0.3).pure_error().unwrap();
-        assert_eq!(found.degrees_of_freedom, 240.0);
-        assert_eq!(found.drift_n, 0.0);
+        assert_eq!([found.degrees_of_freedom, found.drift_n], [240.0, 0.0]);
         within(found, 1.5);
         // Nothing repeated, or repeated to the last digit: no estimate.
         columns.force_n.fill(1.0);

@@ -80,7 +80,9 @@ impl Source {
         let mut hash = Sha256::new();
         for (name, values) in columns.numbers() {
             hash.update(name);
-            values.iter().for_each(|value| hash.update(value.to_le_bytes()));
+            for value in values {
+                hash.update(value.to_le_bytes());
+            }
         }
         for labels in [&columns.sweep, &columns.specimen].into_iter().flatten() {
             labels.rows().iter().for_each(|row| hash.update(labels.names()[*row as usize].as_bytes()));

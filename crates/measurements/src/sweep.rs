@@ -87,8 +87,8 @@ fn runs(columns: &Columns, rows: &Range<usize>) -> Vec<Range<usize>> {
         let breaks = |i: &usize| time[*i] < time[i - 1] || time[*i] - time[i - 1] > pause || jumps.is_at(*i);
         starts.extend((rows.start + 1..rows.end).filter(breaks));
     }
-    let ends = starts[1..].to_vec().into_iter().chain([rows.end]);
-    starts.into_iter().zip(ends).map(|(start, end)| start..end).collect()
+    let ends = starts.iter().skip(1).copied().chain([rows.end]);
+    starts.iter().zip(ends).map(|(start, end)| *start..end).collect()
 }
 
 /// Jumps from the end of one isobaric run to the start of another.

@@ -1,7 +1,9 @@
 //! All 27 nonlinear regression problems of NIST's Statistical Reference Datasets, from both starts, against the certified values.
 //!
-//! Derivatives are exact ([`Dual`]). Digits are `-log10` of the largest relative error, at most 11, the digits of the certified values. `cargo test -p bulge-numerics
-//! --test nist -- --nocapture` prints the table.
+//! Derivatives are exact ([`Dual`]). Digits are `-log10` of the largest relative error, at most 11, the digits of the certified values.
+//! `cargo test -p bulge-numerics --test nist -- --nocapture` prints the table.
+
+#![expect(clippy::unwrap_used, reason = "a test whose reference cannot be read fails")]
 
 use bulge_numerics::least_squares::{Bounds, Minimum, Options, Residuals, minimise};
 use bulge_numerics::{Dual, Real};
@@ -156,38 +158,56 @@ fn compare(problem: &Problem, minimum: &Minimum) -> [f64; 3] {
     ]
 }
 
+/// Lanczos1 is exact data, rounded to 14 digits: its sum of squares, 1.4e-25, is made of residuals of 1e-13, of which numbers of 16 digits hold three.
+const NEARLY_EXACT: &str = "Lanczos1";
+
 #[test]
 fn all_problems_from_both_starts() {
     println!(
-        "{:<10}{:>6}{:>12}{:>11}{:>9}{:>7}{:>7}  end",
-        "problem", "start", "parameters", "deviation", "squares", "steps", "cond"
+        "{:<10}{:>5}{:>12}{:>12}{:>9}{:>7}{:>13}  end",
+        "problem", "start", "parameters", "deviations", "squares", "steps", "evaluations"
     );
+    let mut short = Vec::new();
     for name in NAMES {
         let problem = Problem::read(name);
         for (i, start) in problem.starts.iter().enumerate() {
-            let mut options = Options::default();
-            if let Ok(r) = std::env::var("RADIUS") {
-                options.first_radius = r.parse().unwrap();
-            }
-            let minimum = minimise(&problem, start, &Bounds::none(start.len()), &options).unwrap();
-            let found = compare(&problem, &minimum);
-            let c = &minimum.certificate;
+            let bounds = Bounds::none(start.len());
+            let minimum = minimise(&problem, start, &bounds, &Options::default()).unwrap();
+            let [theta, deviations, cost] = compare(&problem, &minimum);
+            let (steps, evaluations) = (minimum.iterations, minimum.evaluations + minimum.linearisations);
+            let certificate = &minimum.certificate;
             println!(
-                "{name:<10}{:>6}{:>12.1}{:>11.1}{:>9.1}{:>7}{:>5}{:>8.0e}  {:?} off {:.1e} cos {:.1e} step {:.1e} curv {:?} flat {}",
+                "{name:<10}{:>5}{theta:>12.1}{deviations:>12.1}{cost:>9.1}{steps:>7}{evaluations:>13}  {:?}",
                 i + 1,
-                found[0],
-                found[1],
-                found[2],
-                minimum.iterations,
-                minimum.evaluations,
-                c.condition,
-                c.reason,
-                c.relative_decrease.sqrt(),
-                c.gradient_cosine,
-                c.relative_step,
-                c.least_curvature,
-                c.flat.len()
+                certificate.reason
             );
+            let statistics = if name == NEARLY_EXACT { 2.0 } else { 7.0 };
+            let complete = certificate.converged && certificate.flat.is_empty();
+            if !(complete && theta >= 8.0 && deviations >= statistics && cost >= statistics) {
+                short.push(format!(
+                    "{name} from start {}: {theta:.1} {deviations:.1} {cost:.1} {certificate:?}",
+                    i + 1
+                ));
+            }
+        }
+    }
+    assert!(short.is_empty(), "{short:#?}");
+}
+
+#[test]
+fn first_radius_hardly_matters() {
+    for first_radius in [0.1, 0.3, 3.0, 10.0] {
+        for name in NAMES {
+            let problem = Problem::read(name);
+            for start in &problem.starts {
+                let options = Options { first_radius, ..Options::default() };
+                let minimum = minimise(&problem, start, &Bounds::none(start.len()), &options).unwrap();
+                let [theta, ..] = compare(&problem, &minimum);
+                assert!(
+                    minimum.certificate.converged && theta >= 6.0,
+                    "{name} {start:?} {first_radius}: {theta}"
+                );
+            }
         }
     }
 }

@@ -30,7 +30,10 @@ impl Effect for BraidAngleError {
                 shape: "3 (1 - eps)^2 - 1: largest at eps = 0, zero where the fibres cross at their neutral angle",
             },
             twins: &[
-                Twin { name: "radius-error", how: "together they are all that the force of a cylinder shows" },
+                Twin {
+                    name: "radius-error",
+                    how: "together they are all that the force of a cylinder shows",
+                },
                 Twin { name: "fibre-length", how: "absorbed once radius and angle are calibrated" },
                 Twin { name: "displacement-gain", how: "near" },
                 Twin { name: "end-factor", how: "near" },
@@ -43,7 +46,9 @@ impl Effect for BraidAngleError {
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "true angle at rest minus the stated one";
         vec![
-            ParameterCard::new("error", DEGREE, (-12.0, 12.0), 0.0, about).prior(0.0, 0.5).plausible(-1.5, 1.5),
+            ParameterCard::new("error", DEGREE, (-12.0, 12.0), 0.0, about)
+                .prior(0.0, 0.5)
+                .plausible(-1.5, 1.5),
         ]
     }
 

@@ -79,7 +79,10 @@ mod tests {
                 force(&cylinder(), 3.0, contraction * at_a_tenth / 0.1)
             };
             let exact = force(&clamped, 3.0, contraction);
-            assert!((factored(expected - 0.01) - exact) * (factored(expected + 0.01) - exact) < 0.0, "{expected}");
+            assert!(
+                (factored(expected - 0.01) - exact) * (factored(expected + 0.01) - exact) < 0.0,
+                "{expected}"
+            );
         }
     }
 }

@@ -111,7 +111,8 @@ mod tests {
         let full = full.with_fibre(fibre).unwrap().with_bladder(bladder).unwrap().with_unfolding(unfolding);
         let full = full.with_instruments(Instruments { force: Some(noise), ..Instruments::default() });
         let full = full.with_width(Parameter::Length, 2e-4).unwrap();
-        for full in [full.clone().with_gas_wall(None).unwrap(), full.with(Parameter::GasWall, 1e-3).unwrap()] {
+        for full in [full.clone().with_gas_wall(None).unwrap(), full.with(Parameter::GasWall, 1e-3).unwrap()]
+        {
             let clamped = EndTaper.reshape(&full, &[]).unwrap().muscle;
             assert_eq!(format!("{clamped:?}"), format!("{full:?}").replace("Cylinder", "Clamped"));
         }

@@ -44,7 +44,9 @@ impl Effect for FibreLength {
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "how much longer than stated, over l0";
         vec![
-            ParameterCard::new("excess", PERCENT, (-5.0, 5.0), 0.0, about).prior(0.0, 0.5).plausible(-2.0, 2.0),
+            ParameterCard::new("excess", PERCENT, (-5.0, 5.0), 0.0, about)
+                .prior(0.0, 0.5)
+                .plausible(-2.0, 2.0),
         ]
     }
 

@@ -25,7 +25,11 @@ impl Effect for FibreMisalignment {
             group: Group::Geometry,
             stage: Stage::Shape,
             kind: Some(Kind::Pleated),
-            signature: Signature { pressure: "1", parity: Parity::Even, shape: "as the force, the loss growing with eps" },
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Even,
+                shape: "as the force, the loss growing with eps",
+            },
             twins: &[
                 Twin { name: "pressure-gain", how: "0.999" },
                 Twin { name: "fibre-count", how: "0.999" },
@@ -38,10 +42,9 @@ impl Effect for FibreMisalignment {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        let about = "angle gamma between fibre and meridian at the fitting; replaces an angle that the muscle states";
-        vec![
-            ParameterCard::new("angle", DEGREE, (0.0, 10.0), 3.0, about).prior(0.0, 3.0).plausible(0.0, 6.0),
-        ]
+        let about =
+            "angle gamma between fibre and meridian at the fitting; replaces an angle that the muscle states";
+        vec![ParameterCard::new("angle", DEGREE, (0.0, 10.0), 3.0, about).prior(0.0, 3.0).plausible(0.0, 6.0)]
     }
 
     fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}

@@ -46,7 +46,8 @@ impl Effect for Lobes {
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "circumference C_f of the cloth; 0: flat between the fibres, without limit. \
                      There is no small effect: between 0 and 2 pi R there is no muscle";
-        let card = ParameterCard::multiple("circumference", MILLIMETRE, Parameter::Radius, (8.0, 75.0), about);
+        let card =
+            ParameterCard::multiple("circumference", MILLIMETRE, Parameter::Radius, (8.0, 75.0), about);
         vec![ParameterCard { typical: 25.0, ..card }.off_at(0.0).prior(25.0, 8.0).plausible(15.0, 45.0)]
     }
 

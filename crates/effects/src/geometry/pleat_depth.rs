@@ -25,7 +25,11 @@ impl Effect for PleatDepth {
             group: Group::Geometry,
             stage: Stage::Shape,
             kind: Some(Kind::Pleated),
-            signature: Signature { pressure: "1", parity: Parity::Even, shape: "dF/dR: more force at small contractions, less at large ones" },
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Even,
+                shape: "dF/dR: more force at small contractions, less at large ones",
+            },
             twins: &[
                 Twin { name: "end-radius", how: "identical in force; only a photograph of the fibres tells" },
                 Twin { name: "displacement-gain", how: "0.997" },
@@ -64,7 +68,8 @@ mod tests {
         let deep = PleatDepth.reshape(&narrow, &[0.0045]).unwrap();
         assert_eq!(deep.moves, [(0, Parameter::PleatDepth, 1.0)]);
         for contraction in [0.03, 0.1, 0.3] {
-            let (found, expected) = (force(&deep.muscle, 2.0, contraction), force(&pleated(), 2.0, contraction));
+            let (found, expected) =
+                (force(&deep.muscle, 2.0, contraction), force(&pleated(), 2.0, contraction));
             assert!((found / expected - 1.0).abs() < 1e-9, "{contraction}: {found} {expected}");
         }
     }

@@ -33,7 +33,10 @@ impl Effect for RadiusError {
             twins: &[
                 Twin { name: "pressure-gain", how: "identical on a cylinder" },
                 Twin { name: "force-gain", how: "identical on a cylinder without bladder" },
-                Twin { name: "braid-angle-error", how: "together they are all that the force of a cylinder shows" },
+                Twin {
+                    name: "braid-angle-error",
+                    how: "together they are all that the force of a cylinder shows",
+                },
             ],
             separate: "measure fibre length b and turns N of a dissected muscle: r0 = b sin(alpha0)/(2 pi N)",
             needs: Needs::Nothing,

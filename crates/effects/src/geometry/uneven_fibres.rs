@@ -24,7 +24,11 @@ impl Effect for UnevenFibres {
             group: Group::Geometry,
             stage: Stage::Input,
             kind: Some(Kind::Pleated),
-            signature: Signature { pressure: "1", parity: Parity::Even, shape: "F'': like 1/eps^3, gone beyond 5 %" },
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Even,
+                shape: "F'': like 1/eps^3, gone beyond 5 %",
+            },
             twins: &[
                 Twin { name: "frame-compliance", how: "-0.97" },
                 Twin { name: "fibre-stretch", how: "-0.95" },

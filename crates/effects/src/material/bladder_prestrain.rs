@@ -41,7 +41,8 @@ impl Effect for BladderPrestrain {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        let about = "hoop tension tau of the wall at rest; positive if the bladder was narrower than the braid";
+        let about =
+            "hoop tension tau of the wall at rest; positive if the bladder was narrower than the braid";
         vec![
             ParameterCard::new("tension", NEWTON_PER_METRE, (-1000.0, 1000.0), 0.0, about)
                 .prior(0.0, 100.0)
@@ -53,7 +54,8 @@ impl Effect for BladderPrestrain {
         if let Place::Load(balance, force) = place
             && let Some(tube) = Tube::at(balance.contraction, setting)
         {
-            *force += theta[0] * tube.hoop.scale_add(2.0, Jet::from(-1.0)) * tube.slope * (TAU * setting.radius);
+            *force +=
+                theta[0] * tube.hoop.scale_add(2.0, Jet::from(-1.0)) * tube.slope * (TAU * setting.radius);
         }
     }
 }
@@ -66,7 +68,13 @@ mod tests {
     fn force(tension: f64, contraction: f64) -> f64 {
         let mut force = Jet::from(0.0);
         let (moment, theta) = (Moment::at_rest(2e5, contraction), [Jet::from(tension)]);
-        BladderPrestrain.act(&moment, &SETTING, &theta, &mut [], Place::Load(&balance(contraction), &mut force));
+        BladderPrestrain.act(
+            &moment,
+            &SETTING,
+            &theta,
+            &mut [],
+            Place::Load(&balance(contraction), &mut force),
+        );
         force.value()
     }
 

@@ -49,7 +49,8 @@ impl Effect for FibreStretch {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        let about = "strain per force of all fibres together, 1/(n EA); replaces a stiffness that the muscle states";
+        let about =
+            "strain per force of all fibres together, 1/(n EA); replaces a stiffness that the muscle states";
         vec![
             ParameterCard::new("compliance", PERCENT_PER_KILONEWTON, (0.0, 5.0), 0.2, about)
                 .prior(0.0, 0.3)
@@ -90,9 +91,10 @@ mod tests {
     fn forces_of_an_independent_solution() {
         // Catalogue B3: 40 fibres of 12.3 and 8.2 kN at 3 bar, R = 16 mm.
         let at = [0.0, 0.02, 0.05, 0.1, 0.2];
-        for (each, forces) in
-            [(12.3e3, [7237.0, 5352.0, 4031.0, 2885.0, 1596.0]), (8.2e3, [6443.0, 5057.0, 3917.0, 2840.0, 1578.0])]
-        {
+        for (each, forces) in [
+            (12.3e3, [7237.0, 5352.0, 4031.0, 2885.0, 1596.0]),
+            (8.2e3, [6443.0, 5057.0, 3917.0, 2840.0, 1578.0]),
+        ] {
             let elastic = FibreStretch.reshape(&pleated(), &[1.0 / (40.0 * each)]).unwrap();
             for (contraction, expected) in at.into_iter().zip(forces) {
                 let found = force(&elastic.muscle, 3.0, contraction);
@@ -104,7 +106,9 @@ mod tests {
     #[test]
     fn one_fibre_has_its_part_of_the_stiffness() {
         let elastic = FibreStretch.reshape(&pleated(), &[2e-6]).unwrap();
-        let [(0, Parameter::FibreStiffness, slope)] = elastic.moves[..] else { panic!("{:?}", elastic.moves) };
+        let [(0, Parameter::FibreStiffness, slope)] = elastic.moves[..] else {
+            panic!("{:?}", elastic.moves)
+        };
         assert!((elastic.muscle.get(Parameter::FibreStiffness).unwrap() / 12_500.0 - 1.0).abs() < 1e-14);
         // -1/(c^2 n)
         assert!((slope / (-1.0 / (4e-12 * 40.0)) - 1.0).abs() < 1e-14);

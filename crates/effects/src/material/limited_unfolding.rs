@@ -42,7 +42,8 @@ impl Effect for LimitedUnfolding {
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let (stiffness, radius) =
             ("hoop stiffness E t of the cloth; 0: it unfolds without limit", "radius at which it is taut");
-        let taut = ParameterCard::multiple("unfolded_radius", MILLIMETRE, Parameter::Radius, (1.05, 8.0), radius);
+        let taut =
+            ParameterCard::multiple("unfolded_radius", MILLIMETRE, Parameter::Radius, (1.05, 8.0), radius);
         vec![
             ParameterCard::new("hoop_stiffness", KILONEWTON_PER_METRE, (1.0, 1000.0), 80.0, stiffness)
                 .logarithmic()
@@ -93,7 +94,10 @@ mod tests {
         assert_eq!(cloth.muscle.get(Parameter::HoopStiffness), Some(8e4));
         assert_eq!(cloth.muscle.get(Parameter::UnfoldedRadius), Some(0.05));
         assert_eq!(cloth.moves.len(), 2);
-        assert_eq!(LimitedUnfolding.reshape(&pleated(), &[0.0, 0.05]).unwrap(), Reshaped::unchanged(&pleated()));
+        assert_eq!(
+            LimitedUnfolding.reshape(&pleated(), &[0.0, 0.05]).unwrap(),
+            Reshaped::unchanged(&pleated())
+        );
         assert!(LimitedUnfolding.reshape(&pleated(), &[-1.0, 0.05]).is_err());
     }
 }

@@ -47,3 +47,16 @@ impl Effect for ForceOffset {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::float_cmp, reason = "a sum of whole newtons is exact")]
+
+    use super::*;
+    use crate::probe::reading;
+
+    #[test]
+    fn the_zero_is_added() {
+        assert_eq!(reading(&ForceOffset, &[-7.0], |_| ()), 493.0);
+    }
+}

@@ -50,3 +50,16 @@ impl Effect for FrameCompliance {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::input;
+    use bulge_numerics::Real;
+
+    #[test]
+    fn the_force_shortens() {
+        // 10 kN/mm on 250 mm: 4e-7 per newton.
+        assert!((input(&FrameCompliance, &[1e-7], |_| ()).give_force.value() / 4e-7 - 1.0).abs() < 1e-12);
+    }
+}

@@ -53,3 +53,16 @@ impl Effect for LengthZeroError {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::input;
+    use bulge_numerics::Real;
+
+    #[test]
+    fn the_muscle_is_shorter_by_the_offset() {
+        // 4 mm of 250 mm.
+        assert!((input(&LengthZeroError, &[4e-3], |_| ()).contraction.value() - 0.116).abs() < 1e-15);
+    }
+}

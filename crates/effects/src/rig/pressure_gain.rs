@@ -47,3 +47,16 @@ impl Effect for PressureGain {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::input;
+    use bulge_numerics::Real;
+
+    #[test]
+    fn a_sensor_that_reads_too_much_hides_a_lower_pressure() {
+        // 2 bar read at + 2.5 %: 2/1.025 = 1.951220 bar.
+        assert!((input(&PressureGain, &[0.025], |_| ()).pressure.value() - 195_121.951_2).abs() < 1e-3);
+    }
+}

@@ -8,7 +8,7 @@ use std::ops::Range;
 const RUN: usize = 5;
 /// How far the force should have moved, in what it resolves, to be called stuck.
 const FORCE_STEPS: f64 = 10.0;
-/// How far the force has to move, as a share of its range, while motion or pressure are stuck and the other keeps still to this share.
+/// How far the force has to move, as a share of its range in the sweep, while motion or pressure are stuck and the other keeps still to this share.
 const FORCE_SHARE: f64 = 0.1;
 const STILL: f64 = 0.02;
 
@@ -25,16 +25,19 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
         let seen = (3.0 * gate.force.noise).max(gate.force.step).max(1e-3 * gate.force.range);
         !is_zero && expected(gate, run) > FORCE_STEPS * seen
     };
-    let force_moves = |run: &Range<usize>| range_in(force, run) > FORCE_SHARE * gate.force.range;
+    let force_moves = |sweep: &Range<usize>, run: &Range<usize>| {
+        range_in(force, run) > (FORCE_SHARE * range_in(force, sweep)).max(FORCE_STEPS * gate.force.noise)
+    };
     let stuck_motion = |sweep: &Range<usize>, run: &Range<usize>| {
         range_in(motion, sweep) > 0.0
-            && force_moves(run)
+            && force_moves(sweep, run)
             && range_in(pressure, run) <= STILL * gate.largest_pressure
     };
     let stuck_pressure = |sweep: &Range<usize>, run: &Range<usize>| {
         range_in(pressure, sweep) > 0.0
-            && force_moves(run)
-            && range_in(motion, run) <= STILL * gate.motion_resolution().range
+            && force_moves(sweep, run)
+            && range_in(motion, run)
+                <= (STILL * gate.motion_resolution().range).max(gate.data.structure.band.width)
     };
     [
         in_column(gate, "force", force, &stuck_force),
@@ -47,6 +50,7 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
 }
 
 /// Runs of the column's largest or smallest value that are stuck, by sweep and run.
+#[expect(clippy::float_cmp, reason = "a sensor that is stuck repeats its reading bit for bit")]
 fn in_column(
     gate: &Gate,
     name: &str,
@@ -61,7 +65,11 @@ fn in_column(
             let run = start..start + equal.len();
             start = run.end;
             let is_extreme = equal[0] == low || equal[0] == high;
-            if equal.len() >= RUN && equal.len() < sweep.rows.len() && is_extreme && is_stuck(&sweep.rows, &run) {
+            if equal.len() >= RUN
+                && equal.len() < sweep.rows.len()
+                && is_extreme
+                && is_stuck(&sweep.rows, &run)
+            {
                 rows.extend(run);
             }
         }
@@ -72,7 +80,10 @@ fn in_column(
         &rows,
         |count| {
             let value = rows.first().map_or(0.0, |row| values[*row]);
-            format!("the {name} stays at its extreme value of {value:.6} (SI) in {} while others move", rows_in_words(count))
+            format!(
+                "the {name} stays at its extreme value of {value:.6} (SI) in {} while others move",
+                rows_in_words(count)
+            )
         },
         "remove these rows: the sensor or the amplifier was at the end of its range",
     )

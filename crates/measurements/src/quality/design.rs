@@ -63,7 +63,10 @@ fn temperature(gate: &Gate) -> Option<Finding> {
     let (severity, says, instead) = match confounded {
         Some((name, values)) => (
             Severity::Warning,
-            format!("{change} together with the {name} (correlation {:.3})", correlation(temperature, values)),
+            format!(
+                "{change} together with the {name} (correlation {:.3})",
+                correlation(temperature, values)
+            ),
             "repeat part of the test at another temperature: as it is, the effect of the temperature can't be told from that of the other",
         ),
         None => (Severity::Note, change, "include the effect of the temperature when comparing"),

@@ -17,8 +17,13 @@ fn directions(gate: &Gate) -> Option<Finding> {
     for (sweep, stretches) in gate.data.paths() {
         for stretch in stretches.iter().filter(|stretch| stretch.direction != 0) {
             // The ends of a sweep are no turning points.
-            let start = stretch.rows.start + if stretch.rows.start > sweep.rows.start { NEAR_TURN } else { 0 };
-            let end = stretch.rows.end.saturating_sub(if stretch.rows.end < sweep.rows.end { NEAR_TURN } else { 0 });
+            let start =
+                stretch.rows.start + if stretch.rows.start > sweep.rows.start { NEAR_TURN } else { 0 };
+            let end = stretch.rows.end.saturating_sub(if stretch.rows.end < sweep.rows.end {
+                NEAR_TURN
+            } else {
+                0
+            });
             moving += end.saturating_sub(start);
             wrong.extend((start..end).filter(|row| stated[*row] == -stretch.direction));
         }
@@ -32,7 +37,9 @@ fn directions(gate: &Gate) -> Option<Finding> {
         FindingKind::DirectionContradicted,
         Severity::Warning,
         &wrong,
-        |count| format!("{} of {moving} that move have a direction against their motion", rows_in_words(count)),
+        |count| {
+            format!("{} of {moving} that move have a direction against their motion", rows_in_words(count))
+        },
         all,
     )
 }
@@ -45,12 +52,17 @@ fn interrupted(gate: &Gate) -> Option<Finding> {
         let is_new = seen.insert((gate.data.line(row).0, gate.data.specimen()[row], labels.rows()[row]));
         (!is_new).then_some(row)
     };
-    let rows: Vec<usize> = gate.data.sweeps().iter().map(|sweep| sweep.rows.start).filter_map(returns).collect();
+    let rows: Vec<usize> =
+        gate.data.sweeps().iter().map(|sweep| sweep.rows.start).filter_map(returns).collect();
     gate.finding_if_any(
         FindingKind::SweepInterrupted,
         Severity::Warning,
         &rows,
-        |count| format!("a sweep label returns after others {count} times: each part is taken as a run of its own"),
+        |count| {
+            format!(
+                "a sweep label returns after others {count} times: each part is taken as a run of its own"
+            )
+        },
         "keep the rows of a run together and in the order in which they were measured",
     )
 }
@@ -67,7 +79,9 @@ fn duplicates(gate: &Gate) -> Option<Finding> {
     };
     let fingerprint = |row: usize| {
         let mut hasher = DefaultHasher::new();
-        columns.iter().for_each(|values| values[row].to_bits().hash(&mut hasher));
+        for values in &columns {
+            values[row].to_bits().hash(&mut hasher);
+        }
         marks(row).hash(&mut hasher);
         (hasher.finish(), row)
     };

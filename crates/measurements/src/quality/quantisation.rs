@@ -30,15 +30,18 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             "the {name} is read in steps of {:.4e} {unit}: {levels} levels over its range of {:.4e}",
             resolution.step, resolution.range
         );
-        let instead = "use a finer range of the sensor or write more digits; differences below one step mean nothing";
+        let instead =
+            "use a finer range of the sensor or write more digits; differences below one step mean nothing";
         Some(gate.finding(FindingKind::Quantised, severity, &[], says, instead))
     };
     columns.into_iter().filter_map(of_column).collect()
 }
 
 /// Share of the rows at which a value differs from that of the row before in its sweep.
+#[expect(clippy::float_cmp, reason = "a set point that is held is the same number")]
 fn share_of_changes(gate: &Gate, values: &[f64]) -> f64 {
-    let changes = |rows: &std::ops::Range<usize>| values[rows.clone()].windows(2).filter(|w| w[0] != w[1]).count();
+    let changes =
+        |rows: &std::ops::Range<usize>| values[rows.clone()].windows(2).filter(|w| w[0] != w[1]).count();
     let count: usize = gate.data.sweeps().iter().map(|sweep| changes(&sweep.rows)).sum();
     count as f64 / values.len().max(1) as f64
 }

@@ -17,7 +17,7 @@ const NEGATIVE: f64 = 0.01;
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     let data = gate.data;
-    let level = (3.0 * gate.force.noise).max(gate.force.step).max(NEAR_ZERO * gate.largest_force);
+    let level = (4.0 * gate.force.noise).max(gate.force.step).max(NEAR_ZERO * gate.largest_force);
     // Where nothing was pulled at all there is no zero to stay at.
     let is_near_zero = |row: usize| {
         level < gate.largest_force

@@ -32,7 +32,10 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             &rows,
             |count| {
                 let value = rows.first().map_or(0.0, |row| values[*row]);
-                format!("the {name} of {} lies far from the rows around, the first at {value:.6} (SI)", rows_in_words(count))
+                format!(
+                    "the {name} of {} lies far from the rows around, the first at {value:.6} (SI)",
+                    rows_in_words(count)
+                )
             },
             "remove these rows if the reading was disturbed",
         )
@@ -48,7 +51,8 @@ fn rows(gate: &Gate, values: &[f64], resolution: &Resolution, has_tips: bool) ->
     }
     for (sweep, stretches) in gate.data.paths() {
         let x = &values[sweep.rows.clone()];
-        let turns: Vec<usize> = stretches.iter().map(|stretch| stretch.rows.end - 1 - sweep.rows.start).collect();
+        let turns: Vec<usize> =
+            stretches.iter().map(|stretch| stretch.rows.end - 1 - sweep.rows.start).collect();
         let is_turn = |first: usize, end: usize| {
             let next = turns.partition_point(|turn| turn + 1 < first);
             turns.get(next).is_some_and(|turn| *turn <= end)

@@ -17,13 +17,13 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             && before.specimen == sweep.specimen
             && data.line(before.rows.start).0 == data.line(sweep.rows.start).0
         {
-            let (start, end, next) = (time[before.rows.start], time[before.rows.end - 1], time[sweep.rows.start]);
+            let (start, end, next) =
+                (time[before.rows.start], time[before.rows.end - 1], time[sweep.rows.start]);
             if next > start && next < end {
                 back.push(sweep.rows.start);
             } else if next > end {
                 // A jump to another isobaric run is no pause.
-                let mut steps: Vec<f64> =
-                    time[before.rows.clone()].windows(2).map(|w| w[1] - w[0]).collect();
+                let mut steps: Vec<f64> = time[before.rows.clone()].windows(2).map(|w| w[1] - w[0]).collect();
                 if next - end > GAP * median(&mut steps) {
                     pauses.push(sweep.rows.start);
                     longest = longest.max(next - end);

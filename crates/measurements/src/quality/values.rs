@@ -18,75 +18,107 @@ const CONTRACTION: [f64; 2] = [-1.0, 0.6];
 const TEMPERATURE: [f64; 2] = [150.0, 500.0];
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
-    let data = gate.data;
-    let impossible = |values: &[f64], what: &str, unit: &str, is_wrong: &dyn Fn(usize, f64) -> bool, instead| {
-        let rows: Vec<usize> =
-            values.iter().enumerate().filter(|(row, v)| is_wrong(*row, **v)).map(|(row, _)| row).collect();
-        let says = |count| {
-            let worst = rows.iter().map(|row| values[*row]).max_by(|a, b| a.abs().total_cmp(&b.abs()));
-            format!("{} {what}, such as {:.6}{unit}", rows_in_words(count), worst.unwrap_or(0.0))
-        };
-        gate.finding_if_any(FindingKind::ImpossibleValue, Severity::Error, &rows, says, instead)
+    let mut found = pressures(gate);
+    found.extend(motions(gate));
+    found.extend(forces(gate));
+    found.extend(others(gate));
+    found
+}
+
+/// Rows whose value is wrong; `what` comes after "3 rows with" and before the worst value and its unit.
+fn impossible(
+    gate: &Gate,
+    values: &[f64],
+    [what, unit]: [&str; 2],
+    is_wrong: impl Fn(usize, f64) -> bool,
+    instead: &str,
+) -> Option<Finding> {
+    let rows: Vec<usize> =
+        values.iter().enumerate().filter(|(row, v)| is_wrong(*row, **v)).map(|(row, _)| row).collect();
+    let says = |count| {
+        let worst = rows.iter().map(|row| values[*row]).max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        format!("{} with {what}, such as {:.6} {unit}", rows_in_words(count), worst.unwrap_or(0.0))
+            .trim_end()
+            .to_owned()
     };
-    let contraction = match data.motion() {
-        Motion::Contraction(_) => Some(data.contraction(1.0)),
-        Motion::Length(_) => gate.options.l0_m.filter(|l0| *l0 > 0.0).map(|l0| data.contraction(l0)),
+    gate.finding_if_any(FindingKind::ImpossibleValue, Severity::Error, &rows, says, instead)
+}
+
+fn pressures(gate: &Gate) -> Vec<Finding> {
+    let values = gate.data.pressure();
+    let below = impossible(
+        gate,
+        values,
+        ["a gauge pressure below a vacuum", "Pa"],
+        |_, p| p < VACUUM,
+        "check the unit, and that the pressure is gauge pressure",
+    );
+    let above = impossible(
+        gate,
+        values,
+        ["a pressure above 1000 bar", "Pa"],
+        |_, p| p > BURST,
+        "check the unit of the pressure in the header",
+    );
+    below.into_iter().chain(above).collect()
+}
+
+fn motions(gate: &Gate) -> Vec<Finding> {
+    let l0 = gate.options.l0_m.filter(|l0| *l0 > 0.0);
+    let (contraction, length): (Vec<f64>, &[f64]) = match gate.data.motion() {
+        Motion::Contraction(values) => (values.to_vec(), &[]),
+        Motion::Length(values) => (l0.map_or_else(Vec::new, |l0| gate.data.contraction(l0)), values),
     };
-    let length = match data.motion() {
-        Motion::Length(values) => Some(values),
-        Motion::Contraction(_) => None,
-    };
+    let outside = impossible(
+        gate,
+        &contraction,
+        ["a contraction outside -1 to 0.6", ""],
+        |_, c| !(CONTRACTION[0]..=CONTRACTION[1]).contains(&c),
+        "write `contraction [%]` if it is in per cent; for lengths, check the unit and the muscle's own length",
+    );
+    let gone = impossible(
+        gate,
+        length,
+        ["a length of 0 or less", "m"],
+        |_, l| l <= 0.0,
+        "check unit, sign and zero: the length is that between the fittings, not a displacement",
+    );
+    outside.into_iter().chain(gone).collect()
+}
+
+fn forces(gate: &Gate) -> Option<Finding> {
+    let pressure = gate.data.pressure();
     let area = gate.options.radius_m.map(|radius| PI * radius * radius);
-    let pressure = data.pressure();
     let is_absurd = |row: usize, force: f64| {
         let limit = area.map(|area| FORCE_OF_AREA * area * pressure[row].abs().max(1e5));
         force.abs() > limit.map_or(FORCE, |limit| limit.min(FORCE))
     };
-    let positive = "remove the rows, or check unit and sign: it must be greater than 0";
-    let mut found = vec![
-        impossible(
-            pressure,
-            "have a gauge pressure below a vacuum",
-            " Pa",
-            &|_, p| p < VACUUM,
-            "check the unit, and that the pressure is gauge pressure",
-        ),
-        impossible(
-            pressure,
-            "have a pressure above 1000 bar",
-            " Pa",
-            &|_, p| p > BURST,
-            "check the unit of the pressure in the header",
-        ),
-        impossible(
-            contraction.as_deref().unwrap_or_default(),
-            "have a contraction outside -1 to 0.6",
-            "",
-            &|_, c| !(CONTRACTION[0]..=CONTRACTION[1]).contains(&c),
-            "write `contraction [%]` if it is in per cent; for lengths, check the unit and the muscle's own length",
-        ),
-        impossible(length.unwrap_or_default(), "have a length of 0 or less", " m", &|_, l| l <= 0.0, positive),
-        impossible(
-            data.force(),
-            "have a force beyond any muscle of this size",
-            " N",
-            &is_absurd,
-            "check the unit of the force in the header",
-        ),
-        impossible(
-            data.temperature().unwrap_or_default(),
-            "have a temperature outside 150 K to 500 K",
-            " K",
-            &|_, t| !(TEMPERATURE[0]..=TEMPERATURE[1]).contains(&t),
-            "check the unit of the temperature: `temperature [degC]` or `temperature [K]`",
-        ),
+    impossible(
+        gate,
+        gate.data.force(),
+        ["a force beyond any muscle of this size", "N"],
+        is_absurd,
+        "check the unit of the force in the header",
+    )
+}
+
+fn others(gate: &Gate) -> Vec<Finding> {
+    let data = gate.data;
+    let temperature = impossible(
+        gate,
+        data.temperature().unwrap_or_default(),
+        ["a temperature outside 150 K to 500 K", "K"],
+        |_, t| !(TEMPERATURE[0]..=TEMPERATURE[1]).contains(&t),
+        "check the unit of the temperature: `temperature [degC]` or `temperature [K]`",
+    );
+    let positive = [
+        (data.diameter(), ["a diameter of 0 or less", "m"]),
+        (data.volume(), ["a volume of 0 or less", "m^3"]),
+        (data.force_sd(), ["a standard deviation of the force of 0 or less", "N"]),
     ];
-    for (values, what, unit) in [
-        (data.diameter(), "have a diameter of 0 or less", " m"),
-        (data.volume(), "have a volume of 0 or less", " m^3"),
-        (data.force_sd(), "have a standard deviation of the force of 0 or less", " N"),
-    ] {
-        found.push(impossible(values.unwrap_or_default(), what, unit, &|_, v| v <= 0.0, positive));
-    }
-    found.into_iter().flatten().collect()
+    let not_positive = positive.into_iter().filter_map(|(values, what)| {
+        let instead = "remove the rows, or check unit and sign: it must be greater than 0";
+        impossible(gate, values.unwrap_or_default(), what, |_, v| v <= 0.0, instead)
+    });
+    temperature.into_iter().chain(not_positive).collect()
 }

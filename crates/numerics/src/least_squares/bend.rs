@@ -21,18 +21,15 @@ impl<P: Residuals> Search<'_, P> {
     ///
     /// With `c = r(theta + p) - r - J p`, half the second derivative along `p`, the bend `a` minimises the damped `|J a + c|^2` within the bounds.
     pub(super) fn bend(&mut self, trial: &Trial, residuals: &[f64]) -> bool {
-        let (scale, damping) = if trial.full {
-            (&self.linear.norms, self.options.rank_tolerance.powi(2))
-        } else {
-            (&self.scale, self.damping)
-        };
+        let (scale, damping) =
+            if trial.full { (&self.linear.norms, self.least_damping()) } else { (&self.scale, self.damping) };
         self.linearisations += 1;
         let Ok(turned) = turned(self.problem, &self.theta, residuals) else { return false };
         let step: Vec<f64> = trial.theta.iter().zip(&self.theta).map(|(to, from)| to - from).collect();
         let linear = self.linear.r.times(&step);
         let c: Vec<f64> = (0..step.len()).map(|i| turned[i] - self.linear.q[i] - linear[i]).collect();
-        let (a, limits) = self.scaled_by(scale, &trial.theta);
-        let bend = damped(&a, &c, damping, &limits);
+        let (a, c) = self.scaled_by(scale, &c);
+        let bend = damped(&a, &c, damping, &self.limits(scale, &trial.theta));
         // Both lengths in the scale of the trust region.
         let stretch = |j: usize| if scale[j] > 0.0 { bend.z[j] * (self.scale[j] / scale[j]) } else { 0.0 };
         if norm(&(0..step.len()).map(stretch).collect::<Vec<_>>()) > LONGEST * trial.length {

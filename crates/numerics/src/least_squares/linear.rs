@@ -3,6 +3,7 @@
 //! Blocks are combined in a fixed binary tree, so that the sums are the same bytes for any number of threads.
 
 use super::residuals::Residuals;
+use super::singular::right_singular;
 use super::triangle::{Triangle, dot, norm};
 use std::ops::Range;
 
@@ -26,12 +27,42 @@ pub(super) struct Linear {
     pub(super) cost: f64,
     /// Norms of the Jacobian's columns.
     pub(super) norms: Vec<f64>,
+    /// Singular values and right vectors of the Jacobian with columns divided by their norms.
+    singular: Vec<(f64, Vec<f64>)>,
 }
+
+/// Weight of the rows that pin flat directions: far above rounding, and small enough not to disturb a step along a bound, which may
+/// need part of a flat direction.
+const PIN: f64 = 1e-5;
 
 impl Linear {
     /// `J^T r`, half the gradient of the sum of squares.
     pub(super) fn gradient(&self) -> Vec<f64> {
         self.r.transposed_times(&self.q)
+    }
+
+    /// The triangle with columns divided by their norms and a right-hand side for it, for steps without part in flat directions: those are taken
+    /// out of both, for in them rounding has decided what the triangle says, and pinned.
+    pub(super) fn regular(&self, rhs: &[f64], tolerance: f64) -> (Triangle, Vec<f64>) {
+        let k = self.norms.len();
+        let inverse: Vec<f64> = self.norms.iter().map(|n| if *n > 0.0 { 1.0 / n } else { 0.0 }).collect();
+        let scaled = self.r.scaled(&inverse);
+        let largest = self.singular.first().map_or(0.0, |pair| pair.0);
+        let is_flat = |sigma: f64| sigma <= tolerance * largest;
+        if !self.singular.iter().any(|(sigma, _)| is_flat(*sigma)) {
+            return (scaled, rhs.to_vec());
+        }
+        let mut columns = vec![0.0; k * (k + 1)];
+        for (i, (sigma, v)) in self.singular.iter().enumerate() {
+            let flat = is_flat(*sigma);
+            let weight = if flat { PIN * largest } else { *sigma };
+            for j in 0..k {
+                columns[j * k + i] = weight * v[j];
+            }
+            columns[k * k + i] = if flat { 0.0 } else { dot(&scaled.times(v), rhs) / sigma };
+        }
+        let whole = Triangle::of_columns(&mut columns, k, k + 1);
+        (whole.leading(k), whole.column(k)[..k].to_vec())
     }
 }
 
@@ -120,7 +151,12 @@ pub(super) fn linearise<P: Residuals>(
     if !cost.is_finite() || norms.iter().chain(&q).any(|x| !x.is_finite()) {
         return Err(Failure::Overflow);
     }
-    Ok(Linear { r, q, cost, norms })
+    let column = |j: usize| -> Vec<f64> {
+        let inverse = if norms[j] > 0.0 { 1.0 / norms[j] } else { 0.0 };
+        (0..k).map(|i| r.at(i, j) * inverse).collect()
+    };
+    let singular = right_singular((0..k).map(column).collect());
+    Ok(Linear { r, q, cost, norms, singular })
 }
 
 /// The triangle of the Jacobian with one more column, the residuals or else `last`; and the sum of squares of the residuals.

@@ -109,6 +109,7 @@ pub fn profile<P: Residuals>(
     let mut points: Vec<_> =
         down.visits.into_iter().chain(up.visits.into_iter().skip(1)).map(point).collect();
     points.sort_by(|a, b| a.value.total_cmp(&b.value));
+    points.dedup_by(|a, b| a.value.total_cmp(&b.value).is_eq());
     Ok(Profile { lower, upper, points })
 }
 

@@ -236,10 +236,16 @@ impl<'a, P: Residuals> Search<'a, P> {
         }
     }
 
-    /// The step to the linearised minimum within the bounds, scaled by the current norms; flat directions damped.
+    /// The step to the linearised minimum within the bounds, scaled by the current norms, without part in flat directions.
     pub(super) fn newton(&self) -> Step {
-        let (a, limits) = self.scaled_by(&self.linear.norms, &self.theta);
-        damped(&a, &self.linear.q, self.options.rank_tolerance.powi(2), &limits)
+        let norms = &self.linear.norms;
+        let (a, b) = self.scaled_by(norms, &self.linear.q);
+        damped(&a, &b, self.least_damping(), &self.limits(norms, &self.theta))
+    }
+
+    /// A damping that keeps the triangle regular where norms are zero, and is too small to be felt.
+    pub(super) fn least_damping(&self) -> f64 {
+        (1e-2 * self.options.rank_tolerance).powi(2)
     }
 
     fn stationary(&self, newton: &Step) -> Option<Reason> {
@@ -264,16 +270,22 @@ impl<'a, P: Residuals> Search<'a, P> {
         8.0 * f64::EPSILON * self.linear.cost + 2.0 * length * change + change * change
     }
 
-    /// The triangle with columns divided by a scale, and the box of steps from a point times this scale. Parameters without influence stay.
-    pub(super) fn scaled_by(&self, scale: &[f64], from: &[f64]) -> (Triangle, StepBox) {
-        let inverse: Vec<f64> = scale.iter().map(|s| if *s > 0.0 { 1.0 / s } else { 0.0 }).collect();
+    /// The triangle with columns divided by a scale, and a right-hand side for it.
+    pub(super) fn scaled_by(&self, scale: &[f64], rhs: &[f64]) -> (Triangle, Vec<f64>) {
+        let (a, b) = self.linear.regular(rhs, self.options.rank_tolerance);
+        let ratio = |(norm, scale): (&f64, &f64)| if *scale > 0.0 { norm / scale } else { 0.0 };
+        let ratios: Vec<f64> = self.linear.norms.iter().zip(scale).map(ratio).collect();
+        (a.scaled(&ratios), b)
+    }
+
+    /// The box of steps from a point times a scale. Parameters without influence stay.
+    pub(super) fn limits(&self, scale: &[f64], from: &[f64]) -> StepBox {
         let reach = |ends: &[f64]| -> Vec<f64> {
             (0..scale.len())
                 .map(|j| if self.linear.norms[j] > 0.0 { (ends[j] - from[j]) * scale[j] } else { 0.0 })
                 .collect()
         };
-        let limits = StepBox { lower: reach(&self.bounds.lower), upper: reach(&self.bounds.upper) };
-        (self.linear.r.scaled(&inverse), limits)
+        StepBox { lower: reach(&self.bounds.lower), upper: reach(&self.bounds.upper) }
     }
 
     /// The point reached by a scaled step; at a bound exactly where the step is.
@@ -293,8 +305,9 @@ impl<'a, P: Residuals> Search<'a, P> {
             let theta = self.point(&self.theta, newton, &self.linear.norms);
             return Trial { theta, length: newton_length, predicted: newton.predicted, full: true };
         }
-        let (a, limits) = self.scaled_by(&self.scale, &self.theta);
-        let (step, damping) = of_length(&a, &self.linear.q, self.radius, self.damping, &limits);
+        let (a, b) = self.scaled_by(&self.scale, &self.linear.q);
+        let limits = self.limits(&self.scale, &self.theta);
+        let (step, damping) = of_length(&a, &b, self.radius, self.damping, &limits);
         self.damping = damping;
         let theta = self.point(&self.theta, &step, &self.scale);
         Trial { theta, length: norm(&step.z), predicted: step.predicted, full: false }

@@ -1,7 +1,7 @@
-//! Starts that fill a box evenly: the points of Halton's sequence with reversed digits.
+//! Starts that fill a box evenly: the points of Halton's sequence with multiplied digits.
 //!
-//! J. H. Halton, *Numer. Math.* 2 (1960) 84; digits `d` of base `b` become `b - d`, which breaks the correlation of large bases
-//! (B. Vandewoestyne, R. Cools, *J. Comput. Appl. Math.* 189 (2006) 341).
+//! J. H. Halton, *Numer. Math.* 2 (1960) 84. Digits `d` of base `b` become `w d mod b` (H. Chi, M. Mascagni, T. Warnock, *Math. Comput. Simul.* 70
+//! (2005) 9), here with `w` the whole part of `b` times the fractional part of `sqrt(b)`: neighbouring large bases are then no longer in step.
 
 use super::NotABox;
 use super::residuals::Bounds;
@@ -19,7 +19,7 @@ pub fn starts_in_box(count: usize, bounds: &Bounds) -> Result<Vec<Vec<f64>>, Not
     }
     let bases = primes(sides.len());
     let place = |index: usize, j: usize| {
-        let ((lower, upper), part) = (sides[j], reversed_radical_inverse(index, bases[j]));
+        let ((lower, upper), part) = (sides[j], radical_inverse(index, bases[j]));
         // Not `lower + part (upper - lower)`, which overflows in a box as wide as the numbers.
         (lower * (1.0 - part) + upper * part).clamp(lower, upper)
     };
@@ -39,15 +39,22 @@ fn primes(count: usize) -> Vec<usize> {
     primes
 }
 
-/// The digits of `index`, each subtracted from the base (0 stays), mirrored at the point: in (0, 1) for a positive index.
-fn reversed_radical_inverse(mut index: usize, base: usize) -> f64 {
+/// The digits of `index`, multiplied and mirrored at the point: in (0, 1) for a positive index.
+fn radical_inverse(mut index: usize, base: usize) -> f64 {
+    let multiplier = multiplier(base);
     let (mut sum, mut weight) = (0.0, 1.0);
     while index > 0 {
         weight /= base as f64;
-        sum += weight * ((base - index % base) % base) as f64;
+        sum += weight * (multiplier * (index % base) % base) as f64;
         index /= base;
     }
     sum
+}
+
+/// The whole part of `b (sqrt(b) - floor(sqrt(b)))`, at least 1.
+fn multiplier(base: usize) -> usize {
+    // floor(sqrt(b^3)) - b floor(sqrt(b)), in whole numbers.
+    (base.pow(3).isqrt() - base * base.isqrt()).max(1)
 }
 
 #[cfg(test)]
@@ -73,10 +80,11 @@ mod tests {
     }
 
     #[test]
-    fn digits_are_reversed() {
+    fn digits_are_multiplied_and_mirrored() {
+        assert_eq!([2, 3, 5, 67, 71].map(multiplier), [1, 2, 1, 12, 30]);
         // 5 = 12 in base 3: digits 2, 1 become 1, 2: 1/3 + 2/9.
-        assert!((reversed_radical_inverse(5, 3) - 5.0 / 9.0).abs() < 1e-15);
-        assert_eq!(reversed_radical_inverse(6, 2).to_bits(), 0.375_f64.to_bits());
+        assert!((radical_inverse(5, 3) - 5.0 / 9.0).abs() < 1e-15);
+        assert_eq!(radical_inverse(6, 2).to_bits(), 0.375_f64.to_bits());
         assert_eq!(primes(12), [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37]);
     }
 

@@ -1,0 +1,207 @@
+//! `bulge compare`: model against measurement, and the error as effects are added.
+
+use bulge_effects::Effect;
+use bulge_effects::law::{Law, LawGeometry};
+use bulge_inference::{Comparison, Fit, Options, compare};
+use bulge_measurements::Data;
+use clap::Args;
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::arguments;
+use crate::failure::Failure;
+use crate::files;
+use crate::text::significant;
+
+/// Model against measurement. Effects are fitted only if you name them with `--with`.
+#[derive(Debug, Args)]
+pub(crate) struct CompareCommand {
+    /// Measured rows: CSV (or Parquet) with columns such as `pressure [bar]`, `contraction [%]`, `force [N]`; several files make one analysis
+    #[arg(required = true, value_name = "DATA")]
+    data: Vec<PathBuf>,
+    /// A muscle file or the name of a shipped muscle
+    #[arg(long)]
+    muscle: String,
+    /// Effects to add, in this order: `--with end-taper,bladder-elasticity`
+    #[arg(long, value_delimiter = ',', value_name = "EFFECT")]
+    with: Vec<String>,
+    /// Your own effects, as expressions in a TOML file
+    #[arg(long, value_name = "FILE")]
+    effects: Option<PathBuf>,
+    /// A force law of the papers as the base instead of the equilibrium (`bulge effects --laws`)
+    #[arg(long, value_name = "LAW")]
+    law: Option<String>,
+    /// Fit the coefficients of `--law` to the data
+    #[arg(long, requires = "law")]
+    fit_law: bool,
+    /// Fit every force law of the papers to the same data, for comparison
+    #[arg(long)]
+    rivals: bool,
+    /// Folder for report.html, the plots as SVG, and compare.json
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// One JSON document on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl CompareCommand {
+    pub(crate) fn run(&self) -> Result<String, Failure> {
+        let muscle = arguments::muscle(&self.muscle)?;
+        let catalogue = arguments::catalogue(self.effects.as_deref())?;
+        let effects = arguments::effects(&catalogue, &self.with)?;
+        let data = Data::read(&self.data)?;
+        let mut options = Options::new(catalogue, effects);
+        options.rivals = self.rivals;
+        if let Some(name) = &self.law {
+            let law = Law::find(name).ok_or_else(|| no_law(name))?;
+            let table = law.table_for(muscle.name());
+            options.law = Some((law, law.start(&LawGeometry::from(&muscle), table), self.fit_law));
+        }
+        let comparison = compare(&data, &muscle, &options)?;
+        let document = serde_json::to_string_pretty(&comparison)? + "\n";
+        let mut wrote = String::new();
+        if let Some(folder) = &self.out {
+            files::folder(folder)?;
+            for (name, bytes) in [("compare.json", document.as_bytes())] {
+                let path = folder.join(name);
+                files::write(&path, bytes)?;
+                let _ = writeln!(wrote, "  wrote {}", path.display());
+            }
+        }
+        if self.json { Ok(document) } else { Ok(text(&comparison, &options.effects) + &wrote) }
+    }
+}
+
+fn no_law(name: &str) -> Failure {
+    Failure::Value { option: "--law", what: format!("there is no law `{name}`; `bulge effects --laws` lists them") }
+}
+
+/// The comparison for people.
+pub(crate) fn text(comparison: &Comparison, effects: &[Arc<dyn Effect>]) -> String {
+    let mut out = String::new();
+    let data = &comparison.data;
+    let _ = writeln!(out, "{} against {}\n", comparison.muscle, data.files.join(", "));
+    let kind = if data.is_path { "along paths" } else { "in a static map" };
+    let _ = writeln!(
+        out,
+        "  {} rows {kind}: {} to {} bar, contraction {} to {} %, force {} to {} N",
+        data.rows,
+        three(data.pressure_pa[0] / 1e5),
+        three(data.pressure_pa[1] / 1e5),
+        three(100.0 * data.contraction[0]),
+        three(100.0 * data.contraction[1]),
+        three(data.force_n[0]),
+        three(data.force_n[1])
+    );
+    for left in &data.left_out {
+        let _ = writeln!(out, "  left out {} rows (line {}): {}", left.rows, left.lines, left.why);
+    }
+    for finding in &comparison.quality {
+        let _ = writeln!(out, "  {}", finding.says);
+    }
+    ladder(&mut out, comparison);
+    if let Some(fit) = comparison.ladder.last().and_then(|rung| rung.fit.as_ref()) {
+        parameters(&mut out, fit);
+    }
+    rivals(&mut out, comparison);
+    for warning in &comparison.warnings {
+        let _ = writeln!(out, "  ! {warning}");
+    }
+    if effects.is_empty() {
+        let _ = writeln!(out, "\n  Add effects with --with NAME,... (`bulge effects` lists them) and watch the error fall.");
+    }
+    out
+}
+
+fn ladder(out: &mut String, comparison: &Comparison) {
+    let width = comparison.ladder.iter().map(|r| r.added.as_deref().unwrap_or(&comparison.base).len()).max().unwrap_or(0).max(14);
+    let _ = writeln!(out, "\n    {:<width$}  {:>9}  {:>10}  {:>9}  {:>8}  fitted", "model", "error", "full scale", "held out", "R^2");
+    for (i, rung) in comparison.ladder.iter().enumerate() {
+        let sign = if i == 0 { " " } else { "+" };
+        let held = rung.held_out_rmse_n.map_or_else(|| "-".to_owned(), |v| format!("{} N", three(v)));
+        let _ = writeln!(
+            out,
+            "  {sign} {:<width$}  {:>7} N  {:>8.2} %  {held:>9}  {:>8.5}  {:>6}",
+            rung.added.as_deref().unwrap_or(&comparison.base),
+            three(rung.rmse_n),
+            rung.rmse_percent,
+            rung.r_squared,
+            rung.fitted
+        );
+    }
+    if let Some(floor) = &comparison.noise_floor {
+        let percent = 100.0 * floor.sd_n / comparison.data.full_scale_n;
+        let _ = writeln!(out, "    {:<width$}  {:>7} N  {percent:>8.2} %  ({})", "noise floor", three(floor.sd_n), floor.source);
+    }
+}
+
+/// The fitted numbers with their intervals.
+pub(crate) fn parameters(out: &mut String, fit: &Fit) {
+    if fit.parameters.is_empty() {
+        return;
+    }
+    let _ = writeln!(out, "\n  fitted numbers with 95 % intervals ({} rows count as independent)", fit.effective_rows.round());
+    let label = |p: &bulge_inference::Fitted| match &p.specimen {
+        Some(specimen) => format!("{} {} [{specimen}]", p.effect, p.name),
+        None => format!("{} {}", p.effect, p.name),
+    };
+    let width = fit.parameters.iter().map(|p| label(p).len()).max().unwrap_or(0);
+    for p in &fit.parameters {
+        let mut notes = Vec::new();
+        if p.nuisance {
+            notes.push("noise of the rig".to_owned());
+        }
+        if !p.plausible {
+            notes.push("IMPLAUSIBLE".to_owned());
+        }
+        if let Some(side) = p.at_bound {
+            notes.push(format!("at its {side} bound"));
+        }
+        if !p.determined {
+            notes.push("not determined".to_owned());
+        }
+        if let Some((name, value, unit)) = &p.also {
+            notes.push(format!("{name} {} {unit}", three(*value)));
+        }
+        let _ = writeln!(
+            out,
+            "    {:<width$}  {:>9} {:<6} {} to {}  {}",
+            label(p),
+            three(p.value),
+            p.unit,
+            three(p.low),
+            three(p.high),
+            notes.join(", ")
+        );
+    }
+}
+
+fn rivals(out: &mut String, comparison: &Comparison) {
+    if comparison.rivals.is_empty() {
+        return;
+    }
+    let _ = writeln!(out, "\n  force laws of the papers on the same data");
+    let width = comparison.rivals.iter().map(|rival| rival.law.len()).max().unwrap_or(0);
+    for rival in &comparison.rivals {
+        if let Some(failed) = &rival.failed {
+            let _ = writeln!(out, "    {:<width$}  {failed}", rival.law);
+            continue;
+        }
+        let printed = rival.printed_rmse_n.map_or_else(String::new, |v| format!(", as printed {} N", three(v)));
+        let held = rival.held_out_rmse_n.map_or_else(String::new, |v| format!(", held out {} N", three(v)));
+        let _ = writeln!(
+            out,
+            "    {:<width$}  {:>7} N  {:.2} %  with {} numbers{printed}{held}",
+            rival.law,
+            three(rival.rmse_n),
+            rival.rmse_percent,
+            rival.fitted
+        );
+    }
+}
+
+fn three(value: f64) -> String {
+    significant(value, 3)
+}

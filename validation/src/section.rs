@@ -1,0 +1,44 @@
+//! Area on which the pressure acts in a cross-section, from the geometry of each muscle alone.
+
+use bulge_muscles::{Construction, Muscle, Parameter, Quantity};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A(r) \[m^2\] where the fibres are at the radius r \[m\].
+pub(crate) fn area(muscle: &Muscle, r: f64) -> f64 {
+    match (muscle.construction(), muscle.fibres()) {
+        (Construction::Pleated(pleated), Some(n)) => {
+            let (n, crest) = (f64::from(n), r + pleated.pleat_depth().si());
+            let Some(cloth) = muscle.get(Parameter::ClothCircumference) else {
+                return 0.5 * n * (2.0 * PI / n).sin() * crest * crest;
+            };
+            n * panel(PI / n, cloth / n, crest)
+        }
+        (Construction::Pleated(pleated), None) => PI * (r + pleated.pleat_depth().si()).powi(2),
+        (Construction::Braided(_), _) => PI * (r - muscle.gas_wall().map_or(0.0, Quantity::si)).powi(2),
+    }
+}
+
+/// Area between the axis, two fibres at radius r on planes at +-`half` from the middle, and the arc of cloth of length s between them; if the
+/// arc is too long to keep inside the planes, it touches them, and the rest of the cloth lies on them.
+fn panel(half: f64, s: f64, r: f64) -> f64 {
+    // Half-opening of an arc from plane to plane, by bisection: the wider, the longer.
+    let arc = |opening: f64| 2.0 * r * half.sin() * opening / opening.sin();
+    let tangent = FRAC_PI_2 + half;
+    let (opening, start) = if arc(tangent) < s {
+        // 2 (a - r) + 2 a tan(half) tangent = s
+        (tangent, (0.5 * s + r) / (1.0 + half.tan() * tangent))
+    } else {
+        let (mut low, mut high) = (0.0, tangent);
+        while high - low > 1e-16 * tangent {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if arc(middle) < s { low = middle } else { high = middle }
+        }
+        (0.5 * (low + high), r)
+    };
+    let radius = start * half.sin() / opening.sin();
+    // Two triangles to the chord, and the segment beyond it.
+    start * start * half.sin() * half.cos() + radius * radius * (opening - 0.5 * (2.0 * opening).sin())
+}
