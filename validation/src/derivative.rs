@@ -37,8 +37,8 @@ pub(crate) fn gradients_by_shooting() -> Check {
     }
     .run(|tally| {
         for (name, muscle, contraction) in every_kind()? {
-            let closed = Problem::new(&muscle, PRESSURE)?.shoots();
-            if muscle.is_pleated() && !closed {
+            let closed = !Problem::new(&muscle, PRESSURE)?.shoots();
+            if muscle.is_pleated() && closed {
                 compare(tally, name, &muscle, contraction, Approach::Shooting)?;
             }
         }
@@ -71,36 +71,96 @@ fn compare(
     let difference = derivative(|eps| read(&problem, eps), contraction, 0.01 * contraction.abs())?;
     add("contraction", by_contraction, contraction, difference);
     for (variable, exact) in by_variable {
-        let (value, step) = match variable {
-            Variable::Pressure => (PRESSURE.to_pa(), 0.01 * PRESSURE.to_pa()),
-            Variable::Parameter(parameter) => {
-                let Some(value) = muscle.get(parameter) else {
-                    return Err(format!("{name} has a derivative by {variable} but no such parameter").into());
-                };
-                // A count moves by whole numbers; what is absent stays absent.
-                match parameter {
-                    Parameter::Fibres if value < 20.0 => continue,
-                    Parameter::Fibres => (value, 1.0),
-                    _ if value == 0.0 => continue,
-                    // The cloth's edge moves along a steep meridian.
-                    Parameter::UnfoldedRadius => (value, 0.003 * value),
-                    _ => (value, 0.01 * value),
-                }
-            }
-        };
-        let outputs = |value: f64| -> Result<[f64; 2], Trouble> {
-            let problem = match variable {
-                Variable::Pressure => Problem::new(muscle, Pressure::pa(value))?,
-                Variable::Parameter(Parameter::Fibres) => {
-                    Problem::new(&muscle.with(Parameter::Fibres, value.round())?, PRESSURE)?
-                }
-                Variable::Parameter(parameter) => Problem::new(&muscle.with(parameter, value)?, PRESSURE)?,
-            };
-            Ok(read(&problem, contraction)?)
-        };
+        let Some((value, step)) = step_of(muscle, variable) else { continue };
+        let outputs = |value: f64| Ok::<_, Trouble>(read(&changed(muscle, variable, value)?, contraction)?);
         add(&variable.to_string(), exact, value, derivative(outputs, value, step)?);
     }
     Ok(())
+}
+
+/// Value and step of a variable; none if it is 0, or a count too small to be moved by whole numbers.
+fn step_of(muscle: &Muscle, variable: Variable) -> Option<(f64, f64)> {
+    let Variable::Parameter(parameter) = variable else {
+        return Some((PRESSURE.to_pa(), 0.01 * PRESSURE.to_pa()));
+    };
+    let value = muscle.get(parameter).unwrap_or(0.0);
+    match parameter {
+        Parameter::Fibres => (value >= 20.0).then_some((value, 1.0)),
+        // The cloth's edge moves along a steep meridian.
+        Parameter::UnfoldedRadius | Parameter::ClothCircumference => Some((value, 0.003 * value)),
+        _ => (value != 0.0).then_some((value, 0.01 * value)),
+    }
+}
+
+/// The problem with another value of a variable.
+fn changed(muscle: &Muscle, variable: Variable, value: f64) -> Result<Problem, Trouble> {
+    Ok(match variable {
+        Variable::Pressure => Problem::new(muscle, Pressure::pa(value))?,
+        Variable::Parameter(Parameter::Fibres) => {
+            Problem::new(&muscle.with(Parameter::Fibres, value.round())?, PRESSURE)?
+        }
+        Variable::Parameter(parameter) => Problem::new(&muscle.with(parameter, value)?, PRESSURE)?,
+    })
+}
+
+/// All outputs of the linearised answer by the contraction, the pressure and every parameter, from the start of a neighbour.
+pub(crate) fn linearised() -> Check {
+    Claim {
+        group: "derivatives",
+        name: "linearised force, meridional force, mid radius and volume by contraction, pressure and every parameter",
+        source: "differences of sixth order of solutions",
+        tolerance: 1e-7,
+        why: "solutions are exact to 1e-11 and differ by about 1 %; the cloth's kink leaves 1e-8",
+    }
+    .run(|tally| {
+        for (name, muscle, contraction) in every_kind()? {
+            let problem = Problem::new(&muscle, PRESSURE)?;
+            let variables: Vec<Variable> = Variable::all()
+                .filter(|variable| match variable {
+                    Variable::Pressure => true,
+                    Variable::Parameter(parameter) => muscle.get(*parameter).is_some(),
+                })
+                .collect();
+            let near = problem.linearised(1.001 * contraction, &variables, Approach::Auto)?;
+            let here = problem.linearised_from(near.start(), contraction, &variables, Approach::Auto)?;
+            let found = problem.follow(contraction, Approach::Auto)?;
+            let values = outputs(&problem, contraction)?;
+            tally.relative(here.force_n.value, found.force_n, || format!("force, {name}"));
+            let difference =
+                derivative(|eps| outputs(&problem, eps), contraction, 0.01 * contraction.abs())?;
+            let linear =
+                [here.force_n, here.equator_force_n, here.mid_radius_m, here.volume_polygon_m3];
+            let mut add = |what: &str, exact: [f64; 4], value: f64, difference: [f64; 4]| {
+                for (i, output) in ["force", "meridional force", "radius", "volume"].iter().enumerate() {
+                    let floor = 0.1 * values[i] / value;
+                    tally.scaled(exact[i], difference[i], floor, || format!("d({output})/d({what}), {name}"));
+                }
+            };
+            add("contraction", linear.map(|l| l.by_contraction), contraction, difference);
+            for (place, variable) in variables.into_iter().enumerate() {
+                let exact = linear.map(|l| l.by_variable()[place]);
+                if let Some((value, step)) = step_of(&muscle, variable) {
+                    let at = |value: f64| outputs(&changed(&muscle, variable, value)?, contraction);
+                    add(&variable.to_string(), exact, value, derivative(at, value, step)?);
+                }
+                if variable == Variable::Pressure {
+                    add("pressure, always", linear.map(|l| l.by_pressure), PRESSURE.to_pa(), exact);
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Values of the linearised answer.
+fn outputs(problem: &Problem, contraction: f64) -> Result<[f64; 4], Trouble> {
+    let found = problem.linearised(contraction, &[], Approach::Auto)?;
+    Ok([
+        found.force_n.value,
+        found.equator_force_n.value,
+        found.mid_radius_m.value,
+        found.volume_polygon_m3.value,
+    ])
 }
 
 /// dF/dl at constant pressure, and at constant gas amount along a path on which `(p + p_ambient) V^g` is constant.

@@ -11,6 +11,7 @@ mod difference;
 mod energy;
 mod isobars;
 mod limits;
+mod lobes;
 mod meridian;
 mod published;
 mod reference;
@@ -29,11 +30,14 @@ pub const CHECKS: &[fn() -> Check] = &[
     shooting::inextensible,
     shooting::elastic,
     shooting::along_the_fibre,
+    shooting::pleats,
     braid::clamped_net,
     braid::tensions,
     braid::limits,
     braid::bladder,
     braid::misaligned,
+    lobes::touching,
+    lobes::quadrature,
     energy::virtual_work,
     energy::maxwell,
     energy::potential,
@@ -55,6 +59,7 @@ pub const CHECKS: &[fn() -> Check] = &[
     published::contraction_limits,
     published::clamped_braids,
     published::cylinder_formula,
+    published::inner_wall,
     published::measured_force,
     published::computed_volume,
 ];

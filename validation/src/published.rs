@@ -1,7 +1,7 @@
 //! What stands in print, and worked numbers that a right program gives.
 
 use bulge_fibre::{Approach, Problem};
-use bulge_muscles::{Angle, Braided, Construction, Ends, Length, Muscle, Pressure, Quantity, preset};
+use bulge_muscles::{Parameter, Angle, Braided, Construction, Ends, Length, Muscle, Pressure, Quantity, preset};
 
 use crate::check::{Check, Claim};
 use crate::specimen::{at, braid_25, cylinder_25, pleated, ppam};
@@ -107,6 +107,41 @@ pub(crate) fn cylinder_formula() -> Check {
                 let case = |what: &str| format!("{what} at {degrees} deg, contraction {contraction}");
                 tally.scaled(found.force_n, force, area, || case("force"));
                 tally.relative(found.max_radius_m, wide, || case("radius"));
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Chou's and Hannaford's correction for a wall of constant thickness: `dF = pi p (D0 t (2 sin theta - 1/sin theta) - t^2)`, D0 = 2 r0/sin alpha0,
+/// on the cylinder with the gas at r0 - t.
+pub(crate) fn inner_wall() -> Check {
+    Claim {
+        group: "published",
+        name: "cylinder with the gas on the inner wall: dF = pi p (D0 t (2 sin theta - 1/sin theta) - t^2)",
+        source: "C.-P. Chou and B. Hannaford 1996",
+        tolerance: 1e-11,
+        why: "rounding of the difference of two forces; it counts against at least 0.1 pi r0 t p",
+    }
+    .run(|tally| {
+        let pressure = Pressure::bar(3.0);
+        for degrees in [15.0, 25.0, 40.0] {
+            let (radius, angle) = (0.01, f64::to_radians(degrees));
+            let braided = Braided::new(Length::m(radius), Angle::rad(angle))?.with_ends(Ends::Cylinder);
+            let muscle = Muscle::new("cylinder", Length::m(0.3), Construction::Braided(braided))?;
+            for wall in [0.0005, 0.002, 0.005] {
+                for contraction in [-0.01, 0.0, 0.1, 0.25] {
+                    let inner = muscle.with(Parameter::GasWall, wall)?;
+                    let difference =
+                        at(&inner, pressure, contraction)?.force_n - at(&muscle, pressure, contraction)?.force_n;
+                    let sine = (1.0 - ((1.0 - contraction) * angle.cos()).powi(2)).sqrt();
+                    let widest = 2.0 * radius / angle.sin();
+                    let scale = std::f64::consts::PI * pressure.to_pa();
+                    let expected = scale * (widest * wall * (2.0 * sine - 1.0 / sine) - wall * wall);
+                    tally.scaled(difference, expected, 0.1 * scale * radius * wall, || {
+                        format!("{degrees} deg, {wall} m, contraction {contraction}")
+                    });
+                }
             }
         }
         Ok(())

@@ -86,6 +86,36 @@ fn elastic_contractions(muscle: &Muscle) -> Result<Vec<f64>, Trouble> {
     Ok(stretched.into_iter().chain([0.0]).chain(contracted).collect())
 }
 
+/// Pleats with a depth, which shift the radius on which the pressure acts.
+pub(crate) fn pleats() -> Check {
+    Claim {
+        group: "shooting",
+        name: "force, volume, radius and tension of pleats with a depth h against the closed form of the radius R + h",
+        source: "elliptic integrals",
+        tolerance: 1e-10,
+        why: "the integrator keeps 4e-12 a step; the force counts against at least 0.01 p (l0^2 + R^2) near the limit",
+    }
+    .run(|tally| {
+        for slenderness in [1.0, 6.875, 60.0] {
+            for depth in [0.02, 0.3, 1.5] {
+                let plain = pleated(Length::m(slenderness * RADIUS.to_m()), RADIUS, Some(24))?
+                    .with(Parameter::PleatDepth, depth * RADIUS.to_m())?;
+                let limit = Problem::new(&plain, PRESSURE)?.contraction_limit(Approach::ClosedForm)?;
+                let stiffness = 30.0 * PRESSURE.to_pa() * plain.length().si().powi(2);
+                let elastic = plain.with(Parameter::FibreStiffness, stiffness)?;
+                for part in [0.01, 0.2, 0.6, 0.95] {
+                    for muscle in [&plain, &elastic] {
+                        compare(tally, muscle, part * limit, &WHOLE)?;
+                        compare(tally, muscle, part * limit, &LOCAL)?;
+                    }
+                }
+                compare(tally, &elastic, -1e-3, &WHOLE)?;
+            }
+        }
+        Ok(())
+    })
+}
+
 /// What is compared: a name, the value, and the size as a part of p (l0^2 + R^2), of the value itself or of 1 that it counts against at least.
 type Output = (&'static str, fn(&Response) -> f64, Floor);
 

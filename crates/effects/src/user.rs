@@ -1,5 +1,6 @@
 //! Physical effects of one's own: a TOML file with a formula for the force and the parameters in it.
 
+mod act;
 mod quantity;
 mod reader;
 mod value;
