@@ -5,7 +5,7 @@ use bulge_muscles::{Muscle, Parameter, Pressure, Quantity};
 
 use crate::check::{Check, Claim, Tally, Trouble};
 use crate::difference::derivative;
-use crate::specimen::{at, every_kind};
+use crate::specimen::{at, every_kind, stride};
 
 const PRESSURE: Pressure = Pressure::bar(2.0);
 
@@ -68,7 +68,7 @@ fn compare(
             tally.scaled(exact[i], difference[i], floor, || format!("d({output})/d({what}), {name}"));
         }
     };
-    let difference = derivative(|eps| read(&problem, eps), contraction, 0.01 * contraction.abs())?;
+    let difference = derivative(|eps| read(&problem, eps), contraction, 0.01 * stride(muscle) * contraction.abs())?;
     add("contraction", by_contraction, contraction, difference);
     for (variable, exact) in by_variable {
         let Some((value, step)) = step_of(muscle, variable) else { continue };
@@ -87,8 +87,8 @@ fn step_of(muscle: &Muscle, variable: Variable) -> Option<(f64, f64)> {
     match parameter {
         Parameter::Fibres => (value >= 20.0).then_some((value, 1.0)),
         // The cloth's edge moves along a steep meridian.
-        Parameter::UnfoldedRadius | Parameter::ClothCircumference => Some((value, 0.003 * value)),
-        _ => (value != 0.0).then_some((value, 0.01 * value)),
+        Parameter::UnfoldedRadius => Some((value, 0.003 * value)),
+        _ => (value != 0.0).then_some((value, 0.01 * stride(muscle) * value)),
     }
 }
 
@@ -127,7 +127,7 @@ pub(crate) fn linearised() -> Check {
             let values = outputs(&problem, contraction)?;
             tally.relative(here.force_n.value, found.force_n, || format!("force, {name}"));
             let difference =
-                derivative(|eps| outputs(&problem, eps), contraction, 0.01 * contraction.abs())?;
+                derivative(|eps| outputs(&problem, eps), contraction, 0.01 * stride(&muscle) * contraction.abs())?;
             let linear =
                 [here.force_n, here.equator_force_n, here.mid_radius_m, here.volume_polygon_m3];
             let mut add = |what: &str, exact: [f64; 4], value: f64, difference: [f64; 4]| {
@@ -182,7 +182,7 @@ pub(crate) fn stiffness() -> Check {
             ] {
                 let amount = found.volume_polygon_m3.powf(exponent) * (PRESSURE.to_pa() + AMBIENT_PRESSURE);
                 let force = |eps| closed_vessel(&muscle, eps, exponent, amount).map(|force| [force]);
-                let [slope] = derivative(force, contraction, 0.01 * contraction.abs())?;
+                let [slope] = derivative(force, contraction, 0.01 * stride(&muscle) * contraction.abs())?;
                 let expected = -slope / muscle.length().si();
                 tally.relative(reported, expected, || format!("{what}, {name}"));
             }

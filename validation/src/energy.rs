@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use crate::check::{Check, Claim, Trouble};
 use crate::difference::derivative;
 use crate::section::area;
-use crate::specimen::{at, every_kind, pressure_only};
+use crate::specimen::{at, every_kind, pressure_only, stride};
 
 const PRESSURE: Pressure = Pressure::bar(2.0);
 
@@ -24,7 +24,7 @@ pub(crate) fn virtual_work() -> Check {
         for (name, muscle, contraction) in pressure_only()? {
             let found = at(&muscle, PRESSURE, contraction)?;
             let volume = |eps| at(&muscle, PRESSURE, eps).map(|found| [found.volume_polygon_m3]);
-            let [slope] = derivative(volume, contraction, 0.015 * contraction.abs())?;
+            let [slope] = derivative(volume, contraction, 0.015 * stride(&muscle) * contraction.abs())?;
             let p = PRESSURE.to_pa();
             tally
                 .relative(found.force_n, p * slope / muscle.length().si(), || format!("differences, {name}"));
@@ -82,7 +82,7 @@ pub(crate) fn potential() -> Check {
             let found = problem.follow(contraction, approach)?;
             tally.add(1e2 * (volume / found.volume_polygon_m3 - 1.0), || format!("volume x 100, {name}"));
             let potential = |eps| energy(eps).map(|[potential, _]| [potential]);
-            let [slope] = derivative(potential, contraction, 0.03 * contraction.abs())?;
+            let [slope] = derivative(potential, contraction, 0.03 * stride(&muscle) * contraction.abs())?;
             tally.relative(found.force_n, -slope / muscle.length().si(), || name.into());
         }
         Ok(())

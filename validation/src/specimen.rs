@@ -124,6 +124,11 @@ pub(crate) fn every_kind() -> Result<Vec<(&'static str, Muscle, f64)>, Trouble> 
     Ok(pressure_only()?.into_iter().chain(storing()?).collect())
 }
 
+/// How long the steps of differences may be against the usual ones: lobes that are nearly open stiffen within some per mille of contraction.
+pub(crate) fn stride(muscle: &Muscle) -> f64 {
+    if muscle.get(Parameter::ClothCircumference).is_some() { 0.1 } else { 1.0 }
+}
+
 /// A muscle at a pressure and a contraction, by whichever method applies.
 pub(crate) fn at(muscle: &Muscle, pressure: Pressure, contraction: f64) -> Result<Response, Trouble> {
     Ok(Problem::new(muscle, pressure)?.follow(contraction, Approach::Auto)?)

@@ -141,6 +141,43 @@ fn random_muscles() {
     log.finish("random muscles", 0.02);
 }
 
+/// Cloth from just wider than the fibres at the fittings to plenty, between 3 and 300 fibres, with anything besides.
+#[test]
+fn random_lobes() {
+    let mut log = Log::default();
+    let mut sampler = Sampler::new(77);
+    let mut asked = 0;
+    while asked < 25 {
+        let radius = sampler.log_between(0.002, 0.05);
+        let fibres = sampler.log_between(3.0, 300.0).round();
+        let open = radius * sampler.log_between(1.02, 6.0);
+        let length = (radius * sampler.log_between(0.5, 1000.0)).min(600.0 * open / fibres);
+        let mut muscle = pleated(length, radius).with(Parameter::Fibres, fibres).unwrap();
+        muscle = muscle.with(Parameter::ClothCircumference, std::f64::consts::TAU * open).unwrap();
+        if sampler.chance(0.3) {
+            let total = 8e5 * length * length / sampler.log_between(1e-5, 1e-2);
+            muscle = muscle.with(Parameter::FibreStiffness, total / fibres).unwrap();
+        }
+        if sampler.chance(0.2) {
+            muscle = muscle.with(Parameter::PleatDepth, 0.5 * (open - radius)).unwrap();
+        }
+        if sampler.chance(0.2) {
+            let cloth = LineStiffness::n_per_m(radius * 1e5 * sampler.log_between(0.1, 10.0));
+            let unfolding = Unfolding::new(cloth, Length::m(radius + 0.7 * (open - radius))).unwrap();
+            muscle = muscle.with_unfolding(unfolding);
+        }
+        let pressure = sampler.pressure();
+        // What is too soft or too slender is refused at once or along the way.
+        let Ok(problem) = Problem::new(&muscle, pressure) else { continue };
+        asked += 1;
+        for contraction in contractions(&problem, &mut log) {
+            let outcome = problem.solve(Given::Contraction(contraction), Approach::Auto);
+            log.check(&problem, &format!("number {asked}, {pressure}, contraction {contraction:e}"), outcome);
+        }
+    }
+    log.finish("random lobes", 0.02);
+}
+
 /// Inverse questions give back what they were asked with.
 #[test]
 fn force_length_and_volume_lead_back() {

@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage};
 use crate::catalogue::Catalogue;
 use crate::effect::Effect;
+use crate::law::PAPERS;
 
 /// Widest line.
 const WIDTH: usize = 100;
@@ -47,6 +48,10 @@ pub fn describe(effect: &dyn Effect) -> String {
     page.item("separate", card.separate);
     page.item("needs", card.needs.says());
     page.item("source", &format!("{} ({})", card.source, card.evidence.says()));
+    let cites = |key: &str| [card.about, card.equation, card.source].iter().any(|text| has_word(text, key));
+    for paper in PAPERS.iter().filter(|paper| cites(paper.key)) {
+        page.item("", &format!("{}: {}", paper.key, paper.title));
+    }
     page.text
 }
 
@@ -220,29 +225,21 @@ impl ParameterDocument {
         }
     }
 
-    /// What it is, its range and the rest in one sentence.
-    fn says(&self) -> String {
-        let mut says = self.about.clone();
+    /// Its range and the rest in one sentence.
+    fn range(&self) -> String {
         let times =
             self.multiple_of.map_or(String::new(), |of| format!(" times the {}", of.replace('_', " ")));
-        says += &format!(": {} to {}{times}", digits(self.low), digits(self.high));
-        if self.typical.to_bits() != self.off.to_bits() {
-            says += &format!(", usually {}", digits(self.typical));
-        }
-        says += &format!("; off at {}", digits(self.off));
-        if let Some([mean, sd]) = self.prior {
-            says += &format!("; expected {} +- {}", digits(mean), digits(sd));
-        }
-        if let Some([low, high]) = self.plausible {
-            says += &format!("; no cure outside {} to {}", digits(low), digits(high));
-        }
-        if let Some([name, unit]) = &self.reciprocal {
-            says += &format!("; also shown as {name} in {unit}");
-        }
-        if self.logarithmic {
-            says += "; fitted over its logarithm";
-        }
-        says
+        let is_off = self.typical.to_bits() == self.off.to_bits();
+        let usual = if is_off { String::new() } else { format!(", usually {}", digits(self.typical)) };
+        let mut parts = vec![format!("{} to {}{times}{usual}", digits(self.low), digits(self.high))];
+        parts.push(format!("off at {}", digits(self.off)));
+        parts.extend(self.prior.map(|[mean, sd]| format!("prior {} +- {}", digits(mean), digits(sd))));
+        let outside =
+            |[low, high]: [f64; 2]| format!("implausible outside {} to {}", digits(low), digits(high));
+        parts.extend(self.plausible.map(outside));
+        parts.extend(self.reciprocal.as_ref().map(|[name, unit]| format!("also shown as {name} in {unit}")));
+        parts.extend(self.logarithmic.then(|| "fitted over its logarithm".to_owned()));
+        parts.join("; ")
     }
 }
 
@@ -282,7 +279,7 @@ fn parts(equation: &str) -> impl Iterator<Item = &str> {
     equation.split("  ").flat_map(str::lines).map(str::trim).filter(|part| !part.is_empty())
 }
 
-/// The beginning of a text that fits, cut at a blank.
+/// The beginning of an equation that fits, cut at a blank outside parentheses.
 fn shortened(text: &str, room: usize) -> String {
     let text = text.trim_end_matches([',', ';']);
     if text.chars().count() <= room {
@@ -291,9 +288,21 @@ fn shortened(text: &str, room: usize) -> String {
     if room < LEAST_EQUATION {
         return String::new();
     }
-    let cut: String = text.chars().take(room - 3).collect();
-    let kept = cut.rfind(' ').map_or(cut.as_str(), |at| &cut[..at]);
-    format!("{} ...", kept.trim_end_matches([' ', ',', ';', '=', '+', '-', '*', '/']))
+    let (mut depth, mut end) = (0_i32, 0);
+    for (at, c) in text.char_indices().take(room - 3) {
+        match c {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            ' ' if depth == 0 => end = at,
+            _ => (),
+        }
+    }
+    if end == 0 { String::new() } else { format!("{} ...", text[..end].trim_end_matches([' ', ',', ';'])) }
+}
+
+/// Whether a text has a word, such as "S1".
+fn has_word(text: &str, word: &str) -> bool {
+    text.split(|c: char| !c.is_ascii_alphanumeric()).any(|other| other == word)
 }
 
 /// A number with six significant digits at most.
@@ -327,9 +336,12 @@ impl Page {
     fn hanging(&mut self, before: &str, rest: usize, text: &str) {
         let mut line = before.to_owned();
         let mut is_empty = true;
-        for word in text.split_whitespace() {
-            let blank = usize::from(!is_empty);
-            if !is_empty && line.chars().count() + blank + word.chars().count() > WIDTH {
+        let mut words = text.split_whitespace().peekable();
+        while let Some(word) = words.next() {
+            // A differential such as dF/d eps stays in one piece.
+            let is_split = word == "d" || word.ends_with("/d") || word.ends_with("(d");
+            let rest_of_it = words.peek().filter(|_| is_split).map_or(0, |next| 1 + next.chars().count());
+            if !is_empty && line.chars().count() + 1 + word.chars().count() + rest_of_it > WIDTH {
                 self.line(line.trim_end());
                 line = " ".repeat(rest);
                 is_empty = true;
@@ -355,7 +367,8 @@ impl Page {
         let unit = cards.iter().map(|card| card.unit.chars().count() + 2).max().unwrap_or(0);
         for card in cards {
             let first = format!("  {:name$}  {:unit$}  ", card.name, format!("[{}]", card.unit));
-            self.hanging(&first, name + unit + 6, &ParameterDocument::of(card).says());
+            self.hanging(&first, name + unit + 6, card.about);
+            self.paragraph(name + unit + 6, name + unit + 8, &ParameterDocument::of(card).range());
         }
         self.line("");
     }

@@ -5,10 +5,21 @@ use crate::quote::quoted;
 
 /// A finite number.
 pub(crate) fn number(text: &str) -> Result<f64, CellError> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(CellError::NotFinite { text: quoted(text) }),
-        Err(_) => Err(no_number(text)),
+    let value = text.parse::<f64>().map_err(|_| no_number(text))?;
+    if value.is_finite() { Ok(value) } else { Err(CellError::NotFinite { text: quoted(text) }) }
+}
+
+/// Larger numbers are no measurements; up to here no square of a sum overflows.
+const LARGEST: f64 = 1e30;
+
+/// Whether a value in SI could have been measured.
+pub(crate) fn measurable(value: f64, text: impl Fn() -> String) -> Result<f64, CellError> {
+    if !value.is_finite() {
+        Err(CellError::NotFinite { text: text() })
+    } else if value.abs() > LARGEST {
+        Err(CellError::TooLarge { text: text() })
+    } else {
+        Ok(value)
     }
 }
 

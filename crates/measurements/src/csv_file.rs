@@ -242,6 +242,7 @@ mod tests {
         refuses(&with("1,nan,3"), Some(3), &["`nan`", "finite"]);
         refuses(&with("1,1e400,3"), Some(3), &["`1e400`", "finite"]);
         refuses(&with("1e308,300,3"), Some(3), &["`1e308`", "finite"]);
+        refuses(&with("1,1e40,3"), Some(3), &["`1e40` is larger"]);
         refuses(&with("1,2"), Some(3), &["2 fields", "3"]);
         refuses(&with("1,2,3,4"), Some(3), &["4 fields", "surplus"]);
         refuses(&with("1,5,290,0,20,5"), Some(3), &["6 fields", "decimal points"]);

@@ -22,8 +22,9 @@ pub enum Motion<'a> {
 ///
 /// Rows with a time or a sweep label are a path: they follow each other, and [`Data::history`] says how the muscle moved. Without both
 /// they are a static map. Sweeps are the runs with one label; without labels a new one begins with another file or specimen, where the
-/// time goes back or pauses for more than 20 times the median time between rows, and where an isobaric run ends and another begins: pressure and
-/// motion jump within one row by more than 5 % of their range and 20 times their median change, between rows that move at constant pressure.
+/// time goes back or pauses for more than 20 times the median time between rows, and where an isobaric run ends and another begins. There pressure and
+/// motion jump within one row, by more than 5 % of their range and 20 times their median change, between rows of constant pressure; and the jump is not that of a
+/// muscle that follows a step of pressure, because it goes the other way, or the muscle moves before and after it as well.
 ///
 /// ```
 /// use bulge_measurements::{Data, SweepKind};

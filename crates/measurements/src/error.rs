@@ -335,6 +335,14 @@ pub enum CellError {
         /// What is written.
         text: String,
     },
+    /// Beyond anything that is measured.
+    #[error(
+        "`{text}` is larger than anything that is measured (1e30 in SI units): check the number and its unit"
+    )]
+    TooLarge {
+        /// What is written.
+        text: String,
+    },
     /// No whole number.
     #[error("`{text}` is not a whole number: write a count such as `3`")]
     NotWhole {

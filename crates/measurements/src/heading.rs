@@ -197,6 +197,8 @@ fn nearest(text: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::float_cmp, reason = "products of whole numbers are exact")]
+
     use super::*;
 
     #[track_caller]

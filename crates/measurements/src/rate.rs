@@ -7,6 +7,9 @@ const MOST_POINTS: usize = 33;
 /// Over a window the motion covers this many times what the sensor resolves: the rate's standard error is then below 3 %.
 const RESOLVED: f64 = 10.0;
 
+/// A faster motion per second is no motion but two times that are nearly equal.
+const FASTEST: f64 = 1e30;
+
 /// ds/dt at each row of a stretch: `s` and `time` of its rows, the turning point before it included; exact for uniform acceleration.
 ///
 /// A parabola is fitted to the rows around each one, as few as let the motion stand out from step and noise. A rate against the
@@ -30,7 +33,8 @@ pub(crate) fn along(s: &[f64], time: &[f64], direction: i8, resolution: &Resolut
             }
             half /= 2;
             let rate = slope(s, time, row, first, end);
-            if rate * sign > 0.0 { rate } else { 0.0 }
+            // Times that differ by hardly anything have no rate either.
+            if rate * sign > 0.0 && rate.abs() < FASTEST { rate } else { 0.0 }
         })
         .collect()
 }

@@ -324,6 +324,8 @@ fn group(contraction: &[f64], members: Vec<Candidate>, comparisons: &[Comparison
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::float_cmp, reason = "counts are exact")]
+
     use super::*;
     use crate::columns::{Columns, Labels, Trace};
     use crate::simulated::{Noise, clean_loops, force};

@@ -98,6 +98,8 @@ fn white_noise(values: &[f64], sweeps: &[Range<usize>]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::float_cmp, reason = "a median is one of the numbers")]
+
     use super::*;
     use crate::simulated::Noise;
 

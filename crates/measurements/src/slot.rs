@@ -38,10 +38,7 @@ impl Slot {
         match &mut self.values {
             Values::Numbers(values) => {
                 let value = self.heading.scale.si(cell::number(text)?);
-                if !value.is_finite() {
-                    return Err(CellError::NotFinite { text: text.to_owned() });
-                }
-                values.push(value);
+                values.push(cell::measurable(value, || text.to_owned())?);
             }
             Values::Counts(values) => values.push(cell::whole(text)?),
             Values::Directions(values) => values.push(cell::direction(text)?),
@@ -56,10 +53,7 @@ impl Slot {
         match &mut self.values {
             Values::Numbers(values) => {
                 let value = self.heading.scale.si(number);
-                if !value.is_finite() {
-                    return Err(CellError::NotFinite { text: number.to_string() });
-                }
-                values.push(value);
+                values.push(cell::measurable(value, || number.to_string())?);
             }
             Values::Counts(values) => values.push(cell::whole_of(number, &number.to_string())?),
             Values::Directions(values) => values.push(

@@ -1,5 +1,6 @@
 //! Files: their format, their fingerprint, and what is read from them.
 
+use crate::cell;
 use crate::columns::Columns;
 use crate::csv_file::{self, Table};
 use crate::error::{CellError, MeasurementError};
@@ -123,8 +124,8 @@ fn checked(file: &str, columns: &Columns) -> Result<(), MeasurementError> {
         problem,
     };
     for (name, values) in columns.numbers() {
-        if let Some(row) = values.iter().position(|value| !value.is_finite()) {
-            return Err(at(row, name, CellError::NotFinite { text: values[row].to_string() }));
+        for (row, value) in values.iter().enumerate() {
+            cell::measurable(*value, || value.to_string()).map_err(|problem| at(row, name, problem))?;
         }
     }
     let directions = columns.direction.iter().flatten();

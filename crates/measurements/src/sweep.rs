@@ -1,6 +1,6 @@
 //! Sweeps: uninterrupted runs, as labelled or as found in time, pressure and motion.
 
-use crate::columns::Columns;
+use crate::columns::{Columns, Trace};
 use crate::resolution::{bounds, median};
 use crate::stretch::Stretch;
 use serde::Serialize;
@@ -43,8 +43,12 @@ pub(crate) const GAP: f64 = 20.0;
 const JUMP: f64 = 0.05;
 /// and more than this many times the median change between rows,
 const JUMP_OF_STEPS: f64 = 20.0;
-/// and the muscle moved at constant pressure over so many rows on both sides.
+/// if the pressure is constant over so many rows on both sides,
 const AROUND: usize = 5;
+/// and the muscle shortens although the pressure falls, or lengthens although it rises; else if it also moves before and after, over so many rows
+const MOVING_AROUND: usize = 20;
+/// by this share of the jump: a muscle under a weight that follows a step of pressure stands still before and nearly still after.
+const MOVING: f64 = 0.01;
 /// A sweep whose contraction changes less, while the pressure changes, is isometric: the rig gives way a little.
 const ISOMETRIC_TRAVEL: f64 = 2e-3;
 /// A pressure that changes by more than this share of the largest is no constant pressure.
@@ -98,8 +102,8 @@ struct Jumps<'a> {
     rows: &'a Range<usize>,
     /// Smallest jumps of pressure and motion.
     least: [f64; 2],
-    /// Median change of the motion between rows where it changes.
-    moving: f64,
+    /// +1 where the motion is a contraction, -1 where it is a length.
+    sign: f64,
 }
 
 impl<'a> Jumps<'a> {
@@ -111,24 +115,29 @@ impl<'a> Jumps<'a> {
             let (low, high) = bounds(values);
             (JUMP * (high - low)).max(JUMP_OF_STEPS * median(&mut steps))
         });
-        let steps = motion[rows.clone()].windows(2).map(|w| (w[1] - w[0]).abs());
-        let moving = median(&mut steps.filter(|step| *step > 0.0).collect::<Vec<_>>());
-        Self { pressure, motion, rows, least, moving }
+        let sign = if matches!(columns.motion, Trace::Contraction(_)) { 1.0 } else { -1.0 };
+        Self { pressure, motion, rows, least, sign }
     }
 
     /// Whether a new run begins at this row.
     fn is_at(&self, row: usize) -> bool {
-        let jump = (self.pressure[row] - self.pressure[row - 1]).abs();
-        let is_far = jump > self.least[0] && (self.motion[row] - self.motion[row - 1]).abs() > self.least[1];
-        let before = row.saturating_sub(AROUND).max(self.rows.start)..row;
-        let after = row..(row + AROUND).min(self.rows.end);
-        is_far && self.is_isobaric(&before, jump) && self.is_isobaric(&after, jump)
-    }
-
-    fn is_isobaric(&self, rows: &Range<usize>, jump: f64) -> bool {
-        let (low, high) = bounds(&self.pressure[rows.clone()]);
-        let path: f64 = self.motion[rows.clone()].windows(2).map(|w| (w[1] - w[0]).abs()).sum();
-        rows.len() > 1 && high - low < 0.1 * jump && path >= 0.2 * self.moving * (rows.len() - 1) as f64
+        let [pressure, motion] = [self.pressure, self.motion].map(|values| values[row] - values[row - 1]);
+        if pressure.abs() <= self.least[0] || motion.abs() <= self.least[1] {
+            return false;
+        }
+        let sides = |rows: usize| {
+            [row.saturating_sub(rows).max(self.rows.start)..row, row..(row + rows).min(self.rows.end)]
+        };
+        let is_isobaric = sides(AROUND).iter().all(|side| {
+            let (low, high) = bounds(&self.pressure[side.clone()]);
+            high - low < 0.1 * pressure.abs()
+        });
+        let moves = || {
+            sides(MOVING_AROUND).iter().all(|side| {
+                (self.motion[side.end - 1] - self.motion[side.start]).abs() > MOVING * motion.abs()
+            })
+        };
+        is_isobaric && (pressure * motion * self.sign < 0.0 || moves())
     }
 }
 

@@ -239,6 +239,18 @@ impl Model {
         Ok((muscle, variables))
     }
 
+    /// Whether each row takes an integration of the equilibrium ODE.
+    ///
+    /// # Errors
+    /// If the muscle can't have an effect, or not with these values.
+    pub fn is_costly(&self, theta: &[f64]) -> Result<bool, ModelError> {
+        if self.law().is_some() {
+            return Ok(false);
+        }
+        let (muscle, _) = self.reshape(theta, &[])?;
+        Ok(self.equilibrium(&muscle, &[]).is_ok_and(|equilibrium| equilibrium.is_costly()))
+    }
+
     pub(crate) fn equilibrium(
         &self,
         muscle: &Muscle,

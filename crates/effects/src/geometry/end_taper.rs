@@ -18,7 +18,7 @@ impl Effect for EndTaper {
             about: "The textbook formula takes the muscle for a cylinder up to its fittings. Really the braid is clamped there and swells over \
                     a length of some radii, so that the middle is more contracted than the muscle as a whole. A muscle of 25 radii loses an \
                     eighth of its force at 20 % by it, one of 3 radii four fifths. There is nothing to fit: the shape follows from the net.",
-            equation: "1 - eps = cos(theta_c)/cos(alpha0) + delta/l0,   F = pi p r0^2 (3 cos^2(theta_c) - 1)/sin^2(alpha0); \
+            equation: "1 - eps = cos(theta_c)/cos(alpha0) + delta/l0,   F = pi p r0^2 (3 cos^2(theta_c) - 1)/sin^2(alpha0),   \
                        delta: what the two ends lack to a cylinder, from the equilibrium of the clamped net",
             source: "equilibrium of the pinned net, as Adkins and Rivlin 1955, Liu and Rahn 2003; checked by an independent energy method",
             evidence: Evidence::Derived,
@@ -116,6 +116,23 @@ mod tests {
             let clamped = EndTaper.reshape(&full, &[]).unwrap().muscle;
             assert_eq!(format!("{clamped:?}"), format!("{full:?}").replace("Cylinder", "Clamped"));
         }
+        // All that a muscle holds: a new field must be carried over by `rebuilt`, and tried above.
+        let toml::Value::Table(fields) = toml::Value::try_from(&cylinder()).unwrap() else {
+            panic!("a table")
+        };
+        let carried = [
+            "name",
+            "length",
+            "construction",
+            "fibre",
+            "bladder",
+            "unfolding",
+            "gas_wall",
+            "instruments",
+            "widths",
+        ];
+        let lost: Vec<_> = fields.keys().filter(|field| !carried.contains(&field.as_str())).collect();
+        assert!(lost.is_empty(), "`rebuilt` loses {lost:?}");
     }
 
     #[test]

@@ -19,9 +19,9 @@ impl Effect for Lobes {
             about: "The cloth between two fibres is longer than their distance and bulges into a lobe, which adds up to 12 % of area to the \
                     polygon. As the muscle swells the lobes flatten, so the area grows less than without them and the force falls short at \
                     large contractions, steeply near the radius at which they are gone.",
-            equation: "s = C_f/n, w = r sin(pi/n), sin(b)/b = 2 w/s, rho = s/(2 b), b <= 90 deg: \
-                       A = (n/2) sin(2 pi/n) r^2 + n rho^2 (b - sin(b) cos(b));   stop at r = C_f/(2 n sin(pi/n)); \
-                       deeper cloth stands in semicircles on pleats",
+            equation: "A(r) = (n/2) sin(2 pi/n) r^2 + n rho^2 (b - sin(b) cos(b)),   s = C_f/n,   w = r sin(pi/n),   \
+                       sin(b)/b = 2 w/s,   rho = s/(2 b),   b <= 90 deg: deeper cloth stands in semicircles on pleats;   \
+                       stop at r = C_f/(2 n sin(pi/n))",
             source: "geometry and virtual work, derived",
             evidence: Evidence::Derived,
             group: Group::Geometry,

@@ -19,7 +19,7 @@ impl Effect for RadiusError {
             about: "The braid lies at another radius than stated: the nominal diameter of a hose is that of its bore, the braid is embedded in \
                     the wall. In a muscle of 20 mm it was found at 10.7 mm, between a bore of 9.75 and an outside of 11.75 mm; the force goes \
                     with the square.",
-            equation: "r0 = radius of the braid at rest; on a cylinder F ~ r0^2",
+            equation: "r0 = radius of the braid at rest;   on a cylinder F ~ r0^2",
             source: "S5, table 2: b sin(alpha0)/(2 pi N) = 10.725 mm, the middle of the wall",
             evidence: Evidence::Derived,
             group: Group::Geometry,

@@ -18,7 +18,7 @@ impl Effect for BladderElasticity {
             title: "Elasticity of the rubber bladder",
             about: "Part of the work of the gas goes into stretching the rubber tube inside the braid. It follows the net point by point, so \
                     it acts in the equilibrium. In Festo's muscles it is the largest missing effect (180 to 220 N of 1300 N).",
-            equation: "W = c10 (l1^2 + l2^2 + 1/(l1 l2)^2 - 3),  l1 = cos(theta)/cos(alpha0),  l2 = r/r0,  wall thickness t: 2 pi r0 t W per length; \
+            equation: "W = c10 (l1^2 + l2^2 + 1/(l1 l2)^2 - 3),  l1 = cos(theta)/cos(alpha0),  l2 = r/r0,  wall thickness t: 2 pi r0 t W per length;   \
                        on a cylinder dF = 2 pi r0 t (W_1 + W_2 dl2/dl1)",
             source: "Mooney 1940, Rivlin 1948; energy of the net derived; 285 to 390 kPa fitted to published Festo data",
             evidence: Evidence::Derived,

@@ -22,8 +22,8 @@ impl Effect for BladderPrestrain {
             about: "A bladder narrower than the braid is stretched already when the muscle hangs there at rest, and pushes the ends apart; a \
                     wider one does the opposite. Between 0 and 25 % that force is constant to within 7 %, so a force map takes it for the zero \
                     of the load cell.",
-            equation: "dF = 2 pi r0 tau (2 l2 - 1) dl2/dl1,   tau = E_h t (r0/r_b - 1),   r_b: radius of the free bladder; l2 as for hoop-elasticity. \
-                       From the energy (E_h t/2) (l2 r0/r_b - 1)^2 per area, to first order in the pre-strain",
+            equation: "dF = 2 pi r0 tau (2 l2 - 1) dl2/dl1,   tau = E_h t (r0/r_b - 1),   r_b: radius of the free bladder,   l2 as for hoop-elasticity;   \
+                       from the energy (E_h t/2) (l2 r0/r_b - 1)^2 per area, to first order in the pre-strain",
             source: "Ball and Garcia 2016 for the idea, by memory; formula derived",
             evidence: Evidence::Literature,
             group: Group::Material,

@@ -22,8 +22,8 @@ impl Effect for FibreStretch {
             about: "Loaded fibres get longer, by a per cent or so, which shifts the force curve towards larger contractions. A pleated muscle \
                     feels it at small contractions, where the force would rise without bound and now ends at a finite value; in a braid it acts \
                     at any contraction. It grows with the square of the pressure.",
-            equation: "strain of a fibre e = T/EA, in the equilibrium;   parameter c = 1/(n EA), the compliance of all n fibres together. \
-                       To first order dF = p dF/d eps T c (PPAM)",
+            equation: "strain of a fibre e = T/EA, in the equilibrium;   parameter c = 1/(n EA), the compliance of all n fibres together;   \
+                       to first order dF = dF/d eps T c with T the tension of all fibres (PPAM)",
             source: "S1 with the elastic fibre length of Daerden 1999; aramid yarn 8 to 12 kN, 40 of them 0.3 to 0.5 MN; nylon braids 0.01 to 0.2 MN",
             evidence: Evidence::Derived,
             group: Group::Material,

@@ -1,0 +1,207 @@
+//! Files on disk: CSV and Parquet by extension or first bytes, several files, a measured data set.
+
+use bulge_measurements::{Data, MeasurementError, Motion, SweepKind};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type};
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::parser::parse_message_type;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+const CSV: &str = "pressure [bar],length [mm],force [N],time [s],cycle,specimen\n\
+                   1,300,50,0,1,left\n1,290,40,0.5,1,left\n2,280,60.5,1,2,right\n";
+
+fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn column<T: DataType>(
+    group: &mut SerializedRowGroupWriter<'_, File>,
+    values: &[T::T],
+    levels: Option<&[i16]>,
+) {
+    let mut writer = group.next_column().unwrap().unwrap();
+    writer.typed::<T>().write_batch(values, levels, None).unwrap();
+    writer.close().unwrap();
+}
+
+/// A Parquet file with this schema; each group of rows is written by `groups`.
+fn parquet(path: &Path, schema: &str, groups: &[&dyn Fn(&mut SerializedRowGroupWriter<'_, File>)]) {
+    let schema = Arc::new(parse_message_type(schema).unwrap());
+    let properties = WriterProperties::builder().set_compression(parquet::basic::Compression::SNAPPY).build();
+    let mut writer =
+        SerializedFileWriter::new(File::create(path).unwrap(), schema, Arc::new(properties)).unwrap();
+    for fill in groups {
+        let mut group = writer.next_row_group().unwrap();
+        fill(&mut group);
+        group.close().unwrap();
+    }
+    writer.close().unwrap();
+}
+
+// The schema parser has no names with blanks and brackets other than bare ones: "length[mm]" is read like "length [mm]".
+const SCHEMA: &str =
+    "message schema { required double pressure[bar]; required float length[mm]; required int32 force[N];
+    optional double time[s]; required int64 cycle; required binary specimen (UTF8); }";
+
+fn two_groups(path: &Path) {
+    let text = |names: &[&str]| names.iter().map(|name| ByteArray::from(*name)).collect::<Vec<_>>();
+    parquet(
+        path,
+        SCHEMA,
+        &[
+            &|group| {
+                column::<DoubleType>(group, &[1.0, 1.0], None);
+                column::<FloatType>(group, &[300.0, 290.0], None);
+                column::<Int32Type>(group, &[50, 40], None);
+                column::<DoubleType>(group, &[0.0, 0.5], Some(&[1, 1]));
+                column::<Int64Type>(group, &[1, 1], None);
+                column::<ByteArrayType>(group, &text(&["left", "left"]), None);
+            },
+            &|group| {
+                column::<DoubleType>(group, &[2.0], None);
+                column::<FloatType>(group, &[280.0], None);
+                column::<Int32Type>(group, &[60], None);
+                column::<DoubleType>(group, &[1.0], Some(&[1]));
+                column::<Int64Type>(group, &[2], None);
+                column::<ByteArrayType>(group, &text(&["right"]), None);
+            },
+        ],
+    );
+}
+
+#[test]
+fn parquet_reads_like_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("data.parquet");
+    two_groups(&path);
+    let csv = Data::from_csv(&CSV.replace("60.5", "60"), "data.csv").unwrap();
+    let found = Data::read(&[&path]).unwrap();
+    assert_eq!(
+        (found.pressure(), found.motion(), found.force()),
+        (csv.pressure(), csv.motion(), csv.force())
+    );
+    assert_eq!((found.time(), found.cycle()), (csv.time(), csv.cycle()));
+    assert_eq!((found.specimen(), found.specimens()), (csv.specimen(), csv.specimens()));
+    assert_eq!((found.line(2), csv.line(2)), ((0, 3), (0, 4)));
+    // Without an extension the first bytes tell.
+    let bare = folder.path().join("data");
+    std::fs::copy(&path, &bare).unwrap();
+    assert_eq!(Data::read(&[&bare]).unwrap().force(), csv.force());
+    let bare = written(folder.path(), "rows.dat", CSV);
+    assert_eq!(Data::read(&[&bare]).unwrap().len(), 3);
+}
+
+#[test]
+fn parquet_defects_name_column_and_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("data.parquet");
+    let says = |parts: &[&str]| {
+        let message = Data::read(&[&path]).unwrap_err().to_string();
+        for part in parts.iter().chain(&["data.parquet"]) {
+            assert!(message.contains(part), "{message:?} does not say {part:?}");
+        }
+    };
+    let three = "required double pressure[bar]; required double length[mm];";
+    let fill = |force: &'static dyn Fn(&mut SerializedRowGroupWriter<'_, File>)| {
+        move |group: &mut SerializedRowGroupWriter<'_, File>| {
+            column::<DoubleType>(group, &[1.0, 2.0], None);
+            column::<DoubleType>(group, &[300.0, 290.0], None);
+            force(group);
+        }
+    };
+    let schema = |force: &str| format!("message schema {{ {three} {force} }}");
+    // A missing value, not a number, text in a number column.
+    let missing = fill(&|group| column::<DoubleType>(group, &[5.0], Some(&[1, 0])));
+    parquet(&path, &schema("optional double force[N];"), &[&missing]);
+    says(&[":2:", "`force[N]`", "empty"]);
+    let nan = fill(&|group| column::<DoubleType>(group, &[5.0, f64::NAN], None));
+    parquet(&path, &schema("required double force[N];"), &[&nan]);
+    says(&[":2:", "`force[N]`", "`NaN`"]);
+    let text = fill(&|group| column::<ByteArrayType>(group, &["5".into(), "5 N".into()], None));
+    parquet(&path, &schema("required binary force[N] (UTF8);"), &[&text]);
+    says(&[":2:", "`5 N`", "write `5`"]);
+    // Dates and decimals are integers in disguise.
+    let date = fill(&|group| column::<Int32Type>(group, &[5, 6], None));
+    parquet(&path, &schema("required int32 force[N] (DATE);"), &[&date]);
+    says(&["`force[N]`", "INT32 as", "int64"]);
+    parquet(
+        &path,
+        &schema("required double weight[N];"),
+        &[&fill(&|group| {
+            column::<DoubleType>(group, &[5.0, 6.0], None);
+        })],
+    );
+    says(&["column 3", "`weight[N]`", "known are"]);
+    parquet(&path, &schema("required double force[N];"), &[]);
+    says(&["no row"]);
+    std::fs::write(&path, "pressure [bar]\n").unwrap();
+    says(&["can't be read as Parquet"]);
+}
+
+#[test]
+fn several_files_are_one_analysis() {
+    let folder = tempfile::tempdir().unwrap();
+    let plain = "pressure [bar],length [mm],force [N],time [s]\n";
+    let first = written(folder.path(), "first.csv", &format!("# lab\n{plain}1,300,50,0\n1,290,40,1\n"));
+    let second =
+        written(folder.path(), "second.csv", &format!("{plain}1,280,30,2\n1,270,20,3\n1,260,10,4\n"));
+    let data = Data::read(&[&first, &second]).unwrap();
+    assert_eq!(
+        data.sweeps().iter().map(|s| (s.name.as_str(), s.rows.clone())).collect::<Vec<_>>(),
+        [("first/1", 0..2), ("second/1", 2..5)]
+    );
+    assert_eq!((data.line(1), data.line(2), data.line(4)), ((0, 4), (1, 2), (1, 4)));
+    assert_eq!(data.specimens(), ["1"]);
+    assert_eq!(data.files().iter().map(|file| file.rows).collect::<Vec<_>>(), [2, 3]);
+    let [one, two] = [&data.files()[0].sha256, &data.files()[1].sha256];
+    assert!(one != two && one.len() == 64 && data.sha256().len() == 64);
+    assert_eq!(Data::read(&[&first]).unwrap().sha256(), *one);
+    // What is left of a file keeps its lines.
+    assert_eq!(data.subset(&[false, true, false, true, true]).line(1), (1, 3));
+
+    let copy = written(folder.path(), "copy.csv", &std::fs::read_to_string(&first).unwrap());
+    let error = Data::read(&[&first, &copy]).unwrap_err();
+    assert!(matches!(&error, MeasurementError::SameContent { .. }), "{error}");
+    let other = written(folder.path(), "other.csv", CSV);
+    let message = Data::read(&[&first, &other]).unwrap_err().to_string();
+    assert!(message.contains("`cycle`") && message.contains("other.csv"), "{message}");
+}
+
+#[test]
+fn files_that_can_not_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let none: [&Path; 0] = [];
+    assert_eq!(Data::read(&none).unwrap_err(), MeasurementError::NoFile);
+    let message = Data::read(&[folder.path().join("absent.csv")]).unwrap_err().to_string();
+    assert!(message.contains("absent.csv: can't be read"), "{message}");
+    let message = Data::read(&[folder.path()]).unwrap_err().to_string();
+    assert!(message.contains("it is a folder"), "{message}");
+    // A sparse file of more than 2 GiB is refused by its size, before it is read.
+    let huge = folder.path().join("huge.csv");
+    File::create(&huge).unwrap().set_len((2 << 30) + 1).unwrap();
+    let message = Data::read(&[&huge]).unwrap_err().to_string();
+    assert!(message.contains("2147483649 bytes") && message.contains("2147483648"), "{message}");
+}
+
+/// M. Martens, I. Boblan: Modeling the Static Force of a Festo Pneumatic Muscle Actuator, Actuators 6 (2017) 33, table A1.
+/// The table isn't part of this project: the path is that in BULGE_DMSP_20_300, and without it there is nothing to test.
+#[test]
+fn martens_boblan_2017_table_a1() {
+    let Some(path) = std::env::var_os("BULGE_DMSP_20_300").map(PathBuf::from).filter(|path| path.is_file())
+    else {
+        return;
+    };
+    let data = Data::read(&[path]).unwrap();
+    assert_eq!((data.len(), data.sweeps().len(), data.sweeps()[0].kind), (67, 1, SweepKind::Static));
+    assert_eq!((data.pressure()[0], data.force()[20], data.line(0)), (35e3, 1653.5, (0, 5)));
+    assert!(matches!(data.motion(), Motion::Length(lengths) if lengths[66] == 0.222));
+    let options = bulge_measurements::QualityOptions { l0_m: Some(0.3), radius_m: Some(0.01) };
+    let quality = data.quality(&options);
+    // Free contractions only.
+    assert!(quality.worst() <= Some(bulge_measurements::Severity::Note), "{quality:#?}");
+    assert_eq!(quality.of(bulge_measurements::FindingKind::Slack).map(|found| found.count).sum::<usize>(), 6);
+}

@@ -1,0 +1,280 @@
+//! Histories with known answers: loops, minor loops, dwells, isometric ramps; sweeps that are labelled or found.
+
+use bulge_measurements::{Columns, Data, Labels, SweepKind, Trace};
+use std::f64::consts::{PI, TAU};
+
+/// Data of one specimen at constant pressure, 10 ms per row.
+fn timed(contraction: Vec<f64>) -> Data {
+    let rows = contraction.len();
+    let mut columns = Columns::new(vec![2e5; rows], Trace::Contraction(contraction), vec![100.0; rows]);
+    columns.time_s = Some((0..rows).map(|row| 0.01 * row as f64).collect());
+    Data::from_columns(columns).unwrap()
+}
+
+/// From corner to corner in so many rows.
+fn polyline(corners: &[(f64, usize)]) -> Vec<f64> {
+    let mut values = vec![corners[0].0];
+    for pair in corners.windows(2) {
+        let ((from, _), (to, steps)) = (pair[0], pair[1]);
+        values.extend((1..=steps).map(|i| from + (to - from) * i as f64 / steps as f64));
+    }
+    values
+}
+
+#[track_caller]
+fn close(found: &[f64], expected: impl IntoIterator<Item = f64>, tolerance: f64) {
+    let mut count = 0;
+    for (row, (found, expected)) in found.iter().zip(expected).enumerate() {
+        assert!((found - expected).abs() <= tolerance, "row {row}: {found} is not {expected}");
+        count += 1;
+    }
+    assert_eq!(count, found.len());
+}
+
+fn kinds(data: &Data) -> Vec<SweepKind> {
+    data.sweeps().iter().map(|sweep| sweep.kind).collect()
+}
+
+#[test]
+fn a_sine_loop() {
+    // 3 loops of 4 s: c = 0.1 (1 - cos), from the longest position.
+    let omega = TAU / 4.0;
+    let at = |row: usize| 0.01 * row as f64;
+    let data = timed((0..=1200).map(|row| 0.1 - 0.1 * (omega * at(row)).cos()).collect());
+    let history = data.history(1.0);
+    assert!(history.is_path);
+    assert_eq!(kinds(&data), [SweepKind::Loop]);
+    for row in 0..=1200_usize {
+        // A turning point belongs to the stretch that it ends.
+        let half = row.saturating_sub(1) / 200;
+        let direction = if half % 2 == 0 { 1.0 } else { -1.0 };
+        assert_eq!((history.direction[row], history.branch[row] as usize), (direction, half), "{row}");
+        assert_eq!((history.cycle[row], history.approach[row]), ((half / 2) as f64, direction), "{row}");
+    }
+    let rate = |row| 0.1 * omega * (omega * at(row)).sin();
+    close(&history.rate, (0..=1200).map(rate), 2e-3 * 0.1 * omega);
+    let turn = |row: usize| 200 * (row.saturating_sub(1) / 200);
+    let since = |row: usize| 0.1 * ((omega * at(row)).cos() - (omega * at(turn(row))).cos()).abs();
+    close(&history.since_reversal, (0..=1200).map(since), 1e-12);
+    close(&history.time_since_reversal, (0..=1200).map(|row| at(row - turn(row))), 1e-9);
+    close(&history.time, (0..=1200).map(at), 1e-12);
+}
+
+#[test]
+fn triangles_with_minor_loops() {
+    // The rate of a straight motion is exact, up to the turning points.
+    let corners = [(0.0, 0), (0.2, 100), (0.14, 60), (0.17, 15), (0.0, 85)];
+    let data = timed(polyline(&corners));
+    let history = data.history(1.0);
+    let expected = [(101, 0.2), (60, -0.1), (15, 0.2), (85, -0.2)];
+    let rates = expected.iter().flat_map(|(rows, rate)| std::iter::repeat_n(*rate, *rows));
+    close(&history.rate, rates, 1e-9);
+    let ends = [(100, 0.2), (160, 0.06), (175, 0.03), (260, 0.17)];
+    for (row, way) in ends {
+        assert!((history.since_reversal[row] - way).abs() < 1e-12, "{row}");
+    }
+    assert_eq!([100, 101, 160, 161, 260].map(|row| history.cycle[row]), [0.0, 0.0, 0.0, 1.0, 1.0]);
+    assert_eq!(history.branch[260], 3);
+}
+
+#[test]
+fn dwells_between_ramps() {
+    let corners = [(0.0, 0), (0.2, 101), (0.2, 50), (0.1, 37), (0.1, 40), (0.0, 53), (0.0, 60)];
+    let history = timed(polyline(&corners)).history(1.0);
+    let expected = [(102, 1.0), (50, 0.0), (37, -1.0), (40, 0.0), (53, -1.0), (60, 0.0)];
+    let directions = expected.iter().flat_map(|(rows, direction)| std::iter::repeat_n(*direction, *rows));
+    close(&history.direction, directions, 0.0);
+    // A rest keeps the approach and the way since the reversal; its rate is 0.
+    assert_eq!([120, 210, 330].map(|row| history.approach[row]), [1.0, -1.0, -1.0]);
+    assert_eq!([120, 210, 330].map(|row| history.rate[row]), [0.0; 3]);
+    let since = [120, 210, 330].map(|row| history.since_reversal[row]);
+    close(&since, [0.2, 0.1, 0.2], 1e-12);
+    // The reversal is the last row of the dwell.
+    assert!((history.time_since_reversal[210] - 0.01 * (210 - 151) as f64).abs() < 1e-9);
+}
+
+#[test]
+fn lengths_become_contractions() {
+    let contraction = polyline(&[(0.0, 0), (0.2, 130), (0.0, 170)]);
+    let expected = timed(contraction.clone()).history(1.0);
+    let lengths = contraction.iter().map(|c| 0.3 * (1.0 - c)).collect();
+    let mut columns = Columns::new(vec![2e5; 301], Trace::Length(lengths), vec![1.0; 301]);
+    columns.time_s = Some(expected.time.clone());
+    let data = Data::from_columns(columns).unwrap();
+    let found = data.history(0.3);
+    assert_eq!((&found.direction, &found.branch), (&expected.direction, &expected.branch));
+    close(&found.rate, expected.rate.iter().copied(), 1e-9);
+    close(&found.since_reversal, expected.since_reversal.iter().copied(), 1e-12);
+    close(&data.contraction(0.3), contraction, 1e-12);
+}
+
+#[test]
+fn isometric_ramps_and_holds() {
+    // The rig gives way by 0.05 % while the pressure rises.
+    let rows = 200;
+    let ramp = |row: usize| 1.5e3 * row as f64;
+    let mut columns = Columns::new(
+        (0..rows).map(ramp).chain(std::iter::repeat_n(ramp(rows - 1), rows)).collect(),
+        Trace::Contraction(
+            (0..rows).map(|row| 0.1 + 2.5e-6 * row as f64).chain(std::iter::repeat_n(0.1, rows)).collect(),
+        ),
+        vec![1.0; 2 * rows],
+    );
+    columns.sweep = Some((0..2 * rows).map(|row| if row < rows { "ramp" } else { "hold" }).collect());
+    let data = Data::from_columns(columns).unwrap();
+    assert_eq!(kinds(&data), [SweepKind::Isometric, SweepKind::Hold]);
+    assert_eq!(data.sweeps()[0].name, "ramp");
+    let history = data.history(1.0);
+    assert_eq!((history.direction[300], history.rate[100], history.rate[300]), (0.0, 0.0, 0.0));
+    // A path by its labels alone has no time.
+    assert!(history.is_path && history.time.iter().all(|time| *time == 0.0));
+}
+
+#[test]
+fn single_ramps_have_a_direction() {
+    let mut columns = Columns::new(
+        vec![1e5; 40],
+        Trace::Length(
+            (0..40)
+                .map(|row| if row < 20 { 0.3 - 1e-3 * f64::from(row) } else { 0.26 + 1e-3 * f64::from(row) })
+                .collect(),
+        ),
+        vec![1.0; 40],
+    );
+    columns.sweep = Some((0..40).map(|row| (row / 20).to_string()).collect());
+    let data = Data::from_columns(columns).unwrap();
+    assert_eq!(kinds(&data), [SweepKind::Shortening, SweepKind::Lengthening]);
+}
+
+#[test]
+fn static_maps_have_no_motion() {
+    let columns =
+        || Columns::new(vec![1e5; 4], Trace::Contraction(vec![0.0, 0.1, 0.2, 0.1]), vec![4.0, 3.0, 2.0, 2.5]);
+    let data = Data::from_columns(columns()).unwrap();
+    let history = data.history(1.0);
+    assert!(!history.is_path);
+    assert_eq!(history.direction, [0.0; 4]);
+    assert_eq!(history.rate, [0.0; 4]);
+    assert_eq!((kinds(&data), data.sweeps()[0].rows.clone()), (vec![SweepKind::Static], 0..4));
+    // Unless a direction is stated.
+    let mut stated = columns();
+    stated.direction = Some(vec![1, 1, 1, -1]);
+    let history = Data::from_columns(stated).unwrap().history(1.0);
+    assert_eq!((history.direction, history.branch), (vec![1.0, 1.0, 1.0, -1.0], vec![0, 0, 0, 1]));
+    assert_eq!(history.rate, [0.0; 4]);
+    // One sweep for each specimen.
+    let mut two = columns();
+    two.specimen = Some(Labels::from_iter(["a", "a", "b", "b"]));
+    let data = Data::from_columns(two).unwrap();
+    assert_eq!(
+        data.sweeps().iter().map(|s| (s.rows.clone(), s.specimen)).collect::<Vec<_>>(),
+        [(0..2, 0), (2..4, 1)]
+    );
+}
+
+#[test]
+fn stated_cycles_are_kept() {
+    let mut columns =
+        Columns::new(vec![1e5; 3], Trace::Contraction(vec![0.0, 0.1, 0.2]), vec![4.0, 3.0, 2.0]);
+    columns.cycle = Some(vec![7, 7, 8]);
+    assert_eq!(Data::from_columns(columns).unwrap().history(1.0).cycle, [7.0, 7.0, 8.0]);
+}
+
+#[test]
+fn cycles_are_counted_over_the_sweeps_of_a_specimen() {
+    // Shortening, shortening again from the start, lengthening; then another specimen.
+    let up = polyline(&[(0.0, 0), (0.2, 20)]);
+    let down: Vec<f64> = up.iter().rev().copied().collect();
+    let contraction = [up.clone(), up.clone(), down, up].concat();
+    let mut columns = Columns::new(vec![1e5; 84], Trace::Contraction(contraction), vec![1.0; 84]);
+    columns.sweep = Some((0..84).map(|row| (row / 21).to_string()).collect());
+    columns.specimen = Some((0..84).map(|row| if row < 63 { "a" } else { "b" }).collect());
+    let history = Data::from_columns(columns).unwrap().history(1.0);
+    assert_eq!(
+        [0, 20, 21, 41, 42, 62, 63, 83].map(|row| history.cycle[row]),
+        [0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0]
+    );
+}
+
+#[test]
+fn sweeps_are_found_in_time() {
+    let row = |n: usize| (n % 50) as f64;
+    let data = |time: &dyn Fn(usize) -> f64| {
+        let mut columns = Columns::new(
+            vec![1e5; 150],
+            Trace::Contraction((0..150).map(|n| 0.004 * row(n)).collect()),
+            vec![1.0; 150],
+        );
+        columns.time_s = Some((0..150).map(time).collect());
+        Data::from_columns(columns).unwrap()
+    };
+    let starts = |data: &Data| data.sweeps().iter().map(|sweep| sweep.rows.start).collect::<Vec<_>>();
+    // A clock that restarts, and a pause.
+    let restarted = data(&|n| 0.1 * row(n));
+    assert_eq!(starts(&restarted), [0, 50, 100]);
+    assert_eq!(restarted.sweeps()[2].name, "3");
+    let paused = |pause: f64| move |n: usize| 0.1 * n as f64 + if n < 50 { 0.0 } else { pause };
+    assert_eq!(starts(&data(&paused(1.95))), [0, 50]);
+    assert_eq!(starts(&data(&paused(1.85))), [0]);
+}
+
+#[test]
+fn sweeps_are_found_where_an_isobar_ends() {
+    // Half loops at three pressures, the clock and the recording run on.
+    let rows = 200;
+    let state = |row: usize| {
+        let (level, part) = (row / rows, (row % rows) as f64 / (rows - 1) as f64);
+        (1e5 * (1 + level) as f64, 0.1 - 0.1 * (PI * part).cos())
+    };
+    let columns = |state: &dyn Fn(usize) -> (f64, f64), rows: usize| {
+        let mut columns = Columns::new(
+            (0..rows).map(|row| state(row).0).collect(),
+            Trace::Contraction((0..rows).map(|row| state(row).1).collect()),
+            vec![1.0; rows],
+        );
+        columns.time_s = Some((0..rows).map(|row| 0.01 * row as f64).collect());
+        Data::from_columns(columns).unwrap()
+    };
+    let data = columns(&state, 3 * rows);
+    assert_eq!(
+        data.sweeps().iter().map(|sweep| sweep.rows.clone()).collect::<Vec<_>>(),
+        [0..200, 200..400, 400..600]
+    );
+    assert_eq!(kinds(&data), [SweepKind::Shortening; 3]);
+    // Also where the muscle starts short, and the jump goes the way of the pressure.
+    let long = |row: usize| (state(row).0, 0.2 - state(row).1);
+    assert_eq!(kinds(&columns(&long, 3 * rows)), [SweepKind::Lengthening; 3]);
+    // Steps of pressure under a weight are one run: the muscle stands still between them.
+    let steps = |row: usize| (1e5 * (1 + row / 100) as f64, 0.05 * (row / 100) as f64);
+    assert_eq!(columns(&steps, 400).sweeps().len(), 1);
+    // So are loops whose pressure changes at the start of each.
+    let levels = |row: usize| (1e5 * (1 + row / 100) as f64, 0.1 - 0.1 * (TAU * row as f64 / 100.0).cos());
+    assert_eq!(columns(&levels, 400).sweeps().len(), 1);
+}
+
+#[test]
+fn subsets_keep_the_structure() {
+    let mut columns = Columns::new(
+        vec![1e5; 60],
+        Trace::Contraction((0..60).map(|row| 0.01 * f64::from(row % 20)).collect()),
+        (0..60).map(f64::from).collect(),
+    );
+    columns.time_s = Some((0..60).map(f64::from).collect());
+    columns.sweep = Some((0..60).map(|row| (row / 20).to_string()).collect());
+    let data = Data::from_columns(columns).unwrap();
+    let keep: Vec<bool> = (0..60).map(|row| row < 20 && row % 4 != 1 || row >= 45).collect();
+    let part = data.subset(&keep);
+    assert_eq!(
+        part.sweeps().iter().map(|s| (s.name.as_str(), s.rows.clone())).collect::<Vec<_>>(),
+        [("0", 0..15), ("2", 15..30)]
+    );
+    assert_eq!(part.force()[1], 2.0);
+    assert_eq!((part.line(1), part.line(15), part.line(99)), ((0, 3), (0, 46), (0, 0)));
+    assert_eq!((part.files()[0].rows, part.len(), part.specimens().len()), (30, 30, 1));
+    assert_eq!(part.sha256(), data.sha256());
+    let (whole, part) = (data.history(1.0), part.history(1.0));
+    assert_eq!(whole.subset(&keep).direction, part.direction);
+    close(&part.rate, whole.subset(&keep).rate, 1e-9);
+    assert!(data.subset(&[]).is_empty());
+    assert!(data.subset(&[]).history(1.0).direction.is_empty());
+}
