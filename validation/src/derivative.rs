@@ -68,7 +68,8 @@ fn compare(
             tally.scaled(exact[i], difference[i], floor, || format!("d({output})/d({what}), {name}"));
         }
     };
-    let difference = derivative(|eps| read(&problem, eps), contraction, 0.01 * stride(muscle) * contraction.abs())?;
+    let difference =
+        derivative(|eps| read(&problem, eps), contraction, 0.01 * stride(muscle) * contraction.abs())?;
     add("contraction", by_contraction, contraction, difference);
     for (variable, exact) in by_variable {
         let Some((value, step)) = step_of(muscle, variable) else { continue };

@@ -1,7 +1,9 @@
 //! What stands in print, and worked numbers that a right program gives.
 
 use bulge_fibre::{Approach, Problem};
-use bulge_muscles::{Parameter, Angle, Braided, Construction, Ends, Length, Muscle, Pressure, Quantity, preset};
+use bulge_muscles::{
+    Angle, Braided, Construction, Ends, Length, Muscle, Parameter, Pressure, Quantity, preset,
+};
 
 use crate::check::{Check, Claim};
 use crate::specimen::{at, braid_25, cylinder_25, pleated, ppam};
@@ -132,8 +134,8 @@ pub(crate) fn inner_wall() -> Check {
             for wall in [0.0005, 0.002, 0.005] {
                 for contraction in [-0.01, 0.0, 0.1, 0.25] {
                     let inner = muscle.with(Parameter::GasWall, wall)?;
-                    let difference =
-                        at(&inner, pressure, contraction)?.force_n - at(&muscle, pressure, contraction)?.force_n;
+                    let difference = at(&inner, pressure, contraction)?.force_n
+                        - at(&muscle, pressure, contraction)?.force_n;
                     let sine = (1.0 - ((1.0 - contraction) * angle.cos()).powi(2)).sqrt();
                     let widest = 2.0 * radius / angle.sin();
                     let scale = std::f64::consts::PI * pressure.to_pa();

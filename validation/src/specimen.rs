@@ -62,8 +62,16 @@ pub(crate) fn pressure_only() -> Result<Vec<(&'static str, Muscle, f64)>, Troubl
             ppam()?.with(Parameter::ClothCircumference, 0.3)?.with(Parameter::Misalignment, 0.08)?,
             0.22,
         ),
-        ("braid, gas on the inner wall", braid_25(Length::mm(120.0))?.with(Parameter::GasWall, 0.0015)?, 0.15),
-        ("cylinder, gas on the inner wall", cylinder_25(Length::mm(250.0))?.with(Parameter::GasWall, 0.002)?, 0.2),
+        (
+            "braid, gas on the inner wall",
+            braid_25(Length::mm(120.0))?.with(Parameter::GasWall, 0.0015)?,
+            0.15,
+        ),
+        (
+            "cylinder, gas on the inner wall",
+            cylinder_25(Length::mm(250.0))?.with(Parameter::GasWall, 0.002)?,
+            0.2,
+        ),
         ("braid, 250 mm", braid_25(Length::mm(250.0))?, 0.2),
         ("braid, 30 mm", braid_25(Length::mm(30.0))?, 0.1),
         ("braid, l0/r0 = 90", braid_25(Length::m(0.9))?, 0.25),

@@ -42,6 +42,13 @@ pub(crate) fn muscle(name: &str) -> Result<Muscle, Failure> {
     Ok(read(name)?)
 }
 
+/// The muscle, if every effect that its file states is one of the catalogue or shapes the muscle.
+pub(crate) fn known(muscle: Muscle, catalogue: &Catalogue) -> Result<Muscle, Failure> {
+    let names: Vec<&str> = catalogue.iter().map(|effect| effect.card().name).collect();
+    muscle.check_learnt(&names)?;
+    Ok(muscle)
+}
+
 /// A quantity with its unit.
 pub(crate) fn quantity<Q: Quantity>(option: &'static str, text: &str) -> Result<Q, Failure> {
     units::parse(text).map_err(|source| Failure::Option { option, source: Box::new(source) })

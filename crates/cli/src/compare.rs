@@ -48,8 +48,8 @@ pub(crate) struct CompareCommand {
 
 impl CompareCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        let muscle = arguments::muscle(&self.muscle)?;
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
+        let muscle = arguments::known(arguments::muscle(&self.muscle)?, &catalogue)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = Data::read(&self.data)?;
         let mut options = Options::new(catalogue, effects);
@@ -75,7 +75,10 @@ impl CompareCommand {
 }
 
 fn no_law(name: &str) -> Failure {
-    Failure::Value { option: "--law", what: format!("there is no law `{name}`; `bulge effects --laws` lists them") }
+    Failure::Value {
+        option: "--law",
+        what: format!("there is no law `{name}`; `bulge effects --laws` lists them"),
+    }
 }
 
 /// The comparison for people.
@@ -110,14 +113,27 @@ pub(crate) fn text(comparison: &Comparison, effects: &[Arc<dyn Effect>]) -> Stri
         let _ = writeln!(out, "  ! {warning}");
     }
     if effects.is_empty() {
-        let _ = writeln!(out, "\n  Add effects with --with NAME,... (`bulge effects` lists them) and watch the error fall.");
+        let _ = writeln!(
+            out,
+            "\n  Add effects with --with NAME,... (`bulge effects` lists them) and watch the error fall."
+        );
     }
     out
 }
 
 fn ladder(out: &mut String, comparison: &Comparison) {
-    let width = comparison.ladder.iter().map(|r| r.added.as_deref().unwrap_or(&comparison.base).len()).max().unwrap_or(0).max(14);
-    let _ = writeln!(out, "\n    {:<width$}  {:>9}  {:>10}  {:>9}  {:>8}  fitted", "model", "error", "full scale", "held out", "R^2");
+    let width = comparison
+        .ladder
+        .iter()
+        .map(|r| r.added.as_deref().unwrap_or(&comparison.base).len())
+        .max()
+        .unwrap_or(0)
+        .max(14);
+    let _ = writeln!(
+        out,
+        "\n    {:<width$}  {:>9}  {:>10}  {:>9}  {:>8}  fitted",
+        "model", "error", "full scale", "held out", "R^2"
+    );
     for (i, rung) in comparison.ladder.iter().enumerate() {
         let sign = if i == 0 { " " } else { "+" };
         let held = rung.held_out_rmse_n.map_or_else(|| "-".to_owned(), |v| format!("{} N", three(v)));
@@ -133,7 +149,13 @@ fn ladder(out: &mut String, comparison: &Comparison) {
     }
     if let Some(floor) = &comparison.noise_floor {
         let percent = 100.0 * floor.sd_n / comparison.data.full_scale_n;
-        let _ = writeln!(out, "    {:<width$}  {:>7} N  {percent:>8.2} %  ({})", "noise floor", three(floor.sd_n), floor.source);
+        let _ = writeln!(
+            out,
+            "    {:<width$}  {:>7} N  {percent:>8.2} %  ({})",
+            "noise floor",
+            three(floor.sd_n),
+            floor.source
+        );
     }
 }
 
@@ -142,7 +164,11 @@ pub(crate) fn parameters(out: &mut String, fit: &Fit) {
     if fit.parameters.is_empty() {
         return;
     }
-    let _ = writeln!(out, "\n  fitted numbers with 95 % intervals ({} rows count as independent)", fit.effective_rows.round());
+    let _ = writeln!(
+        out,
+        "\n  fitted numbers with 95 % intervals ({} rows count as independent)",
+        fit.effective_rows.round()
+    );
     let label = |p: &bulge_inference::Fitted| match &p.specimen {
         Some(specimen) => format!("{} {} [{specimen}]", p.effect, p.name),
         None => format!("{} {}", p.effect, p.name),
@@ -189,7 +215,8 @@ fn rivals(out: &mut String, comparison: &Comparison) {
             let _ = writeln!(out, "    {:<width$}  {failed}", rival.law);
             continue;
         }
-        let printed = rival.printed_rmse_n.map_or_else(String::new, |v| format!(", as printed {} N", three(v)));
+        let printed =
+            rival.printed_rmse_n.map_or_else(String::new, |v| format!(", as printed {} N", three(v)));
         let held = rival.held_out_rmse_n.map_or_else(String::new, |v| format!(", held out {} N", three(v)));
         let _ = writeln!(
             out,

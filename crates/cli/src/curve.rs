@@ -1,5 +1,6 @@
 //! `bulge curve`: isobaric characteristics.
 
+use bulge_effects::Catalogue;
 use bulge_fibre::{Given, Isobar, Problem, Shape, isobars};
 use bulge_muscles::units::{self, Quantity};
 use bulge_muscles::{Muscle, Pressure, Ratio};
@@ -9,7 +10,7 @@ use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::arguments::{MethodArgument, about, list, muscle};
+use crate::arguments::{MethodArgument, about, known, list, muscle};
 use crate::characteristics;
 use crate::failure::Failure;
 use crate::files;
@@ -57,7 +58,7 @@ pub(crate) struct CurveCommand {
 
 impl CurveCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        let muscle = muscle(&self.muscle)?;
+        let muscle = known(muscle(&self.muscle)?, &Catalogue::builtin())?;
         let pressures: Vec<Pressure> = list("--pressure", &self.pressure)?;
         self.check()?;
         if self.points.saturating_mul(pressures.len()) > MAX_POINTS {

@@ -46,7 +46,11 @@ impl EffectsCommand {
     fn one(&self, catalogue: &Catalogue, name: &str) -> Result<String, Failure> {
         if let Some(law) = bulge_effects::law::Law::find(name) {
             let document = json!({"schema": "bulge.law/1", "law": law});
-            return if self.json { Ok(serde_json::to_string_pretty(&document)? + "\n") } else { Ok(law.to_string()) };
+            return if self.json {
+                Ok(serde_json::to_string_pretty(&document)? + "\n")
+            } else {
+                Ok(law.to_string())
+            };
         }
         let effect = catalogue.find(name)?;
         if !self.json {

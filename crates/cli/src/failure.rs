@@ -54,6 +54,7 @@ impl Failure {
                 | FibreError::NotFinite { .. }
                 | FibreError::NotPositive { .. }
                 | FibreError::ClothTooNarrow { .. }
+                | FibreError::WallTooThick { .. }
                 | FibreError::NoClosedForm { .. }
                 | FibreError::NothingToShoot => 1,
                 _ => 3,

@@ -1,5 +1,6 @@
 //! `bulge shape`: one equilibrium.
 
+use bulge_effects::Catalogue;
 use bulge_fibre::{Given, MeridianPoint, PleatedNumbers, Problem, Response, Shape};
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Construction, Force, Length, Muscle, Pressure, Ratio, Volume};
@@ -9,7 +10,7 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments::{MethodArgument, about, muscle, quantity};
+use crate::arguments::{MethodArgument, about, known, muscle, quantity};
 use crate::failure::Failure;
 use crate::sketch::sketch;
 use crate::text::significant;
@@ -86,7 +87,7 @@ struct Document<'a> {
 
 impl ShapeCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        let muscle = muscle(&self.muscle)?;
+        let muscle = known(muscle(&self.muscle)?, &Catalogue::builtin())?;
         let pressure: Pressure = quantity("--pressure", &self.pressure)?;
         let given = self.given()?;
         if !(3..=MAX_POINTS).contains(&self.points) {

@@ -39,7 +39,11 @@ impl Problem {
     #[must_use]
     pub fn pleated_numbers(&self, response: &Response) -> Option<PleatedNumbers> {
         let net = &self.net;
-        if !self.muscle.is_pleated() || net.turn != 0.0 || net.cloth.is_some() || net.lobes.is_some() || net.depth != 0.0
+        if !self.muscle.is_pleated()
+            || net.turn != 0.0
+            || net.cloth.is_some()
+            || net.lobes.is_some()
+            || net.depth != 0.0
         {
             return None;
         }

@@ -41,7 +41,8 @@ impl<const N: usize> Groups<N> {
             rows[row] = number.gradient().map(|slope| slope / size[row]);
             row += 1;
         });
-        let norm = |rows: &[[f64; N]; NUMBERS], i: usize| rows.iter().map(|row| row[i] * row[i]).sum::<f64>().sqrt();
+        let norm =
+            |rows: &[[f64; N]; NUMBERS], i: usize| rows.iter().map(|row| row[i] * row[i]).sum::<f64>().sqrt();
         let whole: [f64; N] = std::array::from_fn(|i| norm(&rows, i));
         let mut found = Self { numbers: [[0.0; GROUPS]; NUMBERS], variables: [[0.0; N]; GROUPS], count: 0 };
         while found.count < GROUPS {
@@ -107,8 +108,8 @@ mod tests {
         let v = |i: usize| Dual::<7>::variable(0.0, 2 + i);
         let mut net: Net<Dual<7>> = rich();
         let both = v(0) * 3.0 + v(1) * 1e4 + v(2);
-        net.half_fibre = net.half_fibre + both * 0.7;
-        net.compliance = net.compliance + both * 1e-5 - v(1) * 2e-3;
+        net.half_fibre += both * 0.7;
+        net.compliance += both * 1e-5 - v(1) * 2e-3;
         net.depth = v(2) * 0.0 + (v(1) * -1.0 + v(4)) * 0.1;
         net
     }
@@ -122,7 +123,8 @@ mod tests {
         let (mut expected, mut found) = (Vec::new(), Vec::new());
         net.map(|number| expected.push(number));
         few.map(|number| {
-            let total = Total { value: number.value(), by_contraction: 0.0, by_parameter: *number.gradient() };
+            let total =
+                Total { value: number.value(), by_contraction: 0.0, by_parameter: *number.gradient() };
             found.push(groups.expand(&total));
         });
         for (expected, found) in expected.iter().zip(&found) {

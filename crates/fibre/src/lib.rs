@@ -20,6 +20,8 @@ pub use error::FibreError;
 pub use isobars::{Isobar, isobars};
 pub use linearised::{Linear, Linearised, Start};
 pub use outcome::Approach;
-pub use problem::{BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, PLEATED_SLENDERNESS, Problem, Variable};
+pub use problem::{
+    BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, PLEATED_SLENDERNESS, Problem, Variable,
+};
 pub use shape::{Convergence, MeridianPoint, Method, Response, Shape};
 pub use solve::{ADIABATIC, AMBIENT_PRESSURE, Given, Gradient};

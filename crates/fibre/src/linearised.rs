@@ -134,9 +134,9 @@ impl Problem {
         }
         let ask = Question { start, contraction, variables, approach };
         match seeds.count {
-            ..=2 => self.answer::<4>(&ask, &seeds),
-            ..=4 => self.answer::<6>(&ask, &seeds),
-            ..=8 => self.answer::<10>(&ask, &seeds),
+            0..=2 => self.answer::<4>(&ask, &seeds),
+            3..=4 => self.answer::<6>(&ask, &seeds),
+            5..=8 => self.answer::<10>(&ask, &seeds),
             _ => self.answer::<{ 2 + Variable::COUNT }>(&ask, &seeds),
         }
     }
@@ -163,7 +163,13 @@ impl Problem {
                 *slot = out.gradient()[seeds.places[variable.index()]];
             }
             let [by_contraction, by_pressure] = [0, 2].map(|place| out.gradient()[place]);
-            Linear { value: out.value(), by_contraction, by_pressure, by_variable, asked: ask.variables.len() }
+            Linear {
+                value: out.value(),
+                by_contraction,
+                by_pressure,
+                by_variable,
+                asked: ask.variables.len(),
+            }
         };
         Ok(Linearised {
             contraction: ask.contraction,

@@ -83,7 +83,11 @@ impl<D: Real> Lobes<D> {
         if touching {
             let slope = n * sin / cos * 2.0;
             let a = (s * 0.5 + r) / spread;
-            return Section { area: slope * spread * a * a * 0.5, area_r: slope * a, area_rr: slope / spread };
+            return Section {
+                area: slope * spread * a * a * 0.5,
+                area_r: slope * a,
+                area_rr: slope / spread,
+            };
         }
         let [v, sin_v, cos_v] = half_opening(r * sin * 2.0 / s);
         let rho = s * 0.5 / v;
@@ -143,15 +147,8 @@ impl<D: Real> Lobes<D> {
 }
 
 /// Coefficients of `v^2/(1 - q)` in powers of `1 - q`: a fit to 5e-6 in v on 0 < v < 2.65 (150 degrees, three fibres that touch).
-const OPENING: [f64; 7] = [
-    6.000_016_55,
-    1.796_662_41,
-    0.892_954_38,
-    -0.058_897_85,
-    1.883_829_22,
-    -2.266_596,
-    1.582_291_62,
-];
+const OPENING: [f64; 7] =
+    [6.000_016_55, 1.796_662_41, 0.892_954_38, -0.058_897_85, 1.883_829_22, -2.266_596, 1.582_291_62];
 
 /// The root v of sin(v)/v = q with its sine and cosine: the fit, one step of third order on the values and Newton's for the derivatives.
 fn half_opening<D: Real>(q: D) -> [D; 3] {
@@ -213,8 +210,12 @@ mod tests {
                     if r >= circumference / (2.0 * PI) {
                         continue;
                     }
-                    let (found, expected) = (at(n, circumference, r).area, area_by_outline(n, circumference, r));
-                    assert!((found / expected - 1.0).abs() < 1e-10, "{n} {circumference} {r}: {found} {expected}");
+                    let (found, expected) =
+                        (at(n, circumference, r).area, area_by_outline(n, circumference, r));
+                    assert!(
+                        (found / expected - 1.0).abs() < 1e-10,
+                        "{n} {circumference} {r}: {found} {expected}"
+                    );
                 }
             }
         }
@@ -225,10 +226,17 @@ mod tests {
         for n in [3.0, 12.0, 40.0] {
             let lobes = Lobes::new(n, 12.0);
             let contact = lobes.contact_radius();
-            for r in [0.3 * contact, 0.99 * contact, 1.01 * contact, 0.5 * (contact + lobes.limit()), 0.999 * lobes.limit()] {
+            for r in [
+                0.3 * contact,
+                0.99 * contact,
+                1.01 * contact,
+                0.5 * (contact + lobes.limit()),
+                0.999 * lobes.limit(),
+            ] {
                 let exact = lobes.acting_at(r).section(r);
                 let dual = lobes.acting_at(r).map(Dual::<1>::from).section(Dual::variable(r, 0));
-                let close = |got: f64, expected: f64| (got - expected).abs() < 1e-12 * expected.abs().max(10.0);
+                let close =
+                    |got: f64, expected: f64| (got - expected).abs() < 1e-12 * expected.abs().max(10.0);
                 assert!(close(dual.area.gradient()[0], exact.area_r), "{n} {r}: A'");
                 assert!(close(dual.area_r.gradient()[0], exact.area_rr), "{n} {r}: A''");
                 assert!(close(dual.area_r.value(), exact.area_r) && close(dual.area.value(), exact.area));
@@ -246,7 +254,10 @@ mod tests {
             let h = 1e-5;
             let by_n = (area(n + h, c) - area(n - h, c)) / (2.0 * h);
             let by_c = (area(n, c + h) - area(n, c - h)) / (2.0 * h);
-            assert!((found[0] - by_n).abs() < 1e-8 && (found[1] - by_c).abs() < 1e-8, "{found:?} {by_n} {by_c}");
+            assert!(
+                (found[0] - by_n).abs() < 1e-8 && (found[1] - by_c).abs() < 1e-8,
+                "{found:?} {by_n} {by_c}"
+            );
         }
     }
 
@@ -257,11 +268,9 @@ mod tests {
             let lobes = Lobes::new(n, 10.0);
             let r = lobes.contact_radius();
             let [touching, free] = [0.5 * r, 2.0 * r].map(|side| lobes.acting_at(side).section(r));
-            for (a, b) in [
-                (touching.area, free.area),
-                (touching.area_r, free.area_r),
-                (touching.area_rr, free.area_rr),
-            ] {
+            for (a, b) in
+                [(touching.area, free.area), (touching.area_r, free.area_r), (touching.area_rr, free.area_rr)]
+            {
                 assert!((a / b - 1.0).abs() < 1e-11, "n = {n}: {a} {b}");
             }
             let (sin, cos) = (PI / n).sin_cos();
@@ -282,7 +291,11 @@ mod tests {
         assert!((full - 1.0 - FRAC_PI_2 * sin / cos).abs() < 1e-12, "{full}");
         for n in [3, 40, 200] {
             let circle = at(n, 2.0 * PI * 1.7, 1.7);
-            assert!((circle.area / (PI * 1.7 * 1.7) - 1.0).abs() < 1e-11 && circle.area_r.abs() < 1e-9 && circle.area_rr < 0.0);
+            assert!(
+                (circle.area / (PI * 1.7 * 1.7) - 1.0).abs() < 1e-11
+                    && circle.area_r.abs() < 1e-9
+                    && circle.area_rr < 0.0
+            );
         }
     }
 
@@ -296,8 +309,13 @@ mod tests {
             assert!((slope - bulge * f64::exp(-y)).abs() < 1e-10, "{y}: {bulge} {slope}");
             let dual = lobes.map(Dual::<1>::from).bulge(Dual::from(1.0), Dual::variable(y, 0)).unwrap();
             let h = 1e-5;
-            let difference = (lobes.bulge(1.0, y + h).unwrap() - lobes.bulge(1.0, y - h).unwrap()) / (2.0 * h);
-            assert!((dual.gradient()[0] - difference).abs() < 1e-8, "{y}: {:?} {difference}", dual.gradient());
+            let difference =
+                (lobes.bulge(1.0, y + h).unwrap() - lobes.bulge(1.0, y - h).unwrap()) / (2.0 * h);
+            assert!(
+                (dual.gradient()[0] - difference).abs() < 1e-8,
+                "{y}: {:?} {difference}",
+                dual.gradient()
+            );
         }
     }
 }

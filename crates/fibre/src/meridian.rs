@@ -173,14 +173,15 @@ pub(crate) fn trajectory<D: Real>(
     let force = mid.force - at_middle.area(mid_radius);
     let sign = bulge.value().signum();
     let size = bulge.value().abs();
-    let mut targets = targets(net, mid_radius, bulge);
+    let (targets, last) = targets(net, mid_radius, bulge);
+    let mut next = 0;
     let parabola = (2.0 * size / (curvature.value().abs())).sqrt() / mid.sigma.value();
     let mut run = Dop853::new((0.5 * parabola).min(1.0 + 0.1 * net.half_fibre.value()), tolerance);
     let floor = shortening_floor(net, size, parabola);
     let mut fibre = D::from(0.0);
     let far = 10.0 * net.half_fibre.value();
     loop {
-        let target = targets[0];
+        let target = targets[next];
         let limit = D::from(flow.distance_to(&y, &slope, target.value()).map_or(far, |h| h.min(far)));
         let stepped = run.advance(
             &mut |y: &State<D>| flow.slope(y),
@@ -200,12 +201,11 @@ pub(crate) fn trajectory<D: Real>(
             fibre += more;
             y = state;
             run.evaluations += 12 * pieces;
-            let [_, next, last] = targets;
-            if target.value() == bulge.value() {
+            if next == last {
                 break;
             }
-            targets = [next, last, last];
-            let between = 0.5 * (target.value() + next.value());
+            next += 1;
+            let between = 0.5 * (target.value() + targets[next].value());
             flow.net = net.acting_at(mid_radius.value() - between);
             slope = flow.slope(&y);
         }
@@ -231,16 +231,18 @@ pub(crate) fn trajectory<D: Real>(
 }
 
 /// Where the law changes on the way to the fitting, and the fitting itself, as values of rho in the order in which they are met: one smooth law
-/// in between, and each hit exactly. Places that are left are filled with the fitting.
-fn targets<D: Real>(net: &Net<D>, mid_radius: D, bulge: D) -> [D; 3] {
+/// in between, and each hit exactly. With the place of the fitting among them.
+fn targets<D: Real>(net: &Net<D>, mid_radius: D, bulge: D) -> ([D; 3], usize) {
     let (sign, size) = (bulge.value().signum(), bulge.value().abs());
-    let on_the_way = |radius: D| Some(mid_radius - radius).filter(|rho| rho.value() * sign > 0.0 && rho.value() * sign < size);
-    let [one, other] = net.kinks().map(|radius| radius.and_then(on_the_way));
-    match (one, other) {
-        (Some(a), Some(b)) if a.value().abs() <= b.value().abs() => [a, b, bulge],
-        (Some(a), Some(b)) => [b, a, bulge],
-        (Some(a), None) | (None, Some(a)) => [a, bulge, bulge],
-        (None, None) => [bulge; 3],
+    let on_the_way = |radius: D| {
+        let rho = mid_radius - radius;
+        (rho.value() * sign > 0.0 && rho.value() * sign < size).then_some(rho)
+    };
+    match net.kinks().map(|radius| radius.and_then(on_the_way)) {
+        [Some(a), Some(b)] if a.value().abs() <= b.value().abs() => ([a, b, bulge], 2),
+        [Some(a), Some(b)] => ([b, a, bulge], 2),
+        [Some(a), None] | [None, Some(a)] => ([a, bulge, bulge], 1),
+        [None, None] => ([bulge; 3], 0),
     }
 }
 

@@ -109,7 +109,7 @@ impl<D: Real> Net<D> {
     pub(crate) fn acting_at(&self, r: f64) -> Self {
         let cloth = self.cloth.filter(|cloth| r > cloth.radius.value());
         let lobes = self.lobes.map(|lobes| lobes.acting_at(r + self.depth.value()));
-        Self { cloth, lobes, ..*self }
+        Self { lobes, cloth, ..*self }
     }
 
     /// The radii at which the law changes: one at which cloth becomes taut, one at which lobes cease to touch.

@@ -123,9 +123,9 @@ impl Problem {
                 let groups = Groups::of(net);
                 let plain = &self.net;
                 match groups.count() {
-                    ..=2 => by_groups::<N, 4>(plain, net, &groups, contraction, from),
-                    ..=4 => by_groups::<N, 6>(plain, net, &groups, contraction, from),
-                    ..=6 => by_groups::<N, 8>(plain, net, &groups, contraction, from),
+                    0..=2 => by_groups::<N, 4>(plain, net, &groups, contraction, from),
+                    3..=4 => by_groups::<N, 6>(plain, net, &groups, contraction, from),
+                    5..=6 => by_groups::<N, 8>(plain, net, &groups, contraction, from),
                     _ => by_groups::<N, 12>(plain, net, &groups, contraction, from),
                 }
             }

@@ -183,8 +183,7 @@ impl Problem {
                     // 2 pi r0 t W per axial length at rest; cos(alpha0) of that per fibre length. A bladder of another thickness than that of
                     // the muscle's wall doesn't follow it.
                     let shared = self.muscle.wall() == Some(bladder.wall());
-                    let wall =
-                        if shared { get(Parameter::Wall) } else { D::from(bladder.wall().si()) };
+                    let wall = if shared { get(Parameter::Wall) } else { D::from(bladder.wall().si()) };
                     let scale = wall * cos * (2.0 * PI) / (radius * p);
                     net.bladder =
                         Some(Bladder { c10: scale * get(Parameter::C10), c01: scale * get(Parameter::C01) });

@@ -350,7 +350,8 @@ impl Problem {
             contraction,
             volume_m3: volume,
             volume_polygon_m3: polygon,
-            max_radius_m: radius * outcome.mid_radius.value.max(if self.is_cylinder() { 0.0 } else { end_radius }),
+            max_radius_m: radius
+                * outcome.mid_radius.value.max(if self.is_cylinder() { 0.0 } else { end_radius }),
             mid_radius_m: radius * outcome.mid_radius.value,
             fibre_tension_n: unit_force * outcome.tension / self.fibre_number(|v| self.value(v)),
             fibre_strain: self.net.compliance * outcome.tension,

@@ -63,7 +63,9 @@ fn open_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
             (g / (2.0 - g).max(1e-9)).sqrt()
         })
     };
-    let asked = |tension: f64| net.half_fibre * (contraction * net.cos_rest + 1.0 - net.cos_rest + net.compliance * tension);
+    let asked = |tension: f64| {
+        net.half_fibre * (contraction * net.cos_rest + 1.0 - net.cos_rest + net.compliance * tension)
+    };
     let least = (0.5 * missing(net.end_radius)).ln();
     let ln_tension = illinois(|ln_t| shortening(ln_t.exp()) - asked(ln_t.exp()), least, least + 12.0, 1e-3);
     let tension = ln_tension.exp();

@@ -124,14 +124,8 @@ pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<(M
     let base = analysis.climb(0, None)?;
     analysis.measure_noise(&base);
     let climbed = analysis.climb(options.effects.len(), None)?;
-    match climbed.fit {
-        Some(fit) => Ok((climbed.prepared.model, fit)),
-        None => {
-            let theta = climbed.theta;
-            let force = &climbed.force;
-            Ok((climbed.prepared.model, analysis.nothing_fitted(theta, force)))
-        }
-    }
+    let Climbed { prepared, theta, fit, force } = climbed;
+    Ok((prepared.model, fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force))))
 }
 
 impl<'a> Analysis<'a> {
@@ -223,7 +217,9 @@ impl<'a> Analysis<'a> {
     /// A model error with the lines of the file.
     pub(crate) fn about(&self, error: ModelError) -> InferenceError {
         let what = match &error {
-            ModelError::NoEquilibrium { rows, .. } | ModelError::NotFinite { rows, .. } if !rows.is_empty() => {
+            ModelError::NoEquilibrium { rows, .. } | ModelError::NotFinite { rows, .. }
+                if !rows.is_empty() =>
+            {
                 format!("line {}: ", lines(self.data, rows))
             }
             _ => String::new(),
@@ -234,7 +230,8 @@ impl<'a> Analysis<'a> {
     /// Whether the model pulls where the muscle does.
     fn check_match(&self, first: &Climbed) -> Result<(), InferenceError> {
         let measured = self.record.force();
-        let pushes = |row: &usize| first.force[*row] < 0.0 && measured[*row] > CLEARLY_PULLS * self.full_scale;
+        let pushes =
+            |row: &usize| first.force[*row] < 0.0 && measured[*row] > CLEARLY_PULLS * self.full_scale;
         let rows: Vec<usize> = self.rows().filter(pushes).collect();
         let Some(&row) = rows.first() else { return Ok(()) };
         let moment = &self.record.moments()[row];
@@ -254,8 +251,13 @@ impl<'a> Analysis<'a> {
         let residuals: Vec<f64> =
             self.record.force().iter().zip(&first.force).map(|(measured, model)| measured - model).collect();
         let repeats = self.data.repeats(self.muscle.length().si());
-        let floor =
-            noise_floor(repeats.pure_error().as_ref(), &self.record, &self.used.mask, &residuals, self.muscle);
+        let floor = noise_floor(
+            repeats.pure_error().as_ref(),
+            &self.record,
+            &self.used.mask,
+            &residuals,
+            self.muscle,
+        );
         let stated = self.muscle.instruments().force.map_or(0.0, |force| force.noise());
         let sd = if stated > 0.0 { stated } else { floor.as_ref().map_or(0.0, |floor| floor.sd_n) };
         if sd > 0.0 {

@@ -45,8 +45,7 @@ pub(crate) fn fit(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result
     let mut found: Option<(Minimum, FitProblem<'_>)> = None;
     for theta in &best {
         let sd = weights(model, theta, task)?;
-        let problem =
-            FitProblem::new(model, task.record, task.used, sd, theta.clone(), &prepared.priors);
+        let problem = FitProblem::new(model, task.record, task.used, sd, theta.clone(), &prepared.priors);
         let minimum = settle(&problem, theta, task.quick)?;
         if found.as_ref().is_none_or(|(other, _)| minimum.cost < other.cost) {
             found = Some((minimum, problem));
@@ -55,16 +54,22 @@ pub(crate) fn fit(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result
     let Some((minimum, problem)) = found else {
         return Err(ModelError::Values { given: 0, expected: 1 });
     };
-    report(prepared, &minimum, &problem, task, Convergence {
-        converged: minimum.certificate.converged,
-        reason: reason(minimum.certificate.reason).to_owned(),
-        gradient_cosine: minimum.certificate.gradient_cosine,
-        iterations: minimum.iterations,
-        starts: tried,
-        agreeing,
-        minima,
-        rank: minimum.certificate.rank,
-    })
+    Ok(report(
+        prepared,
+        &minimum,
+        &problem,
+        task,
+        Convergence {
+            converged: minimum.certificate.converged,
+            reason: reason(minimum.certificate.reason).to_owned(),
+            gradient_cosine: minimum.certificate.gradient_cosine,
+            iterations: minimum.iterations,
+            starts: tried,
+            agreeing,
+            minima,
+            rank: minimum.certificate.rank,
+        },
+    ))
 }
 
 struct Searched {
@@ -87,7 +92,12 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     let mut tried = 0;
     let mut first_error = None;
     let costly = model.is_costly(start)?;
-    let options = Options { check_curvature: false, tolerance: 1e-4, max_evaluations: if costly { 20 } else { 60 }, ..Options::default() };
+    let options = Options {
+        check_curvature: false,
+        tolerance: 1e-4,
+        max_evaluations: if costly { 20 } else { 60 },
+        ..Options::default()
+    };
     for number in 0..STARTS[usize::from(costly)] {
         let coordinates = if number == 0 {
             clamped(problem.coordinates(start), &bounds.lower, &bounds.upper)
@@ -114,7 +124,12 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     }
     let agreeing = ends.iter().filter(|end| same(end.0, least)).count();
     let minima = best.len();
-    Ok(Searched { best: best.into_iter().take(POLISHED).map(|(_, theta)| theta).collect(), minima, agreeing, tried })
+    Ok(Searched {
+        best: best.into_iter().take(POLISHED).map(|(_, theta)| theta).collect(),
+        minima,
+        agreeing,
+        tried,
+    })
 }
 
 /// A point of the plausible box; numbers with a narrow prior stay near its mean.
@@ -171,7 +186,10 @@ fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimu
     let options = Options { check_curvature: false, tolerance, max_evaluations: 200, ..Options::default() };
     minimise(problem, &start, &bounds, &options).map_err(|error| match error {
         LeastSquaresError::Start(error) => error,
-        _ => ModelError::NotFinite { rows: Vec::new(), what: "the fit cannot start: the model has no finite derivatives there" },
+        _ => ModelError::NotFinite {
+            rows: Vec::new(),
+            what: "the fit cannot start: the model has no finite derivatives there",
+        },
     })
 }
 
@@ -190,7 +208,7 @@ fn report(
     problem: &FitProblem<'_>,
     task: &Task<'_>,
     convergence: Convergence,
-) -> Result<Fit, ModelError> {
+) -> Fit {
     let model = &prepared.model;
     let theta = problem.theta(&minimum.theta);
     let n = problem.measured();
@@ -213,7 +231,7 @@ fn report(
         warnings: Vec::new(),
     };
     if task.quick {
-        return Ok(fit);
+        return fit;
     }
     let scale = interval::Scale::new(minimum, n, effective);
     for (place, index) in free(model).into_iter().enumerate() {
@@ -223,14 +241,15 @@ fn report(
             Side::Lower => "lower",
             Side::Upper => "upper",
         });
-        let found = interval::of(problem, minimum, place, &scale, fitted.at_bound.is_some() || !fitted.plausible);
+        let found =
+            interval::of(problem, minimum, place, &scale, fitted.at_bound.is_some() || !fitted.plausible);
         fitted.interval = found.method;
         let factor = model.parameters()[index].factor;
         [fitted.low, fitted.high] = found.ends.map(|x| x / factor);
         fit.parameters.push(fitted);
     }
     fit.warnings = warnings(&fit);
-    Ok(fit)
+    fit
 }
 
 fn fitted(prepared: &Prepared, index: usize, value: f64) -> Fitted {

@@ -76,7 +76,8 @@ impl Residuals for Surface {
     ) -> Result<(), Infallible> {
         let k = self.columns;
         let part = &self.rows[rows.start * k..rows.end * k];
-        for ((residual, row), value) in residuals.iter_mut().zip(part.chunks_exact(k)).zip(&self.values[rows]) {
+        for ((residual, row), value) in residuals.iter_mut().zip(part.chunks_exact(k)).zip(&self.values[rows])
+        {
             *residual = row.iter().zip(theta).map(|(x, t)| x * t).sum::<f64>() - value;
         }
         if let Some(jacobian) = jacobian {
@@ -101,7 +102,16 @@ fn saturated(record: &Record, used: &[bool], residuals: &[f64]) -> Option<(f64, 
     let degree = |distinct: usize, most: usize| (distinct.saturating_sub(1)).min(most);
     let n = rows.len();
     let degrees_p = degree(distinct(&|row| moments[row].pressure), if n < 40 { 1 } else { 3 });
-    let degrees_e = degree(distinct(&|row| moments[row].contraction), if n < 40 { 2 } else if n < 200 { 4 } else { 7 });
+    let degrees_e = degree(
+        distinct(&|row| moments[row].contraction),
+        if n < 40 {
+            2
+        } else if n < 200 {
+            4
+        } else {
+            7
+        },
+    );
     let parities = if record.is_path() { 2 } else { 1 };
     let sweeps = sweep_of(record.sweeps(), record.len());
     let offsets = if record.is_path() && record.sweeps().len() <= 20 { record.sweeps().len() - 1 } else { 0 };
@@ -114,7 +124,8 @@ fn saturated(record: &Record, used: &[bool], residuals: &[f64]) -> Option<(f64, 
     let mut matrix = Vec::with_capacity(n * columns);
     for row in &rows {
         let m = &moments[*row];
-        let [along_p, along_e] = [chebyshev(p.at(m.pressure), degrees_p), chebyshev(e.at(m.contraction), degrees_e)];
+        let [along_p, along_e] =
+            [chebyshev(p.at(m.pressure), degrees_p), chebyshev(e.at(m.contraction), degrees_e)];
         for parity in 0..parities {
             let sign = if parity == 0 { 1.0 } else { m.direction };
             for x in &along_p {

@@ -27,8 +27,9 @@ impl Scale {
         let freedom = (rows as f64 - minimum.certificate.rank as f64).max(1.0);
         let spread = (minimum.cost / freedom).max(1.0);
         let independent = (effective - minimum.certificate.rank as f64).max(1.0);
-        let quantile =
-            StudentsT::new(0.0, 1.0, independent).map_or(1.959_964, |t| t.inverse_cdf(0.975)).clamp(1.959_964, 12.71);
+        let quantile = StudentsT::new(0.0, 1.0, independent)
+            .map_or(1.959_964, |t| t.inverse_cdf(0.975))
+            .clamp(1.959_964, 12.71);
         Self { variance: spread * (rows as f64 / effective).max(1.0), quantile }
     }
 }

@@ -56,7 +56,8 @@ impl Levels {
     fn place_unused(&mut self, record: &Record, used: &[bool]) {
         for row in (0..record.len()).filter(|row| !used[*row]) {
             let p = record.moments()[row].pressure;
-            let nearest = |a: &usize, b: &usize| (self.mean[*a] - p).abs().total_cmp(&(self.mean[*b] - p).abs());
+            let nearest =
+                |a: &usize, b: &usize| (self.mean[*a] - p).abs().total_cmp(&(self.mean[*b] - p).abs());
             self.of[row] = (0..self.mean.len()).min_by(nearest).unwrap_or(0);
         }
     }

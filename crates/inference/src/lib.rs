@@ -26,7 +26,8 @@ mod weights;
 
 pub use compare::{Options, compare, fit_effects};
 pub use comparison::{
-    Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, LeftOut, LoopGap, NoiseFloor, Part, ResidualMap, Rival, Rung, Stack,
+    Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, LeftOut, LoopGap, NoiseFloor, Part,
+    ResidualMap, Rival, Rung, Stack,
 };
 pub use error::InferenceError;
 pub use fit::{Convergence, Fit, Fitted};

@@ -28,7 +28,9 @@ pub(crate) fn gaps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<LoopG
         let at = place(analysis.levels.of[row], m.specimen as usize, bin(m.contraction, low, high, BINS));
         let branch = usize::from(m.direction < 0.0);
         bins[at].rows[branch] += 1;
-        for (sum, value) in bins[at].sums[branch].iter_mut().zip([measured[row], forces[0][row], forces[1][row]]) {
+        for (sum, value) in
+            bins[at].sums[branch].iter_mut().zip([measured[row], forces[0][row], forces[1][row]])
+        {
             *sum += value;
         }
     }
@@ -50,8 +52,11 @@ pub(crate) fn gaps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<LoopG
                 if branches.rows.contains(&0) {
                     continue;
                 }
-                let mean = |branch: usize, what: usize| branches.sums[branch][what] / branches.rows[branch] as f64;
-                let half = |what: usize| [0.5 * (mean(1, what) + mean(0, what)), 0.5 * (mean(1, what) - mean(0, what))];
+                let mean =
+                    |branch: usize, what: usize| branches.sums[branch][what] / branches.rows[branch] as f64;
+                let half = |what: usize| {
+                    [0.5 * (mean(1, what) + mean(0, what)), 0.5 * (mean(1, what) - mean(0, what))]
+                };
                 gap.contraction.push(low + (i as f64 + 0.5) * width);
                 let all = [half(0), half(1), half(2)];
                 gap.mean_measured_n.push(all[0][0]);

@@ -34,8 +34,11 @@ pub(crate) fn with_nuisances(model: &Model, catalogue: &Catalogue) -> Result<Pre
         nuisance: vec![false; asked],
     };
     for width in widths(model.muscle()) {
-        let taken = |effects: &[bulge_model::Chosen]| effects.iter().any(|c| c.effect.card().name == width.effect);
-        if taken(prepared.model.effects()) && prepared.model.parameters()[..asked].iter().any(|p| p.effect == width.effect) {
+        let taken =
+            |effects: &[bulge_model::Chosen]| effects.iter().any(|c| c.effect.card().name == width.effect);
+        if taken(prepared.model.effects())
+            && prepared.model.parameters()[..asked].iter().any(|p| p.effect == width.effect)
+        {
             continue;
         }
         let Some(effect) = known(catalogue, width.effect) else { continue };

@@ -78,11 +78,6 @@ impl<'a> FitProblem<'a> {
         &self.sd
     }
 
-    /// The record.
-    pub(crate) fn record(&self) -> &Record {
-        self.record
-    }
-
     /// Whether a free number is fitted over its logarithm.
     pub(crate) fn is_logarithmic(&self, place: usize) -> bool {
         self.logarithmic[place]
@@ -132,9 +127,8 @@ impl Residuals for FitProblem<'_> {
         }
         let k = self.free.len();
         let Some(jacobian) = jacobian.filter(|_| k > 0) else { return Ok(()) };
-        let scale: Vec<f64> = (0..k)
-            .map(|place| if self.logarithmic[place] { theta[self.free[place]] } else { 1.0 })
-            .collect();
+        let scale: Vec<f64> =
+            (0..k).map(|place| if self.logarithmic[place] { theta[self.free[place]] } else { 1.0 }).collect();
         for (line, row) in jacobian.chunks_exact_mut(k).zip(&self.rows) {
             let slopes = &prediction.jacobian[row * k..(row + 1) * k];
             for ((out, slope), scale) in line.iter_mut().zip(slopes).zip(&scale) {

@@ -65,7 +65,18 @@ pub(crate) fn breakdowns(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec
     let bar_free = |variable, unit, value: &dyn Fn(usize) -> f64| even(analysis, variable, unit, value);
     all.extend(bar_free("contraction", "%", &|row| 100.0 * moments[row].contraction));
     if record.is_path() {
-        let of = moments.iter().map(|m| if m.direction > 0.0 { 0 } else if m.direction < 0.0 { 2 } else { 1 }).collect();
+        let of = moments
+            .iter()
+            .map(|m| {
+                if m.direction > 0.0 {
+                    0
+                } else if m.direction < 0.0 {
+                    2
+                } else {
+                    1
+                }
+            })
+            .collect();
         let labels = [("shortening", 1.0), ("at rest", 0.0), ("lengthening", -1.0)];
         let labels = labels.into_iter().map(|(label, at)| (label.to_owned(), at)).collect();
         all.push(Groups { variable: "direction", unit: "", of, labels });
@@ -99,18 +110,16 @@ fn even(
     unit: &'static str,
     value: &dyn Fn(usize) -> f64,
 ) -> Option<Groups> {
-    let [low, high] = analysis
-        .rows()
-        .map(value)
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
-    if !(high > low) {
+    let [low, high] =
+        analysis.rows().map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+    if high.is_nan() || high <= low {
         return None;
     }
     let of = (0..analysis.record.len()).map(|row| bin(value(row), low, high, BINS)).collect();
     let width = (high - low) / BINS as f64;
     let label = |i: usize| {
         let start = low + i as f64 * width;
-        let digits = if width < 1.0 { 1 } else { 0 };
+        let digits = usize::from(width < 1.0);
         (format!("{start:.digits$} to {:.digits$}", start + width), start + 0.5 * width)
     };
     Some(Groups { variable, unit, of, labels: (0..BINS).map(label).collect() })
@@ -119,7 +128,11 @@ fn even(
 /// Number of the bin of a value; values outside go to the ends.
 pub(crate) fn bin(value: f64, low: f64, high: f64, bins: usize) -> usize {
     let part = if high > low { (value - low) / (high - low) } else { 0.0 };
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and the number of bins")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 0 and the number of bins"
+    )]
     let bin = (part * bins as f64).clamp(0.0, bins as f64 - 1.0) as usize;
     bin
 }

@@ -1,6 +1,7 @@
 //! Which rows enter errors and fits, and how rows are named to people.
 
 use bulge_measurements::Data;
+use std::fmt::Write;
 
 use crate::comparison::LeftOut;
 
@@ -15,7 +16,7 @@ pub(crate) fn used(data: &Data) -> Used {
     let force = data.force();
     let full = full_scale(force);
     let lowest = force.iter().copied().fold(f64::INFINITY, f64::min);
-    let is_cut = |row: usize| force[row].to_bits() == lowest.to_bits() || force[row] == lowest;
+    let is_cut = |row: usize| force[row].total_cmp(&lowest).is_eq();
     let cut: Vec<usize> = (0..force.len()).filter(|row| is_cut(*row)).collect();
     let mut mask = vec![true; force.len()];
     let mut left_out = Vec::new();
@@ -55,7 +56,7 @@ pub(crate) fn lines(data: &Data, rows: &[usize]) -> String {
     };
     let mut text = ranges.iter().take(MOST).map(one).collect::<Vec<_>>().join(", ");
     if ranges.len() > MOST {
-        text.push_str(&format!(" and {} more", ranges.len() - MOST));
+        let _ = write!(text, " and {} more", ranges.len() - MOST);
     }
     text
 }

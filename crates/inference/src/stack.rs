@@ -51,7 +51,10 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
         let filled: Vec<(usize, &Vec<usize>)> =
             rows_of.iter().enumerate().filter(|(_, rows)| !rows.is_empty()).collect();
         let mean = |values: &[f64]| -> Vec<f64> {
-            filled.iter().map(|(_, rows)| rows.iter().map(|i| values[*i]).sum::<f64>() / rows.len() as f64).collect()
+            filled
+                .iter()
+                .map(|(_, rows)| rows.iter().map(|i| values[*i]).sum::<f64>() / rows.len() as f64)
+                .collect()
         };
         let added = |i: usize| -> Vec<f64> {
             forces[i + 1].iter().zip(&forces[i]).map(|(with, without)| with - without).collect()

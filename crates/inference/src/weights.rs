@@ -102,7 +102,8 @@ mod tests {
         let moments: Vec<Moment> = (0..rows)
             .map(|i| Moment { direction: 1.0, begins: i == 0, ..Moment::at_rest(1e5, 1e-4 * i as f64) })
             .collect();
-        let record = Record::from_moments(moments, vec![0.0; rows], std::iter::once(0..rows).collect()).unwrap();
+        let record =
+            Record::from_moments(moments, vec![0.0; rows], std::iter::once(0..rows).collect()).unwrap();
         let found = effective_rows(&record, &values, &vec![true; rows]);
         // Correlation time of a block of 8: (1 + 2 sum (8-k)/8) = 8.
         assert!((found / (rows as f64 / 8.0) - 1.0).abs() < 0.25, "{found}");

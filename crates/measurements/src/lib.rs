@@ -12,6 +12,7 @@ mod error;
 mod heading;
 mod history;
 mod parquet_file;
+mod parquet_page;
 mod quality;
 mod quote;
 mod rate;

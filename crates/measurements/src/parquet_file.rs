@@ -3,14 +3,16 @@
 use crate::csv_file::{MOST_ROWS, Table};
 use crate::error::{CellError, MeasurementError};
 use crate::heading;
+use crate::parquet_page::{CheckedPages, checked_place};
 use crate::quote::quoted;
 use crate::slot::{Slot, columns};
-use parquet::basic::{ConvertedType, LogicalType};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::DataType;
+use parquet::basic::{ConvertedType, LogicalType, Type};
+use parquet::column::reader::ColumnReaderImpl;
+use parquet::data_type::{ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type};
 use parquet::errors::ParquetError;
-use parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
-use parquet::schema::types::ColumnDescriptor;
+use parquet::file::reader::{ChunkReader, FileReader, RowGroupReader, SerializedFileReader};
+use parquet::schema::types::{ColumnDescPtr, ColumnDescriptor};
+use std::sync::Arc;
 
 /// Rows that are decoded at a time.
 const BATCH: usize = 1 << 14;
@@ -34,21 +36,7 @@ pub(crate) fn read<R: ChunkReader + 'static>(file: &str, source: R) -> Result<Ta
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(|error| refused(&error))?;
         for (i, (slot, rows)) in slots.iter_mut().zip(&mut rows).enumerate() {
-            let column = group.get_column_reader(i).map_err(|error| refused(&error))?;
-            let found = match column {
-                ColumnReader::Int32ColumnReader(column) => {
-                    numbers(column, rows, slot, |value| f64::from(*value))
-                }
-                ColumnReader::Int64ColumnReader(column) => numbers(column, rows, slot, |value| *value as f64),
-                ColumnReader::FloatColumnReader(column) => {
-                    numbers(column, rows, slot, |value| f64::from(*value))
-                }
-                ColumnReader::DoubleColumnReader(column) => numbers(column, rows, slot, |value| *value),
-                ColumnReader::ByteArrayColumnReader(column) => texts(column, rows, slot),
-                // Refused by `checked_type` already.
-                _ => Ok(()),
-            };
-            found.map_err(|problem| problem.at(file, *rows + 1, slot))?;
+            read_chunk(group.as_ref(), i, slot, rows).map_err(|problem| problem.at(file, *rows + 1, slot))?;
         }
     }
     let expected = rows.first().copied().unwrap_or(0);
@@ -63,9 +51,33 @@ pub(crate) fn read<R: ChunkReader + 'static>(file: &str, source: R) -> Result<Ta
     Ok(Table { columns: columns(slots), lines: (1..=last).collect() })
 }
 
+/// The rows of one column in one group.
+fn read_chunk(
+    group: &dyn RowGroupReader,
+    column: usize,
+    slot: &mut Slot,
+    rows: &mut usize,
+) -> Result<(), Problem> {
+    fn chunk<T: DataType>(column: ColumnDescPtr, pages: CheckedPages) -> ColumnReaderImpl<T> {
+        ColumnReaderImpl::new(column, Box::new(pages))
+    }
+    checked_place(group.metadata().column(column)).map_err(Problem::Reader)?;
+    let description = group.metadata().schema_descr().column(column);
+    let pages = group.get_column_page_reader(column).map_err(Problem::Reader)?;
+    let pages = CheckedPages::new(pages, Arc::clone(&description));
+    match description.physical_type() {
+        Type::INT32 => numbers(chunk::<Int32Type>(description, pages), rows, slot, |value| f64::from(*value)),
+        Type::INT64 => numbers(chunk::<Int64Type>(description, pages), rows, slot, |value| *value as f64),
+        Type::FLOAT => numbers(chunk::<FloatType>(description, pages), rows, slot, |value| f64::from(*value)),
+        Type::DOUBLE => numbers(chunk::<DoubleType>(description, pages), rows, slot, |value| *value),
+        Type::BYTE_ARRAY => texts(chunk(description, pages), rows, slot),
+        // Refused by `checked_type` already.
+        _ => Ok(()),
+    }
+}
+
 /// A plain column of numbers or text. A date or a decimal is stored as an integer too, in a unit of its own.
 fn checked_type(file: &str, column: &ColumnDescriptor, heading: &str) -> Result<(), MeasurementError> {
-    use parquet::basic::Type;
     let logical = column.logical_type_ref();
     let is_plain = match logical {
         None => matches!(
@@ -132,11 +144,7 @@ fn numbers<T: DataType>(
     each(column, rows, |value| slot.push_number(number(value)))
 }
 
-fn texts(
-    column: ColumnReaderImpl<parquet::data_type::ByteArrayType>,
-    rows: &mut usize,
-    slot: &mut Slot,
-) -> Result<(), Problem> {
+fn texts(column: ColumnReaderImpl<ByteArrayType>, rows: &mut usize, slot: &mut Slot) -> Result<(), Problem> {
     each(column, rows, |value| {
         let text = std::str::from_utf8(value.data())
             .map_err(|_| CellError::NotANumber { text: "text that is not UTF-8".to_owned() })?;

@@ -81,8 +81,7 @@ impl Equilibrium {
         };
         for (j, variable) in self.variables.iter().enumerate().take(SHAPE) {
             let slopes = self.by_shape(j, variable, &found, pressure, contraction)?;
-            let places =
-                [&mut answer.force, &mut answer.tension, &mut answer.mid_radius, &mut answer.volume];
+            let places = [&mut answer.force, &mut answer.tension, &mut answer.mid_radius, &mut answer.volume];
             for (place, slope) in places.into_iter().zip(slopes) {
                 place.by_shape[j] = slope;
             }
@@ -99,7 +98,8 @@ impl Equilibrium {
         contraction: f64,
     ) -> Result<[f64; 4], FibreError> {
         if let (ShapeVariable::Quotient { .. }, Some((problem, step))) = (variable, &self.neighbours[j]) {
-            let moved = problem.at_pressure(Pressure::pa(pressure))?.linearised(contraction, &[], Approach::Auto)?;
+            let moved =
+                problem.at_pressure(Pressure::pa(pressure))?.linearised(contraction, &[], Approach::Auto)?;
             return Ok([
                 (moved.force_n.value - found.force_n.value) / step,
                 (moved.equator_force_n.value - found.equator_force_n.value) / step,
@@ -112,7 +112,8 @@ impl Equilibrium {
         for (parameter, factor) in moved {
             let place = self.numbers.iter().position(|number| *number == Variable::Parameter(*parameter));
             if let Some(place) = place {
-                let outputs = [&found.force_n, &found.equator_force_n, &found.mid_radius_m, &found.volume_polygon_m3];
+                let outputs =
+                    [&found.force_n, &found.equator_force_n, &found.mid_radius_m, &found.volume_polygon_m3];
                 for (slope, output) in slopes.iter_mut().zip(outputs) {
                     *slope += factor * output.by_variable()[place];
                 }

@@ -51,7 +51,9 @@ pub enum ModelError {
         effect: String,
     },
     /// Too many shape parameters at once.
-    #[error("{count} parameters that change the shape at once are too many: at most {most}; leave some effects out")]
+    #[error(
+        "{count} parameters that change the shape at once are too many: at most {most}; leave some effects out"
+    )]
     TooManyShapes {
         /// How many.
         count: usize,

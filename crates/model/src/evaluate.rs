@@ -43,7 +43,8 @@ const CHUNK: usize = 2048;
 /// Newton steps for a contraction that depends on the force.
 const MOST_GIVE_STEPS: usize = 50;
 /// Nodes and weights of the Gauss-Hermite rule of degree 5 for a standard normal number.
-const NORMAL: [(f64, f64); 3] = [(0.0, 2.0 / 3.0), (1.732_050_807_568_877_2, 1.0 / 6.0), (-1.732_050_807_568_877_2, 1.0 / 6.0)];
+const NORMAL: [(f64, f64); 3] =
+    [(0.0, 2.0 / 3.0), (1.732_050_807_568_877_2, 1.0 / 6.0), (-1.732_050_807_568_877_2, 1.0 / 6.0)];
 
 /// Everything that stays the same for all rows of one evaluation.
 struct Run<'a> {
@@ -86,9 +87,14 @@ impl Model {
     ///
     /// # Errors
     /// If an effect doesn't fit the muscle, or rows have no equilibrium: the error lists them.
-    pub fn evaluate(&self, record: &Record, theta: &[f64], wanted: &Wanted) -> Result<Prediction, ModelError> {
+    pub fn evaluate(
+        &self,
+        record: &Record,
+        theta: &[f64],
+        wanted: &Wanted,
+    ) -> Result<Prediction, ModelError> {
         let run = self.run(record, theta, &wanted.parameters)?;
-        let passes = self.passes(theta, wanted, &run.shapes);
+        let passes = Self::passes(theta, wanted, &run.shapes);
         let segments = self.segments(record);
         let columns = wanted.parameters.len();
         let parts: Vec<Part> = segments
@@ -98,12 +104,7 @@ impl Model {
         gather(parts, record.len())
     }
 
-    fn run<'a>(
-        &'a self,
-        record: &Record,
-        theta: &'a [f64],
-        wanted: &[usize],
-    ) -> Result<Run<'a>, ModelError> {
+    fn run<'a>(&'a self, record: &Record, theta: &'a [f64], wanted: &[usize]) -> Result<Run<'a>, ModelError> {
         if theta.len() != self.parameters().len() {
             return Err(ModelError::Values { given: theta.len(), expected: self.parameters().len() });
         }
@@ -123,7 +124,7 @@ impl Model {
             contraction: first.map_or(0.0, |m| m.contraction),
             source: Box::new(source),
         };
-        let equilibrium = self.equilibrium(&muscle, &variables).map_err(no_problem)?;
+        let equilibrium = Self::equilibrium(&muscle, &variables).map_err(no_problem)?;
         run.shapes = variables.iter().map(|(index, _)| *index).collect();
         if equilibrium.is_costly() && record.len() > FEW_ROWS {
             let rows = run.inputs(record);
@@ -141,7 +142,7 @@ impl Model {
         (0..record.len()).step_by(CHUNK).map(|start| start..(start + CHUNK).min(record.len())).collect()
     }
 
-    fn passes(&self, theta: &[f64], wanted: &Wanted, shapes: &[usize]) -> Vec<Pass> {
+    fn passes(theta: &[f64], wanted: &Wanted, shapes: &[usize]) -> Vec<Pass> {
         // Variables in order: pressure and contraction if wanted, then the parameters.
         let readings = if wanted.readings { 2 } else { 0 };
         let all = readings + wanted.parameters.len();
@@ -344,7 +345,11 @@ impl Run<'_> {
             effect.act(moment, setting, theta, memory, Place::Output(&balance, &mut reading));
         });
         let is_finite = reading.value().is_finite() && reading.gradient().iter().all(|g| g.is_finite());
-        if is_finite { Ok(Row { equilibrium: found.force, force, reading }) } else { Err(RowError::NotFinite) }
+        if is_finite {
+            Ok(Row { equilibrium: found.force, force, reading })
+        } else {
+            Err(RowError::NotFinite)
+        }
     }
 
     /// The equilibrium behind an input, and the contraction at which it is.
@@ -361,7 +366,8 @@ impl Run<'_> {
             let mut at = input.contraction.value();
             for _ in 0..MOST_GIVE_STEPS {
                 let found = self.averaged(moment, pressure, Jet::from(at), input, pass)?;
-                let gap = Jet::from(at) - input.contraction - gives[0] * found.force - gives[1] * found.tension;
+                let gap =
+                    Jet::from(at) - input.contraction - gives[0] * found.force - gives[1] * found.tension;
                 let slope = 1.0 - gives[0].value() * found.slope[0] - gives[1].value() * found.slope[1];
                 // With derivatives: those of the gap at fixed e, over the slope.
                 e = Jet::from(at) - gap / slope;
@@ -449,8 +455,12 @@ impl Run<'_> {
 }
 
 fn gather(parts: Vec<Part>, rows: usize) -> Result<Prediction, ModelError> {
-    let mut all =
-        Prediction { force: Vec::with_capacity(rows), jacobian: Vec::new(), by_pressure: Vec::new(), by_contraction: Vec::new() };
+    let mut all = Prediction {
+        force: Vec::with_capacity(rows),
+        jacobian: Vec::new(),
+        by_pressure: Vec::new(),
+        by_contraction: Vec::new(),
+    };
     let mut failed = Vec::new();
     for part in parts {
         all.force.extend(part.force);

@@ -20,6 +20,8 @@ use crate::base::Equilibrium;
 
 /// Nodes of a stencil in each direction.
 const WIDTH: usize = 6;
+/// The same as an index.
+const SPAN: i64 = 6;
 /// Steps of ln(p) and s at refinement 1.
 const STEP: [f64; 2] = [0.25, 0.1];
 /// Contraction below which the lattice is even, above which it is logarithmic.
@@ -75,7 +77,8 @@ impl Lattice {
             }
         }
         lattice.low = [extent[0][0], extent[1][0]];
-        lattice.count = [0, 1].map(|axis| usize::try_from(extent[axis][1] - extent[axis][0] + 1).unwrap_or(0));
+        lattice.count =
+            [0, 1].map(|axis| usize::try_from(extent[axis][1] - extent[axis][0] + 1).unwrap_or(0));
         let mut needed = vec![false; lattice.count[0] * lattice.count[1]];
         for span in &spans {
             for i in span[0][0]..=span[0][1] {
@@ -102,7 +105,7 @@ impl Lattice {
         let p = self.place(0, self.pressure_axis(pressure)?)?;
         let [a, b] = [self.contraction_axis(low)?, self.contraction_axis(high)?];
         let [a, b] = [self.place(1, a)?, self.place(1, b)?];
-        let last = WIDTH as i64 - 1;
+        let last = SPAN - 1;
         let pressures = if self.scale_free { [0, 0] } else { [p.first, p.first + last] };
         Some([pressures, [a.first.min(b.first), b.first.max(a.first) + last]])
     }
@@ -121,11 +124,11 @@ impl Lattice {
     fn place(&self, axis: usize, x: f64) -> Option<Place> {
         let steps = x / self.steps[axis];
         let cell = steps.floor();
-        if !(cell.abs() < 1e6) {
+        if cell.is_nan() || cell.abs() >= 1e6 {
             return None;
         }
         #[expect(clippy::cast_possible_truncation, reason = "below 1e6")]
-        let first = cell as i64 - (WIDTH as i64 / 2 - 1);
+        let first = cell as i64 - (SPAN / 2 - 1);
         Some(Place { first, offset: steps - first as f64 })
     }
 
@@ -172,7 +175,8 @@ impl Lattice {
         let mut slopes = [[0.0; 2]; 4];
         for i in 0..rows {
             for j in 0..WIDTH {
-                let node = self.nodes.get(self.index(first + i as i64, along_s.first + j as i64)?)?.as_ref()?;
+                let node =
+                    self.nodes.get(self.index(first + i as i64, along_s.first + j as i64)?)?.as_ref()?;
                 let w = wp[i] * ws[j];
                 let [w_p, w_s] = [dp[i] * ws[j], wp[i] * ds[j]];
                 for k in 0..4 {
@@ -185,8 +189,11 @@ impl Lattice {
                 }
             }
         }
-        let s_by_contraction =
-            if self.singular { 1.0 / contraction } else { 1.0 / (contraction * contraction + BEND * BEND).sqrt() };
+        let s_by_contraction = if self.singular {
+            1.0 / contraction
+        } else {
+            1.0 / (contraction * contraction + BEND * BEND).sqrt()
+        };
         let output = |k: usize| {
             let per_p = slopes[k][0] / self.steps[0];
             let by_contraction = slopes[k][1] / self.steps[1] * s_by_contraction;

@@ -205,7 +205,8 @@ impl Model {
     ) -> Result<(Muscle, Vec<(usize, ShapeVariable)>), ModelError> {
         let mut muscle = self.muscle.clone();
         let mut variables: Vec<(usize, ShapeVariable)> = Vec::new();
-        let shapes = || self.effects.iter().enumerate().filter(|(_, c)| c.effect.card().stage == Stage::Shape);
+        let shapes =
+            || self.effects.iter().enumerate().filter(|(_, c)| c.effect.card().stage == Stage::Shape);
         for (_, chosen) in shapes() {
             let range = self.range(chosen, 0);
             let reshaped = chosen.effect.reshape(&muscle, &theta[range.clone()]).map_err(about(chosen))?;
@@ -223,7 +224,10 @@ impl Model {
         // Where a number doesn't exist on the final muscle, or nothing is moved, a small change shows the derivative.
         for (index, variable) in &mut variables {
             let exists = |moved: &[(Parameter, f64)]| {
-                !moved.is_empty() && moved.iter().all(|(p, _)| muscle.is_stated(*p) || muscle.get(*p).is_some_and(|v| v != 0.0))
+                !moved.is_empty()
+                    && moved
+                        .iter()
+                        .all(|(p, _)| muscle.is_stated(*p) || muscle.get(*p).is_some_and(|v| v != 0.0))
             };
             if let ShapeVariable::Numbers(moved) = variable
                 && !exists(moved)
@@ -248,11 +252,10 @@ impl Model {
             return Ok(false);
         }
         let (muscle, _) = self.reshape(theta, &[])?;
-        Ok(self.equilibrium(&muscle, &[]).is_ok_and(|equilibrium| equilibrium.is_costly()))
+        Ok(Self::equilibrium(&muscle, &[]).is_ok_and(|equilibrium| equilibrium.is_costly()))
     }
 
     pub(crate) fn equilibrium(
-        &self,
         muscle: &Muscle,
         variables: &[(usize, ShapeVariable)],
     ) -> Result<Equilibrium, bulge_fibre::FibreError> {
@@ -281,7 +284,12 @@ pub(crate) fn about(chosen: &Chosen) -> impl Fn(bulge_muscles::MuscleError) -> M
     move |source| ModelError::Reshape { effect: effect.clone(), source: Box::new(source) }
 }
 
-fn law_parameters(law: &'static Law, geometry: &LawGeometry, values: &[f64], free: bool) -> Vec<ModelParameter> {
+fn law_parameters(
+    law: &'static Law,
+    geometry: &LawGeometry,
+    values: &[f64],
+    free: bool,
+) -> Vec<ModelParameter> {
     let number = |(i, coefficient): (usize, &Coefficient)| ModelParameter {
         effect: law.name.to_owned(),
         name: coefficient.name.to_owned(),

@@ -180,7 +180,8 @@ impl Record {
             if !moments[i].begins {
                 moments[i].since = moments[i].clock - moments[i - 1].clock;
                 // A static map has no steps.
-                moments[i].step = if self.is_path { moments[i].contraction - moments[i - 1].contraction } else { 0.0 };
+                moments[i].step =
+                    if self.is_path { moments[i].contraction - moments[i - 1].contraction } else { 0.0 };
             }
         }
         let thin = Self {

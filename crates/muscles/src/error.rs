@@ -111,6 +111,14 @@ pub enum MuscleError {
         /// The width in SI.
         width: f64,
     },
+    /// A learnt effect that can't be written into a file.
+    #[error("the effect `{name}` {what}")]
+    Learnt {
+        /// Name of the effect.
+        name: String,
+        /// What is wrong with it.
+        what: String,
+    },
     /// An instrument without any standard deviation.
     #[error("an instrument needs at least one of `noise`, `zero` and `gain` greater than 0")]
     NoSpread,
@@ -135,6 +143,7 @@ impl MuscleError {
             Self::OtherKind { parameter, .. }
             | Self::NoWidth { parameter }
             | Self::WidthNotPositive { parameter, .. } => parameter.key(),
+            Self::Learnt { .. } => "effects",
             Self::NoSpread => "instruments",
         }
     }

@@ -140,9 +140,9 @@ impl<'a> Document<'a> {
         let kind = self.kind(&root)?;
         let (effects, instruments, fibre) =
             (root.table("effects")?, root.table("instruments")?, root.table("fibre")?);
-        for table in [Some(&root), effects.as_ref()].into_iter().flatten() {
-            table.check_names()?;
-            table.check_owner(kind)?;
+        root.check_owner(kind)?;
+        if let Some(effects) = &effects {
+            effects.check_owner(kind)?;
         }
         // Wrong values come before missing ones: a file is usually right but for one slip.
         let name = root.text("name")?;
@@ -160,6 +160,9 @@ impl<'a> Document<'a> {
         }
         if let Some(effects) = &effects {
             muscle = self.materials(muscle, effects)?;
+            for effect in effects.learnt()? {
+                muscle = muscle.with_learnt(effect);
+            }
         }
         if let Some(instruments) = instruments {
             muscle = muscle.with_instruments(instruments_in(&instruments)?);

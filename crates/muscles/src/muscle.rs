@@ -2,7 +2,9 @@
 
 use crate::construction::{Braided, Construction, FibreCount, Kind, Pleated};
 use crate::error::{MuscleError, check};
+use crate::file_error::FileError;
 use crate::instrument::Instruments;
+use crate::learnt::Learnt;
 use crate::material::{Bladder, Fibre, Unfolding};
 use crate::parameter::Parameter;
 use crate::quantity::{Angle, Force, Length, LineStiffness, Pressure};
@@ -39,6 +41,7 @@ pub struct Muscle {
     bladder: Option<Bladder>,
     unfolding: Option<Unfolding>,
     gas_wall: Option<GasWall>,
+    learnt: Vec<Learnt>,
     instruments: Instruments,
     widths: Vec<(Parameter, f64)>,
 }
@@ -62,6 +65,7 @@ impl Muscle {
             bladder: None,
             unfolding: None,
             gas_wall: None,
+            learnt: Vec::new(),
             instruments: Instruments::default(),
             widths: Vec::new(),
         };
@@ -130,6 +134,23 @@ impl Muscle {
             None => return Err(MuscleError::NoGasWall),
         });
         Ok(self)
+    }
+
+    /// The same with one more learnt effect, or with other values of one that it has.
+    #[must_use]
+    pub fn with_learnt(mut self, effect: Learnt) -> Self {
+        match self.learnt.iter_mut().find(|other| other.name() == effect.name()) {
+            Some(other) => *other = effect,
+            None => self.learnt.push(effect),
+        }
+        self
+    }
+
+    /// The same without learnt effects: what this crate itself knows of the muscle.
+    #[must_use]
+    pub fn without_learnt(mut self) -> Self {
+        self.learnt.clear();
+        self
     }
 
     /// The same on other instruments.
@@ -299,6 +320,34 @@ impl Muscle {
     #[must_use]
     pub fn unfolding(&self) -> Option<Unfolding> {
         self.unfolding
+    }
+
+    /// The effects that the file states besides those that shape the muscle, in its order.
+    #[must_use]
+    pub fn learnt(&self) -> &[Learnt] {
+        &self.learnt
+    }
+
+    /// What is wrong with the learnt effect number `index`, with its place in the file: what, and what to write instead.
+    #[must_use]
+    pub fn learnt_error(
+        &self,
+        index: usize,
+        what: impl Into<String>,
+        instead: impl Into<String>,
+    ) -> FileError {
+        match self.learnt.get(index) {
+            Some(effect) => effect.error(what, instead),
+            None => FileError::whole(&self.name, what, instead),
+        }
+    }
+
+    /// Refuses learnt effects whose name is not among `known`: a slip of the pen, also in the name of an effect that shapes the muscle.
+    ///
+    /// # Errors
+    /// Names the first one with its place in the file and the nearest known name.
+    pub fn check_learnt(&self, known: &[&str]) -> Result<(), FileError> {
+        self.learnt.iter().try_for_each(|effect| effect.check(known))
     }
 
     /// The instruments of the rig.

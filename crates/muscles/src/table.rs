@@ -68,6 +68,18 @@ impl Document<'_> {
     }
 }
 
+/// What a value is, in words.
+pub(crate) fn type_of(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
 impl<'a> Table<'a> {
     pub(crate) fn get(&self, name: &str) -> Option<&'a Spanned<DeValue<'a>>> {
         self.entries.iter().find(|(key, _)| key.get_ref() == name).map(|(_, value)| value)
@@ -88,13 +100,6 @@ impl<'a> Table<'a> {
         let shown = shortened(name);
         let (what, instead) = match self.path.as_str() {
             "" => (format!("unknown key `{shown}`"), keys::instead_of(name, "")),
-            "effects" => {
-                let instead = keys::instead_of(name, "effects");
-                let list = format!("a muscle file may state: {}", known.join(", "));
-                let instead =
-                    if instead.contains("known here") { list } else { format!("{instead}\n{list}") };
-                (format!("unknown effect `{shown}`"), instead)
-            }
             path => (format!("unknown key `{shown}` in `[{path}]`"), keys::instead_of(name, path)),
         };
         Err(self.document.error(span, what, instead))
@@ -128,15 +133,7 @@ impl<'a> Table<'a> {
     }
 
     pub(crate) fn wrong_type(&self, name: &str, value: &Spanned<DeValue<'_>>, wanted: &str) -> FileError {
-        let found = match value.get_ref() {
-            DeValue::String(_) => "text",
-            DeValue::Integer(_) | DeValue::Float(_) => "a number",
-            DeValue::Boolean(_) => "true or false",
-            DeValue::Datetime(_) => "a date",
-            DeValue::Array(_) => "a list",
-            DeValue::Table(_) => "a table",
-        };
-        let what = format!("`{name}` is {found}, but must be {wanted}");
+        let what = format!("`{name}` is {}, but must be {wanted}", type_of(value.get_ref()));
         let instead = format!("write {}", keys::example(&keys::join(&self.path, name)));
         self.document.error(value.span(), what, instead)
     }

@@ -34,6 +34,10 @@ pub fn to_toml(muscle: &Muscle) -> String {
         lines.push(format!("fibre = {{ {stiffness}{section} }}"));
     }
     effect_lines(&mut lines, muscle);
+    for effect in muscle.learnt() {
+        lines.push(format!("\n[effects.{}]", effect.name()));
+        lines.extend(effect.values().iter().map(|value| format!("{} = {}", value.key, value.text())));
+    }
     instrument_lines(&mut lines, muscle);
     lines.push(String::new());
     lines.join("\n")

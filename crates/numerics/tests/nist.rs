@@ -158,7 +158,8 @@ fn compare(problem: &Problem, minimum: &Minimum) -> [f64; 3] {
     ]
 }
 
-/// Lanczos1 is exact data, rounded to 14 digits: its sum of squares, 1.4e-25, is made of residuals of 1e-13, of which numbers of 16 digits hold three.
+/// Lanczos1 is exact data, rounded to 14 digits: its sum of squares, 1.4e-25, is made of residuals of 1e-13, of which numbers of
+/// 16 digits hold three.
 const NEARLY_EXACT: &str = "Lanczos1";
 
 #[test]

@@ -117,7 +117,7 @@ mod tests {
             assert_eq!(format!("{clamped:?}"), format!("{full:?}").replace("Cylinder", "Clamped"));
         }
         // All that a muscle holds: a new field must be carried over by `rebuilt`, and tried above.
-        let toml::Value::Table(fields) = toml::Value::try_from(&cylinder()).unwrap() else {
+        let toml::Value::Table(fields) = toml::Value::try_from(cylinder()).unwrap() else {
             panic!("a table")
         };
         let carried = [

@@ -60,6 +60,7 @@ mod tests {
 
     #[test]
     fn the_spread_is_the_parameter() {
-        assert_eq!(input(&UnevenFibres, &[0.003], |_| ()).spread.value(), 0.003);
+        let spread = input(&UnevenFibres, &[0.003], |_| ()).spread.value();
+        assert_eq!(spread.to_bits(), 0.003_f64.to_bits());
     }
 }

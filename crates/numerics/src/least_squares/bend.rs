@@ -1,7 +1,7 @@
 //! Bending a step along a curved valley, where the straight step fails.
 //!
-//! The geodesic acceleration of M. K. Transtrum, J. P. Sethna (arXiv:1201.5885), with the second derivative from the residuals of the failed step: it
-//! costs one evaluation of the Jacobian, and only where a step failed.
+//! The geodesic acceleration of M. K. Transtrum, J. P. Sethna (arXiv:1201.5885), with the second derivative from the residuals of
+//! the failed step: it costs one evaluation of the Jacobian, and only where a step failed.
 
 use super::linear::{decrease, turned, values};
 use super::residuals::Residuals;
@@ -19,7 +19,8 @@ const GROWTH: f64 = 1.5;
 impl<P: Residuals> Search<'_, P> {
     /// Bends a failed trial with these residuals, and moves there if that is good.
     ///
-    /// With `c = r(theta + p) - r - J p`, half the second derivative along `p`, the bend `a` minimises the damped `|J a + c|^2` within the bounds.
+    /// With `c = r(theta + p) - r - J p`, half the second derivative along `p`, the bend `a` minimises the damped `|J a + c|^2`
+    /// within the bounds.
     pub(super) fn bend(&mut self, trial: &Trial, residuals: &[f64]) -> bool {
         let (scale, damping) =
             if trial.full { (&self.linear.norms, self.least_damping()) } else { (&self.scale, self.damping) };

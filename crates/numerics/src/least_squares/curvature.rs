@@ -1,4 +1,4 @@
-//! Whether a stationary point is a minimum: second derivatives from differences of gradients, and a look along directions of negative curvature.
+//! Whether a stationary point is a minimum: second derivatives by differences, and a look along negative curvature.
 //!
 //! The Jacobian alone can't tell: `r = x^2 - 1` is stationary at its maximum of squares, `x = 0`.
 
@@ -47,7 +47,8 @@ pub(super) fn probe<P: Residuals>(search: &mut Search<'_, P>) -> Probe {
     }
 }
 
-/// Scales of the parameters: norms of their columns, now or before; of parameters that never had influence, what makes a step as long as the residuals.
+/// Scales of the parameters: norms of their columns, now or before; of parameters that never had influence, what makes a step as
+/// long as the residuals.
 fn scales<P: Residuals>(search: &Search<'_, P>) -> Vec<f64> {
     let length = search.linear.cost.sqrt();
     let scale = |j: usize| {

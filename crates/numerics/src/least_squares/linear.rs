@@ -41,8 +41,8 @@ impl Linear {
         self.r.transposed_times(&self.q)
     }
 
-    /// The triangle with columns divided by their norms and a right-hand side for it, for steps without part in flat directions: those are taken
-    /// out of both, for in them rounding has decided what the triangle says, and pinned.
+    /// The triangle with columns divided by their norms and a right-hand side for it, for steps without part in flat directions:
+    /// those are taken out of both, for in them rounding has decided what the triangle says, and pinned.
     pub(super) fn regular(&self, rhs: &[f64], tolerance: f64) -> (Triangle, Vec<f64>) {
         let k = self.norms.len();
         let inverse: Vec<f64> = self.norms.iter().map(|n| if *n > 0.0 { 1.0 / n } else { 0.0 }).collect();
@@ -203,8 +203,8 @@ pub(super) fn gradient<P: Residuals>(problem: &P, theta: &[f64]) -> Result<Vec<f
     if norm(&sum).is_finite() { Ok(sum) } else { Err(Failure::Overflow) }
 }
 
-/// Decrease of the sum of squares from `old` to `new` residuals, `sum (r - r')(r + r')`: near a minimum far more exact than the difference of two
-/// sums.
+/// Decrease of the sum of squares from `old` to `new` residuals, `sum (r - r')(r + r')`: near a minimum far more exact than the
+/// difference of two sums.
 pub(super) fn decrease(old: &[f64], new: &[f64]) -> f64 {
     let mut parts = Vec::with_capacity(old.len().div_ceil(4096));
     for (old, new) in old.chunks(4096).zip(new.chunks(4096)) {

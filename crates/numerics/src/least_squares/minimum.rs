@@ -24,8 +24,8 @@ pub enum Reason {
     NothingFree,
     /// [`super::Options::max_evaluations`] were made. Not converged.
     Budget,
-    /// No step, however short, lowers the sum of squares although the derivatives promise it: they are wrong or too inexact, or the residuals jump or
-    /// can't be evaluated beyond. Not converged.
+    /// No step, however short, lowers the sum of squares although the derivatives promise it: they are wrong or too inexact, or
+    /// the residuals jump or can't be evaluated beyond. Not converged.
     Stagnated,
     /// A stationary point with a direction of descent that the search didn't get away from. Not converged.
     Saddle,
@@ -48,7 +48,8 @@ pub struct Certificate {
     pub reason: Reason,
     /// Largest `|cos|` of the angle between the residuals and a column of the Jacobian, over the free parameters.
     pub gradient_cosine: f64,
-    /// Length of the step to the linearised minimum within the bounds relative to the norm of the parameters, both scaled; the step wasn't made.
+    /// Length of the step to the linearised minimum within the bounds relative to the norm of the parameters, both scaled; the
+    /// step wasn't made.
     pub relative_step: f64,
     /// Decrease of the sum of squares that this step promises, relative to the sum of squares.
     pub relative_decrease: f64,
@@ -57,10 +58,12 @@ pub struct Certificate {
     /// Ratio of the largest to the smallest singular value of the scaled Jacobian of the free parameters; infinite if that is 0, and 1
     /// without free parameters.
     pub condition: f64,
-    /// Least second derivative of half the sum of squares along a unit direction of the scaled free parameters (1 would be that of a linear problem
-    /// with orthogonal columns), from differences of gradients; `None` if it wasn't asked for or could not be computed.
+    /// Least second derivative of half the sum of squares along a unit direction of the scaled free parameters (1 would be that
+    /// of a linear problem with orthogonal columns), from differences of gradients; `None` if it wasn't asked for or could not be
+    /// computed.
     pub least_curvature: Option<f64>,
-    /// The bound that holds each parameter: it is at this bound, and the sum of squares doesn't fall inwards. Fixed parameters are at their lower bound.
+    /// The bound that holds each parameter: it is at this bound, and the sum of squares doesn't fall inwards. Fixed parameters
+    /// are at their lower bound.
     pub at_bound: Vec<Option<Side>>,
     /// Flat directions (unit vectors of scaled parameters; a parameter without any influence counts as it is): the residuals do not
     /// determine the parameters along them.
@@ -69,6 +72,9 @@ pub struct Certificate {
 
 impl Certificate {
     /// Whether the residuals determine a parameter: it isn't held by a bound and has no part in a flat direction.
+    ///
+    /// # Panics
+    /// If there is no such parameter.
     #[must_use]
     pub fn is_determined(&self, parameter: usize) -> bool {
         self.at_bound[parameter].is_none() && self.flat.iter().all(|v| v[parameter].abs() <= PART_OF_FLAT)
@@ -101,10 +107,11 @@ pub struct Minimum {
 }
 
 impl Minimum {
-    /// Covariance of the parameters for residuals of a given variance, `variance (J^T J)^-1` in linear approximation; row-major, `k x k`.
+    /// Covariance of the parameters for residuals of a given variance, `variance (J^T J)^-1` in linear approximation; row-major,
+    /// `k x k`.
     ///
-    /// Rows and columns of parameters that are not [determined](Certificate::is_determined) are zero: those held by a bound count as known, and those in a flat
-    /// direction have no variance that could be stated.
+    /// Rows and columns of parameters that are not [determined](Certificate::is_determined) are zero: those held by a bound count
+    /// as known, and those in a flat direction have no variance that could be stated.
     #[must_use]
     pub fn covariance(&self, variance: f64) -> Vec<f64> {
         self.unit_covariance.iter().map(|c| c * variance).collect()

@@ -1,8 +1,8 @@
 //! Bounded nonlinear least squares for many residuals and few parameters: `min sum r_i(theta)^2`, `lower <= theta <= upper`.
 //!
-//! [`minimise`] searches from one start, [`minimise_from_many`] from several ([`starts_in_box`] makes them), [`profile()`] finds how far one
-//! parameter can go before the sum of squares rises by a given amount. The normal equations are never formed: the Jacobian is reduced
-//! to a triangle block by block, so that a million rows need the memory of one block.
+//! [`minimise`] searches from one start, [`minimise_from_many`] from several ([`starts_in_box`] makes them), [`profile()`] finds
+//! how far one parameter can go before the sum of squares rises by a given amount. The normal equations are never formed: the
+//! Jacobian is reduced to a triangle block by block, so that a million rows need the memory of one block.
 
 mod bend;
 mod curvature;

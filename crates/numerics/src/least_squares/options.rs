@@ -5,20 +5,22 @@ use super::LeastSquaresError;
 /// Settings of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// The search has converged when the linearised residuals can be lowered by no more than this part of their norm (the cosine between the
-    /// residuals and the space of residual changes that the free parameters can make; D. M. Bates, D. G. Watts, *Technometrics* 23 (1981) 179). The parameters
-    /// are then off by about this part of `sqrt(rows - parameters)` standard deviations. In (0, 1); default 1e-10. If the derivatives are inexact, choose
-    /// ten times their relative error.
+    /// The search has converged when the linearised residuals can be lowered by no more than this part of their norm (the cosine
+    /// between the residuals and the space of residual changes that the free parameters can make; D. M. Bates, D. G. Watts,
+    /// *Technometrics* 23 (1981) 179). The parameters are then off by about this part of `sqrt(rows - parameters)` standard
+    /// deviations. In (0, 1); default 1e-10. If the derivatives are inexact, choose ten times their relative error.
     pub tolerance: f64,
-    /// Directions in which residuals change by less than this part of the largest change, parameters scaled by the norms of their columns, are
-    /// flat: no step is made along them and they are reported. In \[1e-14, 1); default 1e-10.
+    /// Directions in which residuals change by less than this part of the largest change, parameters scaled by the norms of their
+    /// columns, are flat: no step is made along them and they are reported. In \[1e-14, 1); default 1e-10.
     pub rank_tolerance: f64,
-    /// Radius of the first trust region in parts of the norm of the start, parameters scaled by the norms of their columns. Positive; default 1.
+    /// Radius of the first trust region in parts of the norm of the start, parameters scaled by the norms of their columns.
+    /// Positive; default 1.
     pub first_radius: f64,
-    /// Most evaluations of all residuals, with or without derivatives. At least 1; default 2000.
+    /// Most evaluations of all residuals, with or without derivatives, before the search is given up; the examination of
+    /// curvature is not stopped by it. At least 1; default 2000.
     pub max_evaluations: usize,
-    /// Whether a stationary point is examined for directions of negative curvature (at the cost of one gradient per free parameter), along which a
-    /// saddle is left. Default true.
+    /// Whether a stationary point is examined for directions of negative curvature (at the cost of one gradient per free
+    /// parameter), along which a saddle is left. Default true.
     pub check_curvature: bool,
 }
 

@@ -1,7 +1,8 @@
 //! Profile intervals: how far one parameter can go before the sum of squares, minimised over the others, rises by a given amount.
 //!
-//! D. M. Bates, D. G. Watts, *Nonlinear Regression Analysis and Its Applications*, Wiley 1988, section 6.1. With `zeta = sqrt(cost - minimum)`, nearly
-//! linear in the parameter, the ends are the roots of `zeta = sqrt(rise)`; `d zeta/d theta_j = (J^T r)_j / zeta`, as the others are at their minimum.
+//! D. M. Bates, D. G. Watts, *Nonlinear Regression Analysis and Its Applications*, Wiley 1988, section 6.1. With `zeta =
+//! sqrt(cost - minimum)`, nearly linear in the parameter, the ends are the roots of `zeta = sqrt(rise)`; `d zeta/d theta_j = (J^T
+//! r)_j / zeta`, as the others are at their minimum.
 
 use super::minimum::Minimum;
 use super::residuals::{Bounds, Residuals, Side};
@@ -68,9 +69,11 @@ pub struct Profile {
     pub points: Vec<ProfilePoint>,
 }
 
-/// The interval of `parameter` in which the sum of squares, minimised over the others within `bounds`, exceeds that of `minimum` by at most `rise`.
+/// The interval of `parameter` in which the sum of squares, minimised over the others within `bounds`, exceeds that of `minimum`
+/// by at most `rise`.
 ///
-/// For residuals in units of their standard deviation, `rise` is a quantile of the chi-square distribution with one degree of freedom.
+/// For residuals in units of their standard deviation, `rise` is a quantile of the chi-square distribution with one degree of
+/// freedom.
 ///
 /// # Errors
 /// [`LeastSquaresError::NotProfiled`]; [`LeastSquaresError::LowerCost`] if `minimum` turns out not to be one;

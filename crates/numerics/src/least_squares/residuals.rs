@@ -18,18 +18,21 @@ pub trait Residuals: Sync {
 
     /// Rows that are evaluated together; every block but the last has this many.
     ///
-    /// The default makes a block of some 256 KiB. Return [`Residuals::rows`] to be asked for all rows at once, or a multiple of the rows that
-    /// share work. Results don't depend on the number of threads, but in the last bits on this number. 0 counts as 1.
+    /// The default makes a block of some 256 KiB. Return [`Residuals::rows`] to be asked for all rows at once, or a multiple of
+    /// the rows that share work. Results don't depend on the number of threads, but in the last bits on this number. 0 counts as
+    /// 1.
     fn block(&self) -> usize {
         let width = self.parameters() + 1;
         (32_768 / width).max(4 * width)
     }
 
-    /// Writes the residuals of `rows` into `residuals` and, if asked for, the derivatives `dr_i/dtheta_j` into `jacobian`, one row of
-    /// [`Residuals::parameters`] numbers after the other. Residuals must not depend on whether derivatives are asked for.
+    /// Writes the residuals of `rows` into `residuals` and, if asked for, the derivatives `dr_i/dtheta_j` into `jacobian`, one
+    /// row of [`Residuals::parameters`] numbers after the other. But for rounding, residuals must not depend on whether
+    /// derivatives are asked for.
     ///
     /// # Errors
-    /// Parameters at which the residuals have no value. Within the search such a point (as one with a number that isn't finite) only shortens the step.
+    /// Parameters at which the residuals have no value. Within the search such a point (as one with a number that isn't finite)
+    /// only shortens the step.
     fn evaluate(
         &self,
         theta: &[f64],
@@ -65,6 +68,9 @@ impl Bounds {
     }
 
     /// With parameter number `index` (from 0) held at `value`.
+    ///
+    /// # Panics
+    /// If there is no such parameter.
     #[must_use]
     pub fn with_fixed(mut self, index: usize, value: f64) -> Self {
         self.lower[index] = value;
@@ -73,6 +79,9 @@ impl Bounds {
     }
 
     /// Whether the ends of a parameter's range are equal.
+    ///
+    /// # Panics
+    /// If there is no such parameter.
     #[must_use]
     pub fn is_fixed(&self, index: usize) -> bool {
         self.lower[index] >= self.upper[index]

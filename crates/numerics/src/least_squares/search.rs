@@ -1,8 +1,8 @@
-//! The search: Levenberg-Marquardt steps in a trust region, scaled by the norms of the columns, until the residuals are orthogonal to
-//! what the free parameters can change.
+//! The search: Levenberg-Marquardt steps in a trust region that is scaled by the norms of the columns of the Jacobian.
 //!
 //! J. J. Moré, *The Levenberg-Marquardt algorithm: implementation and theory*, Lecture Notes in Mathematics 630, Springer 1978,
-//! p. 105, with bounds exact in each step, and with steps that are bent along curved valleys before they are shortened. Near a minimum, where the sum of squares is blunted by rounding, steps are judged by the gradient.
+//! p. 105, with bounds exact in each step, and with steps that are bent along curved valleys before they are shortened. Near a
+//! minimum, where the sum of squares is blunted by rounding, steps are judged by the gradient.
 
 use super::curvature::{self, Probe};
 use super::linear::{Failure, Linear, decrease, linearise, values};
@@ -14,9 +14,10 @@ use super::{LeastSquaresError, Options};
 
 /// A step is kept if it achieves this part of the predicted decrease (Moré's value).
 const ENOUGH: f64 = 1e-4;
-/// Below this cosine between residuals and tangent space a step may be judged by the gradient: the decrease that it predicts is 1e-8 of the sum of squares.
+/// Below this cosine between residuals and tangent space a step may be judged by the gradient: the decrease that it predicts is
+/// 1e-8 of the sum of squares.
 const POLISH: f64 = 1e-4;
-/// Trials of one iteration, each at least half as long as allowed before.
+/// Trials of one iteration, each at most half as long as the one before.
 const TRIALS: usize = 100;
 /// Times that a saddle is left.
 const ESCAPES: usize = 10;
@@ -61,8 +62,8 @@ const ESCAPES: usize = 10;
 /// ```
 ///
 /// # Errors
-/// [`LeastSquaresError`] for a start outside the bounds or without finite residuals and derivatives, crossed bounds, lists of the wrong length, or an
-/// option out of range. A search that ends without a minimum is no error: see [`super::Certificate::converged`].
+/// [`LeastSquaresError`] for a start outside the bounds or without finite residuals and derivatives, crossed bounds, lists of the
+/// wrong length, or an option out of range. A search that ends without a minimum is no error: see [`super::Certificate::converged`].
 pub fn minimise<P: Residuals>(
     problem: &P,
     start: &[f64],

@@ -1,8 +1,9 @@
 //! Singular values of small triangles and eigenvalues of small symmetric matrices by Jacobi rotations.
 //!
 //! One-sided: M. R. Hestenes, *J. SIAM* 6 (1958) 51; two-sided: C. G. J. Jacobi 1846, as in G. H. Golub, C. F. Van Loan, *Matrix
-//! Computations*, 4th ed., Johns Hopkins 2013, sections 8.5 and 8.6. Jacobi's methods are the accurate ones for small matrices: tiny singular values of
-//! a matrix with well-scaled columns come out with relative accuracy (J. Demmel, K. Veselic, *SIAM J. Matrix Anal. Appl.* 13 (1992) 1204).
+//! Computations*, 4th ed., Johns Hopkins 2013, sections 8.5 and 8.6. Jacobi's methods are the accurate ones for small matrices:
+//! tiny singular values of a matrix with well-scaled columns come out with relative accuracy (J. Demmel, K. Veselic, *SIAM J.
+//! Matrix Anal. Appl.* 13 (1992) 1204).
 
 use super::triangle::{dot, norm};
 

@@ -1,12 +1,14 @@
 //! Starts that fill a box evenly: the points of Halton's sequence with multiplied digits.
 //!
-//! J. H. Halton, *Numer. Math.* 2 (1960) 84. Digits `d` of base `b` become `w d mod b` (H. Chi, M. Mascagni, T. Warnock, *Math. Comput. Simul.* 70
-//! (2005) 9), here with `w` the whole part of `b` times the fractional part of `sqrt(b)`: neighbouring large bases are then no longer in step.
+//! J. H. Halton, *Numer. Math.* 2 (1960) 84. Digits `d` of base `b` become `w d mod b` (H. Chi, M. Mascagni, T. Warnock, *Math.
+//! Comput. Simul.* 70 (2005) 9), here with `w` the whole part of `b` times the fractional part of `sqrt(b)`: neighbouring large
+//! bases are then no longer in step.
 
 use super::NotABox;
 use super::residuals::Bounds;
 
-/// `count` points inside a finite box, each of which splits what the ones before left open; the same points in every call. Fixed parameters keep their value.
+/// `count` points inside a finite box, each of which splits what the ones before left open; the same points in every call. Fixed
+/// parameters keep their value.
 ///
 /// # Errors
 /// [`NotABox`] for infinite or crossed bounds.
@@ -90,7 +92,8 @@ mod tests {
 
     #[test]
     fn fills_a_square_better_than_large_bases_do() {
-        // Coordinates 19 and 20 (bases 67 and 71) of the plain sequence lie on a few lines; here a quarter of the square holds a quarter of the points.
+        // Coordinates 19 and 20 (bases 67 and 71) of the plain sequence lie on a few lines; here a quarter of the square holds a
+        // quarter of the points.
         let bounds = Bounds { lower: vec![0.0; 20], upper: vec![1.0; 20] };
         let points = starts_in_box(400, &bounds).unwrap();
         let quarter = points.iter().filter(|p| p[18] < 0.5 && p[19] < 0.5).count();

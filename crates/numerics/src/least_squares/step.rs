@@ -192,7 +192,8 @@ impl ActiveSet<'_> {
     }
 }
 
-/// The step of length `radius` (within a tenth) and its damping; call only if the undamped step is longer. `guess` is the damping of the last step.
+/// The step of length `radius` (within a tenth) and its damping; call only if the undamped step is longer. `guess` is the damping
+/// of the last step.
 pub(super) fn of_length(a: &Triangle, b: &[f64], radius: f64, guess: f64, limits: &StepBox) -> (Step, f64) {
     let gradient = a.transposed_times(b);
     let mut low = 0.0;

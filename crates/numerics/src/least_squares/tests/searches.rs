@@ -1,110 +1,6 @@
-//! Searches against known solutions: bounds, rank, scales, saddles, failures, determinism, profiles.
+//! Searches against known solutions: bounds, rank, scales, saddles, failures, determinism.
 
 use super::*;
-use std::ops::Range;
-
-type Row = Option<(f64, Vec<f64>)>;
-
-/// A problem by a function of the parameters and the row; `None` where there is no value.
-struct Model<F> {
-    rows: usize,
-    parameters: usize,
-    block: usize,
-    row: F,
-}
-
-impl<F: Fn(&[f64], usize) -> Row + Sync> Residuals for Model<F> {
-    type Error = String;
-
-    fn rows(&self) -> usize {
-        self.rows
-    }
-
-    fn parameters(&self) -> usize {
-        self.parameters
-    }
-
-    fn block(&self) -> usize {
-        self.block
-    }
-
-    fn evaluate(
-        &self,
-        theta: &[f64],
-        rows: Range<usize>,
-        residuals: &mut [f64],
-        mut jacobian: Option<&mut [f64]>,
-    ) -> Result<(), String> {
-        assert!(rows.len() <= self.block && residuals.len() == rows.len());
-        for (i, row) in rows.enumerate() {
-            let (r, derivatives) =
-                (self.row)(theta, row).ok_or_else(|| format!("no value in row {row} at {theta:?}"))?;
-            residuals[i] = r;
-            if let Some(jacobian) = jacobian.as_deref_mut() {
-                jacobian[i * self.parameters..(i + 1) * self.parameters].copy_from_slice(&derivatives);
-            }
-        }
-        Ok(())
-    }
-}
-
-fn model<F: Fn(&[f64], usize) -> Row + Sync>(rows: usize, parameters: usize, row: F) -> Model<F> {
-    Model { rows, parameters, block: 4096, row }
-}
-
-/// `r = (10 (y - x^2), 1 - x)`.
-fn rosenbrock() -> Model<impl Fn(&[f64], usize) -> Row + Sync> {
-    model(2, 2, |p, row| {
-        Some(match row {
-            0 => (10.0 * (p[1] - p[0] * p[0]), vec![-20.0 * p[0], 10.0]),
-            _ => (1.0 - p[0], vec![-1.0, 0.0]),
-        })
-    })
-}
-
-/// A decay `a exp(-b t)` at `t = 0, 0.5, ...` with errors of some per cent; parameters in units of `scale`, rows in the order `order`.
-fn decay(
-    rows: usize,
-    scale: [f64; 2],
-    order: fn(usize, usize) -> usize,
-) -> Model<impl Fn(&[f64], usize) -> Row + Sync> {
-    model(rows, 2, move |p, row| {
-        let (i, a, b) = (order(row, rows), p[0] * scale[0], p[1] * scale[1]);
-        let e = (-b * time(i)).exp();
-        Some((a * e - decay_data(i), vec![e * scale[0], -a * time(i) * e * scale[1]]))
-    })
-}
-
-fn time(i: usize) -> f64 {
-    0.5 * i as f64
-}
-
-fn decay_data(i: usize) -> f64 {
-    3.0 * (-0.7 * time(i)).exp() + 0.05 * ((i * i * 7 + 2 * i) % 11) as f64 / 11.0
-}
-
-fn in_order(row: usize, _: usize) -> usize {
-    row
-}
-
-fn least<P: Residuals<Error = String>>(problem: &P, start: &[f64], bounds: &Bounds) -> Minimum {
-    minimise(problem, start, bounds, &Options::default()).unwrap()
-}
-
-fn free<P: Residuals<Error = String>>(problem: &P, start: &[f64]) -> Minimum {
-    least(problem, start, &Bounds::none(start.len()))
-}
-
-fn assert_close(found: &[f64], expected: &[f64], tolerance: f64) {
-    assert_eq!(found.len(), expected.len());
-    for (f, e) in found.iter().zip(expected) {
-        assert!((f - e).abs() <= tolerance * e.abs().max(1e-3), "{found:?} is not {expected:?}");
-    }
-}
-
-fn bits(x: &[f64]) -> Vec<u64> {
-    x.iter().map(|x| x.to_bits()).collect()
-}
 
 #[test]
 fn an_active_bound_of_a_linear_problem_is_exact() {
@@ -172,6 +68,32 @@ fn boxes_agree_with_trying_every_active_set() {
             }
         }
         assert!((found.cost - best).abs() < 1e-10, "{} {best}", found.cost);
+    }
+}
+
+#[test]
+fn forty_bounded_parameters_meet_the_conditions_of_a_minimum() {
+    // Rows of a smooth kernel: well apart from orthogonal, and half of the bounds are active.
+    let (rows, k) = (120, 40);
+    let kernel = |i: usize, j: usize| 1.0 / (1.0 + (0.3 * i as f64 - j as f64).powi(2));
+    let data = |i: usize| (0.37 * i as f64).sin() + 0.3 * (1.9 * i as f64).cos();
+    let problem = model(rows, k, move |p, i| {
+        let row: Vec<f64> = (0..k).map(|j| kernel(i, j)).collect();
+        let sum: f64 = row.iter().zip(p).map(|(a, p)| a * p.sin()).sum();
+        Some((sum - data(i), row.iter().zip(p).map(|(a, p)| a * p.cos()).collect()))
+    });
+    let bounds = Bounds { lower: vec![-0.3; k], upper: vec![0.4; k] };
+    let minimum = least(&problem, &vec![0.1; k], &bounds);
+    assert!(minimum.certificate.converged, "{:?}", minimum.certificate);
+    let held = minimum.certificate.at_bound.iter().flatten().count();
+    assert!((5..36).contains(&held), "{held}");
+    for (j, side) in minimum.certificate.at_bound.iter().enumerate() {
+        let (theta, gradient) = (minimum.theta[j], minimum.gradient[j]);
+        match side {
+            Some(Side::Lower) => assert!(theta.to_bits() == (-0.3_f64).to_bits() && gradient > 0.0),
+            Some(Side::Upper) => assert!(theta.to_bits() == 0.4_f64.to_bits() && gradient < 0.0),
+            None => assert!(theta > -0.3 && theta < 0.4 && gradient.abs() < 1e-8, "{theta} {gradient}"),
+        }
     }
 }
 
@@ -434,13 +356,6 @@ fn unusable_calls_say_what_is_wrong() {
     assert_eq!(error, LeastSquaresError::Derivative { row: 1, parameter: 0, value: f64::INFINITY });
 }
 
-/// `((x^2 - 1), (x - 1)/10)`: the least minimum 0 at 1, and another near -1.
-fn two_minima() -> Model<impl Fn(&[f64], usize) -> Row + Sync> {
-    model(2, 1, |p, i| {
-        Some(if i == 0 { (p[0] * p[0] - 1.0, vec![2.0 * p[0]]) } else { (0.1 * (p[0] - 1.0), vec![0.1]) })
-    })
-}
-
 #[test]
 fn many_starts_find_all_minima() {
     let bounds = Bounds { lower: vec![-3.0], upper: vec![3.0] };
@@ -458,96 +373,4 @@ fn many_starts_find_all_minima() {
     assert_eq!(none.unwrap_err(), LeastSquaresError::NoStart);
     let outside = minimise_from_many(&two_minima(), &[vec![5.0], vec![6.0]], &bounds, &Options::default());
     assert!(matches!(outside.unwrap_err(), LeastSquaresError::Outside { value: 5.0, .. }));
-}
-
-#[test]
-fn profile_of_a_linear_problem_is_the_covariance_interval() {
-    let problem = model(12, 3, |p, i| {
-        let x = 0.3 * i as f64;
-        Some((p[0] + p[1] * x + p[2] * x * x - x.exp(), vec![1.0, x, x * x]))
-    });
-    let minimum = free(&problem, &[0.0; 3]);
-    let rise = 3.841_458_820_694_124_f64;
-    for j in 0..3 {
-        let half = rise.sqrt() * minimum.standard_deviations(1.0)[j].unwrap();
-        let found = profile(&problem, &minimum, &Bounds::none(3), &Options::default(), j, rise).unwrap();
-        let (ProfileEnd::Crossed(lower), ProfileEnd::Crossed(upper)) = (found.lower, found.upper) else {
-            panic!("{found:?}")
-        };
-        assert_close(&[lower, upper], &[minimum.theta[j] - half, minimum.theta[j] + half], 1e-9);
-        assert!(found.points.is_sorted_by(|a, b| a.value < b.value));
-    }
-}
-
-#[test]
-fn profile_of_a_decay_agrees_with_its_closed_form() {
-    let rows = 12;
-    let problem = decay(rows, [1.0, 1.0], in_order);
-    let minimum = free(&problem, &[1.0, 0.1]);
-    // For a given rate the best amplitude is a ratio of sums.
-    let cost = |b: f64| {
-        let e = |i: usize| (-b * time(i)).exp();
-        let (ye, ee): (f64, f64) =
-            ((0..rows).map(|i| e(i) * decay_data(i)).sum(), (0..rows).map(|i| e(i) * e(i)).sum());
-        (0..rows).map(|i| (ye / ee * e(i) - decay_data(i)).powi(2)).sum::<f64>()
-    };
-    // A rise large enough that the interval is visibly lopsided.
-    let rise = 1.0;
-    let edge = |mut inside: f64, mut outside: f64| {
-        for _ in 0..200 {
-            let middle = 0.5 * (inside + outside);
-            if cost(middle) - minimum.cost < rise { inside = middle } else { outside = middle }
-        }
-        inside
-    };
-    let found = profile(&problem, &minimum, &Bounds::none(2), &Options::default(), 1, rise).unwrap();
-    let best = minimum.theta[1];
-    let expected = [edge(best, 0.0), edge(best, 10.0)];
-    let (ProfileEnd::Crossed(lower), ProfileEnd::Crossed(upper)) = (found.lower, found.upper) else {
-        panic!("{found:?}")
-    };
-    assert_close(&[lower, upper], &expected, 1e-9);
-    assert!((upper - best) > 1.2 * (best - lower));
-    assert!(found.points.len() < 30, "{}", found.points.len());
-}
-
-#[test]
-fn open_profiles_say_why() {
-    let (problem, usual) = (decay(12, [1.0, 1.0], in_order), Options::default());
-    let minimum = free(&problem, &[1.0, 0.1]);
-    // A bound before the rise; a rise that a rate of infinity doesn't reach.
-    let bounds = Bounds { lower: vec![f64::NEG_INFINITY, 0.6], upper: vec![f64::INFINITY; 2] };
-    let found = profile(&problem, &minimum, &bounds, &usual, 1, 1.0).unwrap();
-    assert!(matches!(found.lower, ProfileEnd::AtBound { value: 0.6, rise } if rise > 0.0 && rise < 1.0));
-    let found = profile(&problem, &minimum, &Bounds::none(2), &usual, 1, 1e3).unwrap();
-    let all: f64 = (1..12).map(|i| decay_data(i).powi(2)).sum();
-    let ProfileEnd::Unbounded { rise, .. } = found.upper else { panic!("{found:?}") };
-    assert_close(&[rise], &[all - minimum.cost], 1e-9);
-    // Residuals that end at x = 2, in a parabola of one parameter.
-    let ending = model(1, 1, |p, _| (p[0] <= 2.0).then(|| (p[0] - 1.0, vec![1.0])));
-    let found = profile(&ending, &free(&ending, &[0.0]), &Bounds::none(1), &usual, 0, 4.0).unwrap();
-    assert!(matches!(found.lower, ProfileEnd::Crossed(x) if (x + 1.0).abs() < 1e-9));
-    assert!(
-        matches!(found.upper, ProfileEnd::Undefined { value, .. } if (value - 2.0).abs() < 1e-5),
-        "{found:?}"
-    );
-    // From a bound inwards: (x + 1)^2 with x >= 0 rises by 2 x + x^2 = 3 at x = 1.
-    let held = model(1, 1, |p, _| Some((p[0] + 1.0, vec![1.0])));
-    let bounds = Bounds { lower: vec![0.0], upper: vec![f64::INFINITY] };
-    let found = profile(&held, &least(&held, &[5.0], &bounds), &bounds, &usual, 0, 3.0).unwrap();
-    assert_eq!(found.lower, ProfileEnd::AtBound { value: 0.0, rise: 0.0 });
-    assert!(matches!(found.upper, ProfileEnd::Crossed(x) if (x - 1.0).abs() < 1e-9));
-}
-
-#[test]
-fn profiles_refuse_what_is_no_minimum() {
-    let (problem, usual, none) = (two_minima(), Options::default(), Bounds::none(1));
-    // From the upper minimum (cost 0.04) towards the lower one.
-    let minimum = free(&problem, &[-1.0]);
-    let error = profile(&problem, &minimum, &none, &usual, 0, 2.0).unwrap_err();
-    assert!(matches!(error, LeastSquaresError::LowerCost { parameter: 0, .. }), "{error}");
-    let error = profile(&problem, &minimum, &none, &usual, 1, 2.0).unwrap_err();
-    assert_eq!(error, LeastSquaresError::NotProfiled { parameter: 1, parameters: 1 });
-    let error = profile(&problem, &minimum, &none, &usual, 0, -1.0).unwrap_err();
-    assert_eq!(error.to_string(), "the option rise is -1; it must be positive and finite");
 }

@@ -1,0 +1,121 @@
+//! Pages of a Parquet column, checked before they are decoded.
+//!
+//! The decoder of the `parquet` crate relies on what a page says about itself, and panics on a damaged one: where a dictionary is missing,
+//! where levels are longer than the page, and where texts are cut off. Such pages are errors here.
+
+use parquet::basic::{Encoding, Type};
+use parquet::column::page::{Page, PageMetadata, PageReader};
+use parquet::errors::{ParquetError, Result};
+use parquet::file::metadata::ColumnChunkMetaData;
+use parquet::schema::types::ColumnDescPtr;
+
+/// Refuses a column whose place in the file can't be one.
+pub(crate) fn checked_place(column: &ColumnChunkMetaData) -> Result<()> {
+    let start = column.dictionary_page_offset().unwrap_or_else(|| column.data_page_offset());
+    if start < 0 || column.compressed_size() < 0 || column.num_values() < 0 {
+        return damaged("a column's place in the file is negative");
+    }
+    Ok(())
+}
+
+/// The pages of one column, checked.
+pub(crate) struct CheckedPages {
+    pages: Box<dyn PageReader>,
+    column: ColumnDescPtr,
+    has_dictionary: bool,
+}
+
+impl CheckedPages {
+    pub(crate) fn new(pages: Box<dyn PageReader>, column: ColumnDescPtr) -> Self {
+        Self { pages, column, has_dictionary: false }
+    }
+
+    fn checked(&mut self, page: &Page) -> Result<()> {
+        let is_optional = self.column.max_def_level() > 0;
+        match page {
+            Page::DictionaryPage { buf, num_values, .. } => {
+                self.has_dictionary = true;
+                self.checked_texts(buf, *num_values)
+            }
+            Page::DataPage { buf, num_values, encoding, def_level_encoding, .. } => {
+                if is_optional && *def_level_encoding != Encoding::RLE {
+                    return damaged("levels are in an outdated encoding");
+                }
+                // Four bytes with the length of the levels, then these; the decoder checks them, but not what follows.
+                let levels = match buf.first_chunk::<4>() {
+                    Some(length) if is_optional => 4 + u32::from_le_bytes(*length) as usize,
+                    _ => 0,
+                };
+                self.checked_values(buf.get(levels..), *encoding, *num_values)
+            }
+            Page::DataPageV2 {
+                buf,
+                num_values,
+                encoding,
+                num_nulls,
+                def_levels_byte_len,
+                rep_levels_byte_len,
+                ..
+            } => {
+                let levels = *def_levels_byte_len as usize + *rep_levels_byte_len as usize;
+                let count = num_values.saturating_sub(*num_nulls);
+                self.checked_values(buf.get(levels..), *encoding, count)
+            }
+        }
+    }
+
+    fn checked_values(&self, values: Option<&[u8]>, encoding: Encoding, count: u32) -> Result<()> {
+        let Some(values) = values else { return damaged("levels are longer than their page") };
+        match encoding {
+            Encoding::PLAIN => self.checked_texts(values, count),
+            Encoding::PLAIN_DICTIONARY | Encoding::RLE_DICTIONARY if self.has_dictionary => Ok(()),
+            Encoding::PLAIN_DICTIONARY | Encoding::RLE_DICTIONARY => damaged("a dictionary is missing"),
+            // Hardly written, and not checked: byte arrays of differences and the like.
+            other => Err(ParquetError::General(format!("the encoding {other} is not read"))),
+        }
+    }
+
+    /// Whether so many texts follow each other, each after its length in four bytes.
+    fn checked_texts(&self, mut bytes: &[u8], count: u32) -> Result<()> {
+        if self.column.physical_type() != Type::BYTE_ARRAY {
+            return Ok(());
+        }
+        for _ in 0..count {
+            let rest = bytes.split_first_chunk::<4>();
+            let rest = rest.and_then(|(length, rest)| rest.get(u32::from_le_bytes(*length) as usize..));
+            let Some(rest) = rest else { return damaged("a text is missing or cut off") };
+            bytes = rest;
+        }
+        Ok(())
+    }
+}
+
+fn damaged(why: &str) -> Result<()> {
+    Err(ParquetError::General(why.to_owned()))
+}
+
+impl Iterator for CheckedPages {
+    type Item = Result<Page>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.get_next_page().transpose()
+    }
+}
+
+impl PageReader for CheckedPages {
+    fn get_next_page(&mut self) -> Result<Option<Page>> {
+        let page = self.pages.get_next_page()?;
+        if let Some(page) = &page {
+            self.checked(page)?;
+        }
+        Ok(page)
+    }
+
+    fn peek_next_page(&mut self) -> Result<Option<PageMetadata>> {
+        self.pages.peek_next_page()
+    }
+
+    fn skip_next_page(&mut self) -> Result<()> {
+        self.pages.skip_next_page()
+    }
+}
