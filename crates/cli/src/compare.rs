@@ -38,7 +38,7 @@ pub(crate) struct CompareCommand {
     /// Fit every force law of the papers to the same data, for comparison
     #[arg(long)]
     rivals: bool,
-    /// Folder for report.html, the plots as SVG, and compare.json
+    /// Folder for compare.json
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// One JSON document on standard output
@@ -64,11 +64,9 @@ impl CompareCommand {
         let mut wrote = String::new();
         if let Some(folder) = &self.out {
             files::folder(folder)?;
-            for (name, bytes) in [("compare.json", document.as_bytes())] {
-                let path = folder.join(name);
-                files::write(&path, bytes)?;
-                let _ = writeln!(wrote, "  wrote {}", path.display());
-            }
+            let path = folder.join("compare.json");
+            files::write(&path, document.as_bytes())?;
+            let _ = writeln!(wrote, "  wrote {}", path.display());
         }
         if self.json { Ok(document) } else { Ok(text(&comparison, &options.effects) + &wrote) }
     }

@@ -1,5 +1,12 @@
 //! Files on disk: CSV and Parquet by extension or first bytes, several files, a measured data set.
 
+#![expect(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    clippy::type_complexity,
+    reason = "a test that cannot be set up fails; values are exact by construction"
+)]
+
 use bulge_measurements::{Data, MeasurementError, Motion, SweepKind};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type};
 use parquet::file::properties::WriterProperties;

@@ -1,5 +1,12 @@
 //! Histories with known answers: loops, minor loops, dwells, isometric ramps; sweeps that are labelled or found.
 
+#![expect(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    clippy::cast_lossless,
+    reason = "a test that cannot be set up fails; values are exact by construction"
+)]
+
 use bulge_measurements::{Columns, Data, Labels, SweepKind, Trace};
 use std::f64::consts::{PI, TAU};
 

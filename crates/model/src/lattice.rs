@@ -173,10 +173,9 @@ impl Lattice {
         // Value with its shape derivatives, and the value's slopes in steps.
         let mut sums = [[0.0; 1 + SHAPE]; 4];
         let mut slopes = [[0.0; 2]; 4];
-        for i in 0..rows {
-            for j in 0..WIDTH {
-                let node =
-                    self.nodes.get(self.index(first + i as i64, along_s.first + j as i64)?)?.as_ref()?;
+        for (row, i) in (first..).zip(0..rows) {
+            for (column, j) in (along_s.first..).zip(0..WIDTH) {
+                let node = self.nodes.get(self.index(row, column)?)?.as_ref()?;
                 let w = wp[i] * ws[j];
                 let [w_p, w_s] = [dp[i] * ws[j], wp[i] * ds[j]];
                 for k in 0..4 {

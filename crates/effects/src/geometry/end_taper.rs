@@ -73,6 +73,9 @@ fn rebuilt(muscle: &Muscle, construction: Construction) -> Result<Muscle, Muscle
     if let Some(wall) = muscle.gas_wall() {
         new = new.with_gas_wall(muscle.is_stated(Parameter::GasWall).then_some(wall))?;
     }
+    for effect in muscle.learnt() {
+        new = new.with_learnt(effect.clone());
+    }
     new = new.with_instruments(*muscle.instruments());
     for &(parameter, width) in muscle.widths() {
         new = new.with_width(parameter, width)?;
@@ -85,8 +88,8 @@ mod tests {
     use super::*;
     use crate::geometry::bench::{cylinder, force};
     use bulge_muscles::{
-        Bladder, Fibre, Force, Instrument, Instruments, Length, LineStiffness, Pressure, Ratio, Unfolding,
-        preset,
+        Bladder, Dimension, Fibre, Force, Instrument, Instruments, Learnt, LearntValue, Length,
+        LineStiffness, Pressure, Ratio, Unfolding, preset,
     };
 
     #[test]
@@ -110,6 +113,14 @@ mod tests {
         let full = cylinder().with(Parameter::Fibres, 60.0).unwrap().with(Parameter::Wall, 0.002).unwrap();
         let full = full.with_fibre(fibre).unwrap().with_bladder(bladder).unwrap().with_unfolding(unfolding);
         let full = full.with_instruments(Instruments { force: Some(noise), ..Instruments::default() });
+        let weight = LearntValue {
+            key: "force".to_owned(),
+            si: 4.0,
+            dimension: Dimension::FORCE,
+            unit: "N".to_owned(),
+            width: None,
+        };
+        let full = full.with_learnt(Learnt::new("weight", vec![weight]).unwrap());
         let full = full.with_width(Parameter::Length, 2e-4).unwrap();
         for full in [full.clone().with_gas_wall(None).unwrap(), full.with(Parameter::GasWall, 1e-3).unwrap()]
         {
@@ -128,6 +139,7 @@ mod tests {
             "bladder",
             "unfolding",
             "gas_wall",
+            "learnt",
             "instruments",
             "widths",
         ];
