@@ -1,7 +1,5 @@
 //! The whole catalogue: names, cards, what `off` means, and every derivative against differences.
 
-#![expect(clippy::panic, reason = "a test that cannot be set up fails; values are exact by construction")]
-#![expect(clippy::panic, reason = "a helper of tests may fail like the tests")]
 
 use bulge_effects::{
     Balance, CardDocument, Catalogue, Effect, Input, Jet, Moment, ParameterCard, Place, Setting, Stage,

@@ -101,8 +101,8 @@ impl<D: Real> Flow<D> {
     }
 
     /// From `y` to the given rho in one or a few steps of equal size (Hénon's way to hit a surface exactly: rho becomes the independent
-    /// variable). Returns the change of S and the new state. For a short way on which rho changes steadily.
-    fn cross_to(&self, y: &State<D>, rho: D, pieces: u32) -> (D, State<D>) {
+    /// variable). Moves the state and returns the change of S. For a short way on which rho changes steadily.
+    fn cross_to(&self, y: &mut State<D>, rho: D, pieces: u32) -> D {
         // In this part of the journey the place RHO of the array holds S; rho itself is appended as an eighth component of slope 1.
         let mut f = |z: &[D; STATES + 1]| {
             let slope = self.slope_by_rho(z[STATES], &std::array::from_fn(|i| z[i]));
@@ -115,9 +115,15 @@ impl<D: Real> Flow<D> {
             let k1 = f(&z);
             z = dop853::step(&mut f, &z, &k1, h);
         }
-        let advance = z[RHO];
-        z[RHO] = rho;
-        (advance, std::array::from_fn(|i| z[i]))
+        let advance = std::mem::replace(&mut z[RHO], rho);
+        *y = std::array::from_fn(|i| z[i]);
+        advance
+    }
+
+    /// N cos(chi) - A, the same along the meridian.
+    fn axial_force(&self, y: &State<D>) -> D {
+        let r = self.mid_radius - y[RHO];
+        self.net.local(r, y[TENSION]).force * y[COS] - self.net.area(r)
     }
 
     /// Fibre length to the target rho by the local parabola, if it leads there.
@@ -171,8 +177,7 @@ pub(crate) fn trajectory<D: Real>(
     let mut slope = flow.slope(&y);
     let mid = at_middle.local(mid_radius, mid_tension);
     let force = mid.force - at_middle.area(mid_radius);
-    let sign = bulge.value().signum();
-    let size = bulge.value().abs();
+    let (sign, size) = (bulge.value().signum(), bulge.value().abs());
     let (targets, last) = targets(net, mid_radius, bulge);
     let mut next = 0;
     let parabola = (2.0 * size / (curvature.value().abs())).sqrt() / mid.sigma.value();
@@ -197,9 +202,7 @@ pub(crate) fn trajectory<D: Real>(
         let part = remaining / y[RHO].value().abs();
         if part < CROSSING {
             let pieces = (1..100).find(|pieces| part.abs() <= CROSSING * f64::from(*pieces)).unwrap_or(100);
-            let (more, state) = flow.cross_to(&y, target, pieces);
-            fibre += more;
-            y = state;
+            fibre += flow.cross_to(&mut y, target, pieces);
             run.evaluations += 12 * pieces;
             if next == last {
                 break;
@@ -213,21 +216,12 @@ pub(crate) fn trajectory<D: Real>(
             return Err(NoTrajectory { evaluations: run.evaluations });
         }
     }
-    let end = flow.net.local(net.end_radius, y[TENSION]);
-    let integral = end.force * y[COS] - flow.net.area(net.end_radius) - force;
-    let first_integral = (integral.value() / mid.force.value()).abs();
+    let (steps, evaluations) = (run.accepted, run.evaluations);
+    let first_integral = (flow.axial_force(&y) - force).value().abs() / mid.force.value().abs();
     if !first_integral.is_finite() {
-        return Err(NoTrajectory { evaluations: run.evaluations });
+        return Err(NoTrajectory { evaluations });
     }
-    Ok(Trajectory {
-        half_fibre: fibre,
-        end: y,
-        force,
-        mid_tension,
-        steps: run.accepted,
-        evaluations: run.evaluations,
-        first_integral,
-    })
+    Ok(Trajectory { half_fibre: fibre, end: y, force, mid_tension, steps, evaluations, first_integral })
 }
 
 /// Where the law changes on the way to the fitting, and the fitting itself, as values of rho in the order in which they are met: one smooth law
@@ -272,9 +266,8 @@ pub(crate) fn stations(
     let flow_at = |y: &State<f64>| Flow { net: net.acting_at(mid_radius - y[RHO]), mid_radius };
     let mut f = |y: &State<f64>| flow_at(y).slope(y);
     let mut slope = f(&y);
-    let middle_net = flow_at(&y).net;
-    let mid_force = middle_net.local(mid_radius, tension).force;
-    let force = mid_force - middle_net.area(mid_radius);
+    let mid_force = flow_at(&y).net.local(mid_radius, tension).force;
+    let force = flow_at(&y).axial_force(&y);
     let floor = shortening_floor(net, middle.bulge.abs(), half_fibre);
     let mut run = Dop853::new(half_fibre / pieces as f64, tolerance);
     let mut departure: f64 = 0.0;
@@ -288,9 +281,7 @@ pub(crate) fn stations(
                 .map_err(|_| NoTrajectory { evaluations: run.evaluations })?;
         }
         let r = mid_radius - y[RHO];
-        let here = flow_at(&y).net;
-        let integral = here.local(r, y[TENSION]).force * y[COS] - here.area(r) - force;
-        departure = departure.max((integral / mid_force).abs());
+        departure = departure.max(((flow_at(&y).axial_force(&y) - force) / mid_force).abs());
         let x = net.cos_rest * fibre - y[SHORTENING];
         found.push(Station { fibre, x, r, chi: y[SIN].atan2(y[COS]), tension: y[TENSION] });
     }
