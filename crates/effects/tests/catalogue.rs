@@ -1,6 +1,5 @@
 //! The whole catalogue: names, cards, what `off` means, and every derivative against differences.
 
-
 use bulge_effects::{
     Balance, CardDocument, Catalogue, Effect, Input, Jet, Moment, ParameterCard, Place, Setting, Stage,
     describe, overview,
@@ -60,7 +59,7 @@ fn effects() -> Vec<Arc<dyn Effect>> {
 
 /// The shipped muscles that can have the effect.
 fn muscles(effect: &dyn Effect) -> Vec<Muscle> {
-    let all = PRESETS.iter().map(|entry| preset(entry.name).unwrap_or_else(|error| panic!("{error}")));
+    let all = PRESETS.iter().map(|entry| preset(entry.name).unwrap());
     all.filter(|muscle| effect.card().kind.is_none_or(|kind| kind == muscle.kind())).collect()
 }
 

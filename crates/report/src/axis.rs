@@ -17,6 +17,11 @@ const INTERVALS: f64 = 8.0;
 impl Axis {
     /// Smallest round range around finite `values`; `None` if there are none or their range overflows.
     pub(crate) fn around(values: impl Iterator<Item = f64>) -> Option<Self> {
+        Self::with_intervals(values, INTERVALS)
+    }
+
+    /// The same with at most so many intervals before it is extended to round ends: fewer for a small panel.
+    pub(crate) fn with_intervals(values: impl Iterator<Item = f64>, intervals: f64) -> Option<Self> {
         let (min, max) = range(values)?;
         let magnitude = min.abs().max(max.abs());
         // A constant has no range of its own: a tenth of its size, or one unit around zero.
@@ -26,12 +31,33 @@ impl Axis {
             let half = if magnitude > 0.0 { 0.1 * magnitude } else { 1.0 };
             (min - half, max + half)
         };
-        let step = round_up((max - min) / INTERVALS);
+        let step = round_up((max - min) / intervals);
         // A value on a tick up to rounding needs no further interval.
         let slack = 1e-9;
         let axis =
             Self { low: (min / step + slack).floor() * step, high: (max / step - slack).ceil() * step, step };
         (step > 0.0 && (axis.high - axis.low).is_finite()).then_some(axis)
+    }
+
+    /// Where a value lies between the ends: 0 at the low one, 1 at the high one.
+    pub(crate) fn share(&self, value: f64) -> f64 {
+        (value - self.low) / (self.high - self.low)
+    }
+
+    /// Ticks with their labels, with a true minus sign.
+    pub(crate) fn labels(&self) -> Vec<(f64, String)> {
+        self.ticks()
+            .into_iter()
+            .map(|tick| {
+                let tick = if tick.abs() < 1e-6 * self.step { 0.0 } else { tick };
+                (tick, self.label(tick).replace('-', "−"))
+            })
+            .collect()
+    }
+
+    /// Low and high end.
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        [self.low, self.high]
     }
 
     /// Ticks from the low end to the high one.
@@ -60,8 +86,7 @@ impl Ranged for Axis {
         reason = "rounded; casting saturates, and drawings are far smaller"
     )]
     fn map(&self, value: &f64, (first, last): (i32, i32)) -> i32 {
-        let share = (value - self.low) / (self.high - self.low);
-        (f64::from(first) + share * (f64::from(last) - f64::from(first))).round() as i32
+        (f64::from(first) + self.share(*value) * (f64::from(last) - f64::from(first))).round() as i32
     }
 
     fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
@@ -116,6 +141,14 @@ mod tests {
     fn maps_ends_to_the_ends_of_the_drawing() {
         let axis = Axis::around([0.0, 35.0].into_iter()).unwrap();
         assert_eq!([0.0, 17.5, 35.0].map(|v| axis.map(&v, (400, 100))), [400, 250, 100]);
+    }
+
+    #[test]
+    fn small_panels_get_fewer_ticks() {
+        let axis = Axis::with_intervals([-3.0, 35.0].into_iter(), 4.0).unwrap();
+        let labels: Vec<_> = axis.labels().into_iter().map(|(_, label)| label).collect();
+        assert_eq!(labels, ["−10", "0", "10", "20", "30", "40"]);
+        assert_eq!((axis.share(15.0), axis.ends()), (0.5, [-10.0, 40.0]));
     }
 
     #[test]

@@ -36,6 +36,30 @@ pub enum PlotError {
         /// The value found.
         value: f64,
     },
+    /// A number of a comparison is infinite or not a number.
+    #[error("{quantity} is {value}: only finite values can be drawn; leave the rows out that gave it")]
+    Value {
+        /// What it is.
+        quantity: String,
+        /// The value found.
+        value: f64,
+    },
+    /// Lists that belong together differ in length.
+    #[error("{found} {what} where {expected} are needed")]
+    Lengths {
+        /// What is listed.
+        what: &'static str,
+        /// As many as the axis has.
+        expected: usize,
+        /// Number found.
+        found: usize,
+    },
+    /// The template of a page can't be filled in.
+    #[error("the page can't be written: {reason}")]
+    Page {
+        /// What the template engine says.
+        reason: String,
+    },
     /// Values so large that their difference overflows.
     #[error("{quantity} from {low} to {high} is more than an axis can span")]
     Span {
@@ -52,4 +76,12 @@ pub enum PlotError {
         /// What it says.
         reason: String,
     },
+}
+
+impl PlotError {
+    /// Values that lie further apart than an axis reaches.
+    pub(crate) fn span(quantity: &'static str, values: impl Iterator<Item = f64>) -> Self {
+        let (low, high) = crate::axis::range(values).unwrap_or((f64::MIN, f64::MAX));
+        Self::Span { quantity, low, high }
+    }
 }

@@ -1,11 +1,13 @@
-//! Plots of pneumatic muscle characteristics.
+//! Plots of pneumatic muscle characteristics, and the report of a comparison of model and measurement.
 //!
-//! [`characteristics_svg`] draws force and volume against contraction, one curve for every pressure, as an SVG that stands for itself. Letters stay
-//! letters: no font is needed to draw it. The same curves give the same bytes.
+//! [`characteristics_svg`] draws force and volume against contraction, one curve for every pressure, as an SVG that stands for itself.
+//! [`comparison`] turns a [`bulge_inference::Comparison`] into one page with plots and tables. Letters stay letters: no font is needed to draw.
+//! The same input gives the same bytes.
 //!
-//! This crate computes no equilibrium and writes no file: a plot is a function of [`bulge_fibre::Response`]s.
+//! This crate computes no equilibrium, fits nothing and writes no file: a picture is a function of its numbers.
 mod axis;
 mod characteristics;
+pub mod comparison;
 mod error;
 mod palette;
 

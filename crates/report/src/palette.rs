@@ -22,6 +22,46 @@ pub(crate) fn colour(i: usize, n: usize) -> RGBColor {
     RGBColor(r, g, b)
 }
 
+/// Text and axes.
+pub(crate) const INK: RGBColor = RGBColor(34, 34, 34);
+/// Names of axes and lines of zero.
+pub(crate) const SOFT_INK: RGBColor = RGBColor(96, 96, 96);
+/// Lines of a grid.
+pub(crate) const GRID: RGBColor = RGBColor(228, 228, 228);
+/// The model without effects.
+pub(crate) const FIRST: RGBColor = RGBColor(158, 164, 170);
+/// The model with all effects.
+pub(crate) const LAST: RGBColor = RGBColor(11, 92, 173);
+/// The noise floor, and what should be noticed.
+pub(crate) const ALERT: RGBColor = RGBColor(190, 78, 10);
+
+/// Colours of categories (Okabe and Ito, 2008, without black), told apart with any kind of colour vision.
+pub(crate) const CATEGORIES: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(230, 159, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(213, 94, 0),
+    RGBColor(240, 228, 66),
+];
+
+/// Ends and middle of the scale for signed values: blue, white, orange.
+const SIGNED: [[f64; 3]; 3] = [[22.0, 82.0, 150.0], [250.0, 250.0, 250.0], [184.0, 78.0, 8.0]];
+
+/// Colour of a signed value between -1 and 1; white at 0.
+pub(crate) fn signed(value: f64) -> RGBColor {
+    let end = SIGNED[if value < 0.0 { 0 } else { 2 }];
+    let share = value.abs().min(1.0);
+    let [r, g, b] = [0, 1, 2].map(|c| to_byte(SIGNED[1][c] + share * (end[c] - SIGNED[1][c])));
+    RGBColor(r, g, b)
+}
+
+/// As SVG writes it.
+pub(crate) fn hex(RGBColor(r, g, b): RGBColor) -> String {
+    format!("#{r:02X}{g:02X}{b:02X}")
+}
+
 /// Nearest byte of 0 ..= 255.
 #[expect(
     clippy::cast_possible_truncation,
@@ -59,6 +99,14 @@ mod tests {
         assert_eq!(colour(0, 1), RGBColor(13, 8, 135));
         assert_eq!(colour(4, 5), RGBColor(240, 140, 50));
         assert_eq!(colour(1, 4), RGBColor(126, 3, 168));
+    }
+
+    #[test]
+    fn signed_scale_is_light_at_zero_and_darkens_to_both_ends() {
+        assert_eq!(hex(signed(0.0)), "#FAFAFA");
+        assert_eq!([signed(-1.0), signed(2.0)].map(hex), ["#165296", "#B84E08"]);
+        let red = |v: f64| signed(v).0;
+        assert!(red(-0.5) < red(-0.1) && red(0.5) > red(-0.5));
     }
 
     /// Grey values (Rec. 709) rise along the scale: the order survives a copying machine.

@@ -1,0 +1,29 @@
+//! Writes the report of a simulated comparison with all its plots.
+//!
+//! `cargo run -p bulge-report --example comparison -- DIR [rich|bare|empty|crowded|hostile]`
+
+#[path = "../tests/sample/mod.rs"]
+mod sample;
+
+use bulge_report::comparison::{html, plots};
+use std::error::Error;
+use std::path::PathBuf;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let folder = PathBuf::from(arguments.next().ok_or("name the folder to write to")?);
+    let comparison = match arguments.next().as_deref() {
+        None | Some("rich") => sample::rich(&sample::Recipe::usual()),
+        Some("bare") => sample::bare(),
+        Some("empty") => sample::empty(),
+        Some("crowded") => sample::crowded(),
+        Some("hostile") => sample::hostile(),
+        Some(other) => return Err(format!("there is no sample `{other}`").into()),
+    };
+    std::fs::create_dir_all(&folder)?;
+    std::fs::write(folder.join("report.html"), html(&comparison)?)?;
+    for plot in plots(&comparison)? {
+        std::fs::write(folder.join(plot.name).with_extension("svg"), plot.svg)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,125 @@
+//! What was measured, what was left out, and what the quality gate found.
+
+use bulge_inference::Comparison;
+use bulge_measurements::{Finding, LineRange, Severity};
+use serde::Serialize;
+
+use crate::comparison::number::{and, bar, count, newton, percent};
+
+/// Ranges of lines that are listed before `and so on`.
+const MOST_RANGES: usize = 6;
+/// Specimens that are named.
+const MOST_NAMES: usize = 12;
+
+/// One finding.
+#[derive(Debug, Serialize)]
+pub(super) struct Row {
+    severity: &'static str,
+    says: String,
+    instead: String,
+    rows: String,
+}
+
+/// The sentence above the table.
+pub(super) fn says(comparison: &Comparison) -> String {
+    let data = &comparison.data;
+    let used = if data.used == data.rows {
+        format!("All {} are used", count(data.rows, "row"))
+    } else {
+        format!("{} of {} are used", data.used, count(data.rows, "row"))
+    };
+    let worst = comparison.quality.iter().map(|finding| finding.severity).max();
+    let verdict = match worst {
+        None => "the quality gate found nothing wrong",
+        Some(Severity::Note) => "the quality gate has remarks, but nothing that spoils the comparison",
+        Some(Severity::Warning) => "the quality gate found something that may spoil the comparison",
+        Some(Severity::Error) => "the quality gate found faults: repair the data before trusting this page",
+    };
+    format!("{used}; {verdict}.")
+}
+
+/// Names and values.
+pub(super) fn facts(comparison: &Comparison) -> Vec<(&'static str, String)> {
+    let data = &comparison.data;
+    let range = |[low, high]: [f64; 2], show: fn(f64) -> String| {
+        if low < high { format!("{} to {}", show(low), show(high)) } else { show(low) }
+    };
+    let named = &data.specimens[..data.specimens.len().min(MOST_NAMES)];
+    let more = data.specimens.len() - named.len();
+    let mut names = named.to_vec();
+    if more > 0 {
+        names.push(format!("{more} more"));
+    }
+    let kind = if data.is_path {
+        format!("a path in {}", count(data.sweeps, "sweep"))
+    } else {
+        "a static map: single readings without direction or order".to_owned()
+    };
+    let mut facts = vec![
+        ("kind", kind),
+        ("specimens", and(&names)),
+        ("pressure", range(data.pressure_pa, bar)),
+        ("contraction", range(data.contraction, percent)),
+        ("force", range(data.force_n, newton)),
+        ("full scale", newton(data.full_scale_n)),
+    ];
+    if let Some(floor) = &comparison.noise_floor {
+        facts.push(("noise floor", format!("{}: {}", newton(floor.sd_n), floor.says)));
+    }
+    facts
+}
+
+/// What the quality gate found, the worst first.
+pub(super) fn findings(comparison: &Comparison) -> Vec<Row> {
+    let mut findings: Vec<&Finding> = comparison.quality.iter().collect();
+    findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
+    findings.into_iter().map(|finding| row(finding, &comparison.data.files)).collect()
+}
+
+fn row(finding: &Finding, files: &[String]) -> Row {
+    Row {
+        severity: match finding.severity {
+            Severity::Note => "note",
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        },
+        says: finding.says.clone(),
+        instead: finding.instead.clone(),
+        rows: lines(&finding.rows, files),
+    }
+}
+
+/// `12, 33–40`, with the file where there are several.
+fn lines(ranges: &[LineRange], files: &[String]) -> String {
+    let shown = ranges.iter().take(MOST_RANGES).map(|range| {
+        let lines = if range.first == range.last {
+            range.first.to_string()
+        } else {
+            format!("{}–{}", range.first, range.last)
+        };
+        match files.get(range.file).filter(|_| files.len() > 1) {
+            Some(file) => format!("{file}: {lines}"),
+            None => lines,
+        }
+    });
+    let mut shown: Vec<String> = shown.collect();
+    if ranges.len() > MOST_RANGES {
+        shown.push(format!("and {} more ranges", ranges.len() - MOST_RANGES));
+    }
+    shown.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_short_and_name_the_file_only_if_there_are_several() {
+        let range = |file, first, last| LineRange { file, first, last };
+        let files = ["a.csv".to_owned(), "b.csv".to_owned()];
+        assert_eq!(lines(&[range(0, 3, 3), range(0, 7, 9)], &files[..1]), "3, 7–9");
+        assert_eq!(lines(&[range(1, 3, 3)], &files), "b.csv: 3");
+        let many: Vec<_> = (0..10).map(|i| range(0, 10 * i, 10 * i)).collect();
+        assert!(lines(&many, &files[..1]).ends_with("50, and 4 more ranges"));
+    }
+}

@@ -1,0 +1,190 @@
+//! Force against contraction: measured points, the model before and after, one panel for each specimen.
+
+use bulge_inference::{Comparison, Curve, CurvePoint};
+
+use crate::PlotError;
+use crate::axis::Axis;
+use crate::comparison::legend::{self, Mark};
+use crate::comparison::levels::{Shown, specimens};
+use crate::comparison::number::{bar, newton};
+use crate::comparison::panel::{BELOW, Panel, columns};
+use crate::comparison::svg::{BOLD, Stroke, Svg, name_fitted};
+use crate::comparison::wording::{has_effects, last_model, pulls, sentence};
+use crate::comparison::{Plot, WIDTH};
+use crate::palette::{INK, SOFT_INK};
+
+/// Pressure levels in one panel.
+const LEVELS: usize = 8;
+/// Panels.
+const SPECIMENS: usize = 6;
+
+/// The plot; none without curves.
+///
+/// # Errors
+/// If the forces span more than an axis.
+pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
+    let curves: Vec<&Curve> = comparison.curves.iter().filter(|curve| !curve.points.is_empty()).collect();
+    if curves.is_empty() {
+        return Ok(None);
+    }
+    let shown = Shown::new(curves.iter().map(|curve| curve.pressure_pa), LEVELS);
+    let all = specimens(curves.iter().map(|curve| &curve.specimen));
+    let names = &all[..all.len().min(SPECIMENS)];
+    let points = || curves.iter().flat_map(|curve| &curve.points);
+    let x = axis("contraction [%]", points().map(|p| 100.0 * p.contraction))?;
+    let y = axis("force [N]", points().flat_map(|p| [p.measured_n, p.first_n, p.last_n]).chain([0.0]))?;
+    let across = if names.len() == 1 { 1 } else { 2 };
+    let height = if names.len() == 1 { 380.0 } else { 250.0 };
+    let entries = entries(&shown, has_effects(comparison));
+    let start = legend::height(&entries, WIDTH - 20.0) + 6.0;
+    let head = if names.len() == 1 { 10.0 } else { 30.0 };
+    let rows = names.len().div_ceil(across);
+    let row = head + height + BELOW;
+    let mut svg = Svg::new("force", WIDTH, start + row * rows as f64);
+    legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, &entries);
+    let columns = columns(across, WIDTH);
+    for (i, name) in names.iter().enumerate() {
+        let (left, width) = columns[i % across];
+        let top = start + row * (i / across) as f64 + head;
+        let panel = Panel { x, y, left, top, width, height };
+        let heading = if names.len() == 1 {
+            String::new()
+        } else {
+            name_fitted(&format!("specimen {name}"), BOLD, width)
+        };
+        panel.draw(&mut svg, &heading, "contraction [%]", "force [N]");
+        let of_specimen = curves.iter().filter(|curve| curve.specimen == *name);
+        for curve in of_specimen {
+            draw_curve(&mut svg, &panel, curve, &shown, has_effects(comparison));
+        }
+    }
+    let specimens = if names.len() < all.len() {
+        format!(" Shown are {} of {} specimens.", names.len(), all.len())
+    } else {
+        String::new()
+    };
+    Ok(Some(Plot {
+        name: "force",
+        title: "Force against contraction".to_owned(),
+        caption: format!(
+            "Dots are readings, lines the model at the same readings; colour is the pressure. The closer the solid lines run through \
+             the dots, the better.{}{specimens}",
+            shown.caption()
+        ),
+        svg: svg.finish("Force against contraction, measured and modelled"),
+    }))
+}
+
+fn axis(quantity: &'static str, values: impl Iterator<Item = f64> + Clone) -> Result<Axis, PlotError> {
+    Axis::around(values.clone()).ok_or_else(|| PlotError::span(quantity, values))
+}
+
+fn entries(shown: &Shown, has_effects: bool) -> Vec<(Mark, String)> {
+    let mut entries = vec![(Mark::Dot(SOFT_INK), "measured".to_owned())];
+    entries.push((Mark::Line(Stroke::dashed(INK, 1.0)), "base alone".to_owned()));
+    if has_effects {
+        entries.push((Mark::Line(Stroke::solid(INK, 2.0)), "with all effects".to_owned()));
+    }
+    entries.extend(shown.named().into_iter().map(|(colour, name)| (Mark::Box(colour), name)));
+    entries
+}
+
+fn draw_curve(svg: &mut Svg, panel: &Panel, curve: &Curve, shown: &Shown, has_effects: bool) {
+    let Some(colour) = shown.colour(curve.pressure_pa) else { return };
+    let place = |p: &CurvePoint, force_n: f64| panel.at((100.0 * p.contraction, force_n));
+    let dots: Vec<_> = curve.points.iter().map(|p| place(p, p.measured_n)).collect();
+    // Few dots must be seen, many must not hide the lines.
+    let (radius, opacity) = if dots.len() < 60 { (2.8, 0.8) } else { (1.8, 0.45) };
+    svg.dots(&dots, radius, colour, opacity);
+    for stretch in stretches(&curve.points) {
+        let mut line: Vec<_> = stretch.iter().map(|p| place(p, p.first_n)).collect();
+        // Dashes of both branches lie on one another if both begin on the left.
+        if line.first() > line.last() {
+            line.reverse();
+        }
+        svg.polyline(&line, Stroke::dashed(colour, 1.0));
+        if has_effects {
+            let line: Vec<_> = stretch.iter().map(|p| place(p, p.last_n)).collect();
+            svg.polyline(&line, Stroke::solid(colour, 1.8));
+        }
+    }
+}
+
+/// Points that follow one another in one direction: a line must not run from the end of one sweep to the start of the next.
+fn stretches(points: &[CurvePoint]) -> Vec<&[CurvePoint]> {
+    let steps: Vec<f64> = points.windows(2).map(|p| (p[1].contraction - p[0].contraction).abs()).collect();
+    let mut sorted = steps.clone();
+    sorted.sort_by(f64::total_cmp);
+    let usual = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    let (low, high) = crate::axis::range(points.iter().map(|p| p.contraction)).unwrap_or((0.0, 0.0));
+    // The larger of both: a coarse static map has steps of a tenth of its range.
+    let jump = (6.0 * usual).max(0.15 * (high - low));
+    let mut found = Vec::new();
+    let mut start = 0;
+    for (i, step) in steps.iter().enumerate() {
+        let turns = points[i].direction * points[i + 1].direction < 0.0;
+        if turns || *step > jump {
+            found.push(&points[start..=i]);
+            start = i + 1;
+        }
+    }
+    found.push(&points[start..]);
+    found
+}
+
+/// Mean error of the first and the last rung along one curve \[N\].
+fn mean_errors(curve: &Curve) -> [f64; 2] {
+    let n = curve.points.len().max(1) as f64;
+    let mean = |error: fn(&CurvePoint) -> f64| curve.points.iter().map(error).sum::<f64>() / n;
+    [mean(|p| p.measured_n - p.first_n), mean(|p| p.measured_n - p.last_n)]
+}
+
+/// The sentence above the plot.
+pub(super) fn says(comparison: &Comparison) -> String {
+    let worst = |rung: usize| {
+        let errors = comparison.curves.iter().map(|curve| (curve, mean_errors(curve)[rung]));
+        errors.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+    };
+    let (Some((first, before)), Some((last, after))) = (worst(0), worst(1)) else { return String::new() };
+    let several = specimens(comparison.curves.iter().map(|curve| &curve.specimen)).len() > 1;
+    let place = |curve: &Curve| {
+        let specimen = if several { format!(" on specimen {}", curve.specimen) } else { String::new() };
+        format!("at {}{specimen}", bar(curve.pressure_pa))
+    };
+    let base = format!(
+        "{} the base {} on average: there it is furthest off.",
+        sentence(&place(first)),
+        pulls(before)
+    );
+    if has_effects(comparison) {
+        let model = last_model(comparison);
+        format!("{base} For {model} the largest mean error is {}, {}.", newton(after.abs()), place(last))
+    } else {
+        base
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_breaks_between_sweeps_only() {
+        let point = |i: i32| CurvePoint {
+            contraction: 0.01 * f64::from(i),
+            direction: 1.0,
+            measured_n: 0.0,
+            first_n: 0.0,
+            last_n: 0.0,
+        };
+        let points: Vec<_> = (0..20).chain(0..20).map(point).collect();
+        let lengths: Vec<_> = stretches(&points).iter().map(|s| s.len()).collect();
+        assert_eq!(lengths, [20, 20]);
+        let mut turning: Vec<_> = (0..5).chain((0..5).rev()).map(point).collect();
+        turning[5..].iter_mut().for_each(|p| p.direction = -1.0);
+        assert_eq!(stretches(&turning).iter().map(|s| s.len()).collect::<Vec<_>>(), [5, 5]);
+        let coarse: Vec<_> = [0, 5, 12, 20].map(point).into();
+        assert_eq!(stretches(&coarse).len(), 1);
+        assert_eq!(stretches(&[]).len(), 1);
+    }
+}

@@ -1,0 +1,106 @@
+//! The head of the page: error before and after, how it compares with the scatter of the readings, and whether to trust it.
+
+use bulge_inference::Comparison;
+use serde::Serialize;
+
+use crate::comparison::number::{count, newton, three};
+use crate::comparison::wording::{has_effects, last_fit};
+
+/// A number in large print with what it is.
+#[derive(Debug, Serialize)]
+pub(super) struct Figure {
+    value: String,
+    what: String,
+}
+
+/// The figures below the headline.
+pub(super) fn figures(comparison: &Comparison) -> Vec<Figure> {
+    let (Some(first), Some(last)) = (comparison.ladder.first(), comparison.ladder.last()) else {
+        return Vec::new();
+    };
+    let error = |rung: &bulge_inference::Rung, what: &str| Figure {
+        value: newton(rung.rmse_n),
+        what: format!("{what}, {} % of full scale", three(rung.rmse_percent)),
+    };
+    let mut figures = vec![error(first, "RMS error of the base alone")];
+    if has_effects(comparison) {
+        figures.push(error(last, "RMS error with all effects"));
+    }
+    if let Some(held_out) = last.held_out_rmse_n {
+        figures.push(Figure {
+            value: newton(held_out),
+            what: "RMS error on data held out of the fit".to_owned(),
+        });
+    }
+    if let Some(floor) = &comparison.noise_floor {
+        figures.push(Figure {
+            value: newton(floor.sd_n),
+            what: "noise floor: scatter of the readings".to_owned(),
+        });
+    }
+    figures
+}
+
+/// The headline in one sentence.
+pub(super) fn says(comparison: &Comparison) -> String {
+    let (Some(first), Some(last)) = (comparison.ladder.first(), comparison.ladder.last()) else {
+        return "No model was compared with these data.".to_owned();
+    };
+    let share = |percent: f64| format!("{} % of full scale", three(percent));
+    if !has_effects(comparison) {
+        return format!(
+            "The base alone misses the measured force by {} ({}).",
+            newton(first.rmse_n),
+            share(first.rmse_percent)
+        );
+    }
+    format!(
+        "With {} the model misses the measured force by {} ({}); the base alone misses it by {} ({}).",
+        count(comparison.ladder.len() - 1, "effect"),
+        newton(last.rmse_n),
+        share(last.rmse_percent),
+        newton(first.rmse_n),
+        share(first.rmse_percent)
+    )
+}
+
+/// How far that is above the noise floor, and what that means.
+pub(super) fn verdict(comparison: &Comparison) -> Vec<String> {
+    let mut verdict = Vec::new();
+    let Some(last) = comparison.ladder.last() else { return verdict };
+    if let Some(floor) = comparison.noise_floor.as_ref().filter(|floor| floor.sd_n > 0.0) {
+        let ratio = last.rmse_n / floor.sd_n;
+        let meaning = if ratio < 0.8 {
+            "less than the readings themselves scatter, so part of the scatter was fitted"
+        } else if ratio < 1.3 {
+            "as good as these data can tell"
+        } else if ratio < 3.0 {
+            "close to what these data allow, with something left to explain"
+        } else {
+            "far above what these data allow: something is still missing"
+        };
+        verdict.push(format!("That is {} times the noise floor: {meaning}.", three(ratio)));
+    } else {
+        verdict.push(
+            "The scatter of the readings is not known, so it can't be said how much of that is noise."
+                .to_owned(),
+        );
+    }
+    if let Some(held_out) = last.held_out_rmse_n.filter(|_| last.fitted > 0) {
+        verdict.push(if held_out > 1.5 * last.rmse_n {
+            format!(
+                "On data held out of the fit the error is {}, much more: the fit knows these readings better than the muscle.",
+                newton(held_out)
+            )
+        } else {
+            format!("On data held out of the fit the error is {}: the model predicts what it has not seen.", newton(held_out))
+        });
+    }
+    if last_fit(comparison).is_some_and(|fit| fit.parameters.iter().any(|p| !p.plausible)) {
+        verdict.push(
+            "At least one fitted number is implausible: that part of the improvement has the wrong cause."
+                .to_owned(),
+        );
+    }
+    verdict
+}

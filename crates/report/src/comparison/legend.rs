@@ -1,0 +1,73 @@
+//! A legend as a row of marks with words, wrapped where the drawing ends.
+
+use plotters::style::RGBColor;
+
+use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, width};
+
+/// What stands before the words.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Mark {
+    /// A line.
+    Line(Stroke),
+    /// A dot.
+    Dot(RGBColor),
+    /// A diamond.
+    Diamond(RGBColor),
+    /// A filled rectangle.
+    Box(RGBColor),
+}
+
+/// Height of a row.
+const ROW: f64 = 20.0;
+/// Width of a mark with the gap to its words.
+const MARK: f64 = 30.0;
+const GAP: f64 = 18.0;
+
+/// Places of the entries from the origin, and the height of all rows.
+fn places(entries: &[(Mark, String)], room: f64) -> (Vec<(f64, f64)>, f64) {
+    let (mut x, mut y) = (0.0, 0.0);
+    let mut places = Vec::with_capacity(entries.len());
+    for (_, words) in entries {
+        let wide = MARK + width(words, TEXT) + GAP;
+        if x > 0.0 && x + wide > room {
+            (x, y) = (0.0, y + ROW);
+        }
+        places.push((x, y));
+        x += wide;
+    }
+    (places, if entries.is_empty() { 0.0 } else { y + ROW })
+}
+
+/// Height that the legend needs in `room`.
+pub(super) fn height(entries: &[(Mark, String)], room: f64) -> f64 {
+    places(entries, room).1
+}
+
+/// Draws the entries from the upper left corner on.
+pub(super) fn draw(svg: &mut Svg, (left, top): (f64, f64), room: f64, entries: &[(Mark, String)]) {
+    for ((x, y), (mark, words)) in places(entries, room).0.into_iter().zip(entries) {
+        let (x, y) = (left + x, top + y + 0.5 * ROW);
+        match *mark {
+            Mark::Line(stroke) => svg.line((x, y), (x + 24.0, y), stroke),
+            Mark::Dot(colour) => svg.dots(&[(x + 17.0, y)], 3.0, colour, 1.0),
+            Mark::Diamond(colour) => svg.diamond((x + 17.0, y), 5.0, colour),
+            Mark::Box(colour) => svg.rect((x + 8.0, y - 5.0), (16.0, 10.0), colour),
+        }
+        svg.text((x + MARK, y), words, Style::new(Anchor::Start));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::palette::INK;
+
+    #[test]
+    fn entries_that_do_not_fit_go_to_the_next_row() {
+        let entry = || (Mark::Dot(INK), "measured".to_owned());
+        assert_eq!(height(&[entry(), entry()], 900.0), ROW);
+        assert_eq!(height(&[entry(), entry()], 150.0), 2.0 * ROW);
+        assert_eq!(height(&[entry()], 10.0), ROW);
+        assert_eq!(height(&[], 10.0), 0.0);
+    }
+}

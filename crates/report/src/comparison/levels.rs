@@ -1,0 +1,106 @@
+//! Which pressure levels are shown, in which colour, and how specimens share a plot.
+
+use plotters::style::RGBColor;
+
+use crate::comparison::number::bar;
+use crate::palette;
+
+/// Indices of at most `most` of `count`, evenly spread, the first and the last among them.
+pub(super) fn spread(count: usize, most: usize) -> Vec<usize> {
+    if count <= most {
+        return (0..count).collect();
+    }
+    let last = most.saturating_sub(1).max(1);
+    let mut chosen: Vec<usize> = (0..most).map(|i| (i * (count - 1) + last / 2) / last).collect();
+    chosen.dedup();
+    chosen
+}
+
+/// The pressures that occur, rising, each once (to 0.1 %).
+pub(super) fn distinct(pressures: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut found: Vec<f64> = pressures.collect();
+    found.sort_by(f64::total_cmp);
+    found.dedup_by(|a, b| same(*a, *b));
+    found
+}
+
+/// Whether two pressures are the same level.
+pub(super) fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-3 * a.abs().max(b.abs())
+}
+
+/// The specimens that occur, each once, in order.
+pub(super) fn specimens<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
+    let mut found: Vec<&str> = Vec::new();
+    for name in names {
+        if !found.contains(&name.as_str()) {
+            found.push(name);
+        }
+    }
+    found
+}
+
+/// The levels of a plot that are shown, with their colours.
+pub(super) struct Shown {
+    levels: Vec<f64>,
+    /// How many there are in all.
+    pub(super) of: usize,
+}
+
+impl Shown {
+    /// At most `most` of the pressures.
+    pub(super) fn new(pressures: impl Iterator<Item = f64>, most: usize) -> Self {
+        let all = distinct(pressures);
+        let levels = spread(all.len(), most).into_iter().map(|i| all[i]).collect();
+        Self { levels, of: all.len() }
+    }
+
+    /// Colour of a pressure; none if it isn't shown.
+    pub(super) fn colour(&self, pressure_pa: f64) -> Option<RGBColor> {
+        let place = self.levels.iter().position(|level| same(*level, pressure_pa))?;
+        Some(palette::colour(place, self.levels.len()))
+    }
+
+    /// Levels with their colours and names, highest first as the curves mostly lie.
+    pub(super) fn named(&self) -> Vec<(RGBColor, String)> {
+        self.levels.iter().rev().filter_map(|p| Some((self.colour(*p)?, bar(*p)))).collect()
+    }
+
+    /// What a caption says about levels that aren't shown.
+    pub(super) fn caption(&self) -> String {
+        if self.levels.len() < self.of {
+            format!(" Shown are {} of {} pressure levels.", self.levels.len(), self.of)
+        } else {
+            String::new()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_choice_has_both_ends_and_no_level_twice() {
+        assert_eq!(spread(3, 8), [0, 1, 2]);
+        assert_eq!(spread(40, 3), [0, 20, 39]);
+        assert_eq!(spread(9, 8).len(), 8);
+        assert_eq!(spread(0, 3), [0_usize; 0]);
+        for n in 1..60 {
+            let chosen = spread(n, 8);
+            assert!(
+                chosen[0] == 0 && chosen.last() == Some(&(n - 1)) && chosen.len() == n.min(8),
+                "{n}: {chosen:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn levels_that_differ_by_rounding_are_one() {
+        let shown = Shown::new([2e5, 1e5, 1.000_01e5, 3e5].into_iter(), 2);
+        assert_eq!((shown.of, shown.levels.as_slice()), (3, &[1e5, 3e5][..]));
+        assert!(shown.colour(1.000_01e5).is_some() && shown.colour(2e5).is_none());
+        assert_eq!(shown.caption(), " Shown are 2 of 3 pressure levels.");
+        assert_eq!(shown.named()[0].1, "3 bar");
+    }
+}

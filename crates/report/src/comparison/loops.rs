@@ -1,0 +1,142 @@
+//! Loops: the mean of both branches and half of the gap between them, measured and modelled.
+
+use bulge_inference::{Comparison, LoopGap};
+
+use crate::PlotError;
+use crate::axis::Axis;
+use crate::comparison::legend::{self, Mark};
+use crate::comparison::levels::{Shown, specimens};
+use crate::comparison::number::newton;
+use crate::comparison::panel::{BELOW, Panel, columns};
+use crate::comparison::svg::{BOLD, Stroke, Svg, name_fitted};
+use crate::comparison::wording::has_effects;
+use crate::comparison::{Plot, WIDTH};
+use crate::palette::{INK, SOFT_INK};
+
+/// Pressure levels that are drawn.
+const LEVELS: usize = 6;
+/// Specimens that are drawn, one row of panels each.
+const SPECIMENS: usize = 4;
+const HEIGHT: f64 = 240.0;
+const HEAD: f64 = 30.0;
+
+/// The plot; none without loops.
+///
+/// # Errors
+/// If the forces span more than an axis.
+pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
+    let loops: Vec<&LoopGap> = comparison.loops.iter().filter(|gap| !gap.contraction.is_empty()).collect();
+    if loops.is_empty() {
+        return Ok(None);
+    }
+    let shown = Shown::new(loops.iter().map(|gap| gap.pressure_pa), LEVELS);
+    let all = specimens(loops.iter().map(|gap| &gap.specimen));
+    let names = &all[..all.len().min(SPECIMENS)];
+    let entries = entries(&shown, has_effects(comparison));
+    let start = legend::height(&entries, WIDTH - 20.0) + 6.0;
+    let row = HEAD + HEIGHT + BELOW;
+    let mut svg = Svg::new("loops", WIDTH, start + row * names.len() as f64);
+    legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, &entries);
+    for (i, name) in names.iter().enumerate() {
+        let specimen = if all.len() == 1 { String::new() } else { format!(", specimen {name}") };
+        for (kind, (left, width)) in columns(2, WIDTH).into_iter().enumerate() {
+            let (x, y) = axes(&loops, kind)?;
+            let panel = Panel { x, y, left, top: start + row * i as f64 + HEAD, width, height: HEIGHT };
+            let heading = name_fitted(&format!("{}{specimen}", HEADINGS[kind]), BOLD, width);
+            panel.draw(&mut svg, &heading, "contraction [%]", QUANTITIES[kind]);
+            for gap in loops.iter().filter(|gap| gap.specimen == *name) {
+                draw(&mut svg, &panel, gap, kind, &shown, has_effects(comparison));
+            }
+        }
+    }
+    let left_out = if names.len() < all.len() {
+        format!(" Shown are {} of {} specimens.", names.len(), all.len())
+    } else {
+        String::new()
+    };
+    Ok(Some(Plot {
+        name: "loops",
+        title: "Mean and half-gap of the loops".to_owned(),
+        caption: format!(
+            "A muscle pulls harder while it is lengthened than while it shortens. The mean of both branches is the force without \
+             friction; half of the gap between them is the friction itself. Dots are measured, lines modelled.{}{left_out}",
+            shown.caption()
+        ),
+        svg: svg.finish("Mean and half-gap of the loops"),
+    }))
+}
+
+const HEADINGS: [&str; 2] = ["Mean of both branches", "Half of the gap between them"];
+const QUANTITIES: [&str; 2] = ["mean force [N]", "half-gap [N]"];
+
+/// Measured, first and last of the mean (0) or the half-gap (1).
+fn values(gap: &LoopGap, kind: usize) -> [&Vec<f64>; 3] {
+    if kind == 0 {
+        [&gap.mean_measured_n, &gap.mean_model_n[0], &gap.mean_model_n[1]]
+    } else {
+        [&gap.half_gap_measured_n, &gap.half_gap_model_n[0], &gap.half_gap_model_n[1]]
+    }
+}
+
+fn axes(loops: &[&LoopGap], kind: usize) -> Result<(Axis, Axis), PlotError> {
+    let across = || loops.iter().flat_map(|gap| gap.contraction.iter().map(|c| 100.0 * c));
+    let upwards = || loops.iter().flat_map(|gap| values(gap, kind)).flatten().copied().chain([0.0]);
+    let x =
+        Axis::with_intervals(across(), 6.0).ok_or_else(|| PlotError::span("contraction [%]", across()))?;
+    let y =
+        Axis::with_intervals(upwards(), 6.0).ok_or_else(|| PlotError::span(QUANTITIES[kind], upwards()))?;
+    Ok((x, y))
+}
+
+fn entries(shown: &Shown, has_effects: bool) -> Vec<(Mark, String)> {
+    let mut entries = vec![(Mark::Dot(SOFT_INK), "measured".to_owned())];
+    entries.push((Mark::Line(Stroke::dashed(INK, 1.0)), "base alone".to_owned()));
+    if has_effects {
+        entries.push((Mark::Line(Stroke::solid(INK, 2.0)), "with all effects".to_owned()));
+    }
+    entries.extend(shown.named().into_iter().map(|(colour, name)| (Mark::Box(colour), name)));
+    entries
+}
+
+fn draw(svg: &mut Svg, panel: &Panel, gap: &LoopGap, kind: usize, shown: &Shown, has_effects: bool) {
+    let Some(colour) = shown.colour(gap.pressure_pa) else { return };
+    let [measured, first, last] = values(gap, kind).map(|force| {
+        gap.contraction.iter().zip(force).map(|(c, f)| panel.at((100.0 * c, *f))).collect::<Vec<_>>()
+    });
+    svg.dots(&measured, 2.6, colour, 0.6);
+    svg.polyline(&first, Stroke::dashed(colour, 1.0));
+    if has_effects {
+        svg.polyline(&last, Stroke::solid(colour, 1.8));
+    }
+}
+
+/// The sentence above the plot.
+pub(super) fn says(comparison: &Comparison) -> String {
+    let mean = |kind: usize, which: usize| {
+        let all: Vec<f64> =
+            comparison.loops.iter().flat_map(|gap| values(gap, kind)[which]).copied().collect();
+        all.iter().sum::<f64>() / all.len().max(1) as f64
+    };
+    let [measured, first, last] = [0, 1, 2].map(|which| mean(1, which));
+    let base = format!(
+        "Half of the gap between lengthening and shortening is {} on average; the base",
+        newton(measured)
+    );
+    let of_base = if first.abs() < 0.01 * measured.abs() {
+        "has none".to_owned()
+    } else {
+        format!("has {}", newton(first))
+    };
+    if !has_effects(comparison) {
+        return format!("{base} {of_base}.");
+    }
+    let share = if measured.abs() > 0.0 { last / measured } else { 1.0 };
+    let meaning = if (share - 1.0).abs() < 0.1 {
+        "the friction is there in the right size"
+    } else if share < 1.0 {
+        "part of the friction is still missing"
+    } else {
+        "the model has more friction than the muscle"
+    };
+    format!("{base} {of_base}, the model with all effects {}: {meaning}.", newton(last))
+}

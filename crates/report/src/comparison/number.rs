@@ -1,0 +1,131 @@
+//! Numbers for people: three significant digits, a true minus sign, pressure in bar, contraction in per cent.
+
+/// Three significant digits.
+///
+/// Beyond 10^6 and below 10^-4 as a power of ten; an end that isn't finite is `unbounded`.
+pub(super) fn three(value: f64) -> String {
+    if !value.is_finite() {
+        return "unbounded".to_owned();
+    }
+    // Rounded first: 999.7 has its leading digit at 1000.
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    if rounded == 0.0 {
+        return "0".to_owned();
+    }
+    let size = rounded.abs();
+    let text = if (1e-4..1e6).contains(&size) {
+        // 12340 has one digit before 10^4, 0.0123 has its first at 10^-2.
+        let decimals = (0..9).find(|d| size * 10_f64.powi(*d) >= 100.0 * (1.0 - 1e-12));
+        format!("{size:.*}", usize::try_from(decimals.unwrap_or(0)).unwrap_or(0))
+    } else {
+        let text = format!("{size:.2e}");
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        format!("{mantissa} × 10{}", raised(exponent))
+    };
+    if rounded < 0.0 { format!("−{text}") } else { text }
+}
+/// A share of variance: near 1, where three digits tell nothing, four decimals.
+pub(super) fn share(value: f64) -> String {
+    if (0.99..1.0).contains(&value) { format!("{value:.4}") } else { three(value) }
+}
+
+/// A whole number as an exponent.
+fn raised(exponent: &str) -> String {
+    exponent
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            // Digits 0 and 4 to 9 stand in a row.
+            c => c.to_digit(10).and_then(|d| char::from_u32(0x2070 + d)).unwrap_or(c),
+        })
+        .collect()
+}
+
+/// A force: `12.3 N`.
+pub(super) fn newton(force_n: f64) -> String {
+    format!("{} N", three(force_n))
+}
+
+/// A force with its sign: `+12.3 N`.
+pub(super) fn signed_newton(force_n: f64) -> String {
+    let text = newton(force_n);
+    if text.starts_with(['−', '0', 'u']) { text } else { format!("+{text}") }
+}
+
+/// A pressure in bar: three digits without trailing zeros, as on a gauge.
+pub(super) fn bar(pressure_pa: f64) -> String {
+    format!("{} bar", level(pressure_pa / 1e5))
+}
+
+/// A contraction: `12.5 %`.
+pub(super) fn percent(share: f64) -> String {
+    format!("{} %", level(100.0 * share))
+}
+
+/// Three digits without trailing zeros.
+pub(super) fn level(value: f64) -> String {
+    let text = three(value);
+    if text.contains('.') && !text.contains('×') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// `1 row`, `2 rows`.
+pub(super) fn count(number: usize, one: &str) -> String {
+    if number == 1 { format!("1 {one}") } else { format!("{number} {one}s") }
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub(super) fn and(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_digits_at_any_size() {
+        let shown =
+            [0.0, -0.0, 1.0, 12.345, -38.16, 0.012_34, 999.7, 12_345.0, 7e-12, -2.5e9, 0.999_96].map(three);
+        let hoped = [
+            "0",
+            "0",
+            "1.00",
+            "12.3",
+            "−38.2",
+            "0.0123",
+            "1000",
+            "12300",
+            "7.00 × 10⁻¹²",
+            "−2.50 × 10⁹",
+            "1.00",
+        ];
+        assert_eq!(shown, hoped);
+        assert_eq!([0.5, 0.998_76, 1.0, -3.0].map(share), ["0.500", "0.9988", "1.00", "−3.00"]);
+        assert_eq!(three(f64::INFINITY), "unbounded");
+    }
+
+    #[test]
+    fn levels_have_no_trailing_zeros() {
+        assert_eq!([1e5, 2.5e5, 12_500.0, 0.0].map(bar), ["1 bar", "2.5 bar", "0.125 bar", "0 bar"]);
+        assert_eq!([0.1, 0.125, -0.02].map(percent), ["10 %", "12.5 %", "−2 %"]);
+    }
+
+    #[test]
+    fn signs_counts_and_lists() {
+        assert_eq!([3.0, -3.0, 0.0].map(signed_newton), ["+3.00 N", "−3.00 N", "0 N"]);
+        assert_eq!([count(1, "row"), count(0, "row")], ["1 row", "0 rows"]);
+        let words = ["a".to_owned(), "b".to_owned(), "c".to_owned()];
+        assert_eq!([and(&words), and(&words[..2]), and(&words[..1])], ["a, b and c", "a and b", "a"]);
+    }
+}

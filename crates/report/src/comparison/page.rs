@@ -1,0 +1,155 @@
+//! The page: texts, tables and plots put into the template.
+
+use bulge_inference::{Comparison, LeftOut};
+use minijinja::syntax::SyntaxConfig;
+use minijinja::value::{Serde, Value};
+use minijinja::{AutoEscape, Environment, HtmlEscape};
+use serde::Serialize;
+
+use crate::PlotError;
+use crate::comparison::{
+    Plot, breakdown, contributions, convergence, correlations, data, force, headline, ladder, ladder_table,
+    loops, parameters, parameters_table, residual_map, rivals, scatter, wording,
+};
+
+const TEMPLATE: &str = include_str!("report.html");
+const NAME: &str = "report.html";
+
+/// A plot with the sentence above it.
+#[derive(Serialize)]
+struct Figure {
+    says: String,
+    name: &'static str,
+    title: String,
+    caption: String,
+    /// Markup, which the template must not escape.
+    svg: Value,
+}
+
+impl Figure {
+    fn new(plot: Plot, says: String) -> Self {
+        let Plot { name, title, caption, svg } = plot;
+        Self { says, name, title, caption, svg: Value::from_safe_string(svg) }
+    }
+}
+
+/// Everything that the template shows.
+#[derive(Serialize)]
+struct Page<'a> {
+    muscle: &'a str,
+    base: &'a str,
+    version: &'static str,
+    schema: &'static str,
+    headline: String,
+    verdict: Vec<String>,
+    key_figures: Vec<headline::Figure>,
+    data_says: String,
+    facts: Vec<(&'static str, String)>,
+    left_out: &'a [LeftOut],
+    findings: Vec<data::Row>,
+    ladder: Option<Figure>,
+    ladder_says: String,
+    rungs: Vec<ladder_table::Row>,
+    force: Option<Figure>,
+    errors: Vec<Figure>,
+    maps: Option<Figure>,
+    loops: Option<Figure>,
+    contributions: Option<Figure>,
+    contributions_says: String,
+    scatter: Option<Figure>,
+    parameters: Option<Figure>,
+    parameters_says: String,
+    numbers: Vec<parameters_table::Row>,
+    fit_warnings: Vec<String>,
+    pairs: Vec<correlations::Pair>,
+    pairs_says: String,
+    rivals: Vec<rivals::Row>,
+    rivals_says: String,
+    convergence_says: String,
+    convergence: Vec<(&'static str, String)>,
+    warnings: &'a [String],
+    files: &'a [String],
+    sha256: &'a str,
+}
+
+/// The page as HTML.
+///
+/// # Errors
+/// If a plot can't be drawn, or the template not be filled in.
+pub(super) fn render(comparison: &Comparison) -> Result<String, PlotError> {
+    let failed = |error: minijinja::Error| PlotError::Page { reason: format!("{error:#}") };
+    let mut environment = Environment::new();
+    environment.set_auto_escape_callback(|_| AutoEscape::Html);
+    let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
+    environment.set_syntax(syntax.map_err(failed)?);
+    environment.add_filter("code", code);
+    environment.add_template(NAME, TEMPLATE).map_err(failed)?;
+    let template = environment.get_template(NAME).map_err(failed)?;
+    let html = template.render(Value::from(Serde(page(comparison)?))).map_err(failed)?;
+    // Control characters are allowed neither in HTML nor in XML.
+    Ok(html.replace(|c: char| (c.is_control() && c != '\n') || matches!(c, '\u{FFFE}' | '\u{FFFF}'), " "))
+}
+
+/// A text in which `commands` stand between backticks, as markup.
+fn code(text: &str) -> Value {
+    let mut markup = String::new();
+    let pieces: Vec<&str> = text.split('`').collect();
+    // An odd backtick is one.
+    let is_paired = pieces.len() % 2 == 1;
+    for (i, piece) in pieces.iter().enumerate() {
+        let piece = HtmlEscape(piece);
+        markup += &match (is_paired, i % 2 == 1) {
+            (true, true) => format!("<code>{piece}</code>"),
+            (false, true | false) if i > 0 => format!("`{piece}"),
+            _ => piece.to_string(),
+        };
+    }
+    Value::from_safe_string(markup)
+}
+
+fn page(comparison: &Comparison) -> Result<Page<'_>, PlotError> {
+    let figure = |plot: Option<Plot>, says: String| plot.map(|plot| Figure::new(plot, says));
+    let errors = breakdown::with_sentences(comparison)?;
+    let (pairs, all_pairs) = correlations::pairs(comparison);
+    let fit = wording::last_fit(comparison);
+    // What a fit warns of often stands among the warnings as well.
+    let fit_warnings = fit.map(|fit| fit.warnings.clone()).unwrap_or_default();
+    let fit_warnings =
+        fit_warnings.into_iter().filter(|warning| !comparison.warnings.contains(warning)).collect();
+    Ok(Page {
+        muscle: &comparison.muscle,
+        base: &comparison.base,
+        version: env!("CARGO_PKG_VERSION"),
+        schema: comparison.schema,
+        headline: headline::says(comparison),
+        verdict: headline::verdict(comparison),
+        key_figures: headline::figures(comparison),
+        data_says: data::says(comparison),
+        facts: data::facts(comparison),
+        left_out: &comparison.data.left_out,
+        findings: data::findings(comparison),
+        ladder: figure(ladder::plot(comparison)?, String::new()),
+        ladder_says: ladder::says(comparison),
+        rungs: ladder_table::rows(comparison),
+        force: figure(force::plot(comparison)?, force::says(comparison)),
+        errors: errors.into_iter().map(|(plot, says)| Figure::new(plot, says)).collect(),
+        maps: figure(residual_map::plot(comparison)?, residual_map::says(comparison)),
+        loops: figure(loops::plot(comparison)?, loops::says(comparison)),
+        contributions: figure(contributions::plot(comparison)?, String::new()),
+        contributions_says: contributions::says(comparison),
+        scatter: figure(scatter::plot(comparison)?, scatter::says(comparison)),
+        parameters: figure(parameters::plot(comparison), String::new()),
+        parameters_says: parameters::says(comparison),
+        numbers: parameters_table::rows(comparison),
+        fit_warnings,
+        pairs_says: correlations::says(&pairs, all_pairs),
+        pairs,
+        rivals: rivals::rows(comparison),
+        rivals_says: rivals::says(comparison),
+        convergence_says: convergence::says(comparison),
+        convergence: convergence::facts(comparison),
+        warnings: &comparison.warnings,
+        files: &comparison.data.files,
+        sha256: &comparison.data.sha256,
+    })
+}

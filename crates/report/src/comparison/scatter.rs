@@ -1,0 +1,67 @@
+//! Predicted against measured force, before and after, with the line on which both are equal.
+
+use bulge_inference::Comparison;
+
+use crate::PlotError;
+use crate::axis::Axis;
+use crate::comparison::number::{newton, share};
+use crate::comparison::panel::{BELOW, Panel, columns};
+use crate::comparison::svg::{Stroke, Svg};
+use crate::comparison::wording::{has_effects, names, sentence};
+use crate::comparison::{Plot, WIDTH};
+use crate::palette::{FIRST, INK, LAST};
+
+const HEAD: f64 = 34.0;
+const HEIGHT: f64 = 360.0;
+
+/// The plot; none without rows.
+///
+/// # Errors
+/// If the forces span more than an axis.
+pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
+    let rows = &comparison.scatter;
+    if rows.is_empty() {
+        return Ok(None);
+    }
+    let names = names(comparison);
+    let values = || rows.iter().flat_map(|row| row.iter().take(1 + names.len())).copied();
+    let axis = Axis::with_intervals(values(), 6.0).ok_or_else(|| PlotError::span("force [N]", values()))?;
+    let mut svg = Svg::new("scatter", WIDTH, HEAD + HEIGHT + BELOW);
+    for (i, ((left, width), name)) in columns(2, WIDTH).into_iter().zip(&names).enumerate() {
+        let panel = Panel { x: axis, y: axis, left, top: HEAD, width, height: HEIGHT };
+        panel.draw(&mut svg, &sentence(name), "measured force [N]", "predicted force [N]");
+        let [low, high] = axis.ends();
+        svg.line(panel.at((low, low)), panel.at((high, high)), Stroke::solid(INK, 1.0));
+        let dots: Vec<_> = rows.iter().map(|row| panel.at((row[0], row[1 + i]))).collect();
+        svg.dots(&dots, 2.0, if i == 0 { FIRST } else { LAST }, 0.5);
+    }
+    Ok(Some(Plot {
+        name: "scatter",
+        title: "Predicted against measured force".to_owned(),
+        caption: "Each dot is one reading. On the line the prediction is exact; above it the model pulls too hard, below it too weakly."
+            .to_owned(),
+        svg: svg.finish("Predicted against measured force"),
+    }))
+}
+
+/// The sentence above the plot.
+pub(super) fn says(comparison: &Comparison) -> String {
+    let (Some(first), Some(last)) = (comparison.ladder.first(), comparison.ladder.last()) else {
+        return String::new();
+    };
+    let explained = |r_squared: f64| format!("R² = {}", share(r_squared));
+    if has_effects(comparison) {
+        format!(
+            "The closer the dots lie to the line, the better: {} for the base, {} with all effects, where the largest single error is {}.",
+            explained(first.r_squared),
+            explained(last.r_squared),
+            newton(last.largest_n)
+        )
+    } else {
+        format!(
+            "The closer the dots lie to the line, the better: {}, and the largest single error is {}.",
+            explained(first.r_squared),
+            newton(first.largest_n)
+        )
+    }
+}

@@ -1,0 +1,269 @@
+//! The report of a comparison through the public API: rich, bare, crowded and hostile samples.
+
+mod sample;
+
+use bulge_inference::Comparison;
+use bulge_report::PlotError;
+use bulge_report::comparison::{html, plots};
+use roxmltree::{Document, ParsingOptions};
+use sample::{Recipe, bare, crowded, empty, hostile, rich};
+
+fn samples() -> [(&'static str, Comparison); 5] {
+    [
+        ("rich", rich(&Recipe::usual())),
+        ("bare", bare()),
+        ("empty", empty()),
+        ("crowded", crowded()),
+        ("hostile", hostile()),
+    ]
+}
+
+/// The page as XML: it is written so that both kinds of parser read it.
+fn parsed(html: &str) -> Document<'_> {
+    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+    Document::parse_with_options(html, options).unwrap()
+}
+
+fn text(document: &Document<'_>) -> String {
+    let texts = document.descendants().filter(roxmltree::Node::is_text);
+    texts.filter_map(|node| node.text()).collect::<Vec<_>>().join(" ")
+}
+
+/// Coordinates and sizes of a drawing.
+fn numbers(document: &Document<'_>) -> Vec<f64> {
+    let of = ["x", "y", "x1", "y1", "x2", "y2", "width", "height"];
+    let attributes = document.descendants().flat_map(|node| node.attributes().collect::<Vec<_>>());
+    let plain = attributes.filter(|a| of.contains(&a.name())).filter_map(|a| a.value().parse().ok());
+    let lists = document.descendants().filter_map(|node| node.attribute("points"));
+    plain.chain(lists.flat_map(|list| list.split([' ', ',']).map(|v| v.parse().unwrap()))).collect()
+}
+
+#[test]
+fn every_plot_is_well_formed_and_within_its_frame() {
+    for (sample, comparison) in samples() {
+        for plot in plots(&comparison).unwrap() {
+            let document =
+                Document::parse(&plot.svg).unwrap_or_else(|e| panic!("{sample}, {}: {e}", plot.name));
+            let size = |name| document.root_element().attribute(name).unwrap().parse::<f64>().unwrap();
+            let most = size("width").max(size("height")) + 1.0;
+            assert!(size("width") > 100.0 && size("height") > 80.0, "{sample}, {}", plot.name);
+            let within = numbers(&document).into_iter().all(|v| (-1.0..=most).contains(&v));
+            assert!(within, "{sample}, {}: something lies outside", plot.name);
+            assert!(!plot.title.is_empty() && plot.caption.ends_with('.'), "{sample}, {}", plot.name);
+        }
+    }
+}
+
+#[test]
+fn rich_data_have_all_plots_and_bare_data_those_that_there_are() {
+    let names =
+        |comparison: &Comparison| plots(comparison).unwrap().iter().map(|p| p.name).collect::<Vec<_>>();
+    let all = [
+        "ladder",
+        "force",
+        "error-by-pressure",
+        "error-by-contraction",
+        "error-by-direction",
+        "error-by-rate",
+        "error-by-time",
+        "error-by-sweep",
+        "error-by-specimen",
+        "residual-map",
+        "loops",
+        "contributions",
+        "scatter",
+        "parameters",
+    ];
+    assert_eq!(names(&rich(&Recipe::usual())), all);
+    assert_eq!(names(&bare()), ["ladder", "force", "error-by-contraction", "residual-map", "scatter"]);
+    assert_eq!(names(&empty()), [""; 0]);
+}
+
+#[test]
+fn every_page_is_well_formed_small_and_free_of_numbers_that_are_none() {
+    for (sample, comparison) in samples() {
+        let html = html(&comparison).unwrap();
+        assert!(html.len() < 3_000_000, "{sample}: {} bytes", html.len());
+        let document = parsed(&html);
+        let words = text(&document);
+        let words: Vec<&str> = words.split(|c: char| !c.is_alphanumeric()).collect();
+        for none in ["NaN", "nan", "inf", "Infinity", "null", "none", "undefined"] {
+            let style = document.descendants().any(|n| n.has_tag_name("style"));
+            // `none` is a word of style sheets.
+            assert!(none == "none" && style || !words.contains(&none), "{sample}: `{none}`");
+            assert!(!html.contains(&format!("\"{none}\"")) || none == "none", "{sample}: `{none}`");
+        }
+    }
+}
+
+#[test]
+fn a_page_asks_for_nothing_from_outside() {
+    for (sample, comparison) in samples() {
+        let html = html(&comparison).unwrap();
+        let drawings = html.matches("<svg ").count();
+        assert_eq!(
+            html.matches("http").count(),
+            drawings + 1,
+            "{sample}: beyond `http-equiv` and namespaces"
+        );
+        assert_eq!(html.matches("xmlns=\"http://www.w3.org/2000/svg\"").count(), drawings, "{sample}");
+        let policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:";
+        assert!(html.contains(policy), "{sample}");
+        let document = parsed(&html);
+        for node in document.descendants().filter(roxmltree::Node::is_element) {
+            let name = node.tag_name().name();
+            assert!(
+                !["script", "link", "img", "iframe", "object", "use", "image"].contains(&name),
+                "{sample}: {name}"
+            );
+            for attribute in node.attributes() {
+                assert!(!attribute.name().starts_with("on") && attribute.name() != "src", "{sample}: {name}");
+                assert!(attribute.name() != "href" || attribute.value().starts_with('#'), "{sample}: {name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn links_and_ids_fit_together() {
+    for (sample, comparison) in samples() {
+        let html = html(&comparison).unwrap();
+        let document = parsed(&html);
+        let mut ids: Vec<&str> = document.descendants().filter_map(|n| n.attribute("id")).collect();
+        let all = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), all, "{sample}: an id occurs twice");
+        for target in document.descendants().filter_map(|n| n.attribute("href")) {
+            assert!(ids.contains(&target.trim_start_matches('#')), "{sample}: {target}");
+        }
+    }
+}
+
+#[test]
+fn each_section_begins_with_a_sentence() {
+    for (sample, comparison) in samples() {
+        let html = html(&comparison).unwrap();
+        let document = parsed(&html);
+        for section in document.descendants().filter(|n| n.has_tag_name("section")) {
+            let id = section.attribute("id").unwrap();
+            let lead = section.descendants().find(|n| n.attribute("class") == Some("lead"));
+            let lead = lead.unwrap_or_else(|| panic!("{sample}: section {id} has no sentence"));
+            assert!(lead.text().unwrap().trim().ends_with('.'), "{sample}: {id}: {:?}", lead.text());
+        }
+    }
+}
+
+/// Three significant digits, written here once more.
+fn shown(value: f64) -> String {
+    let size = value.abs();
+    let text = match size {
+        _ if size == 0.0 => "0".to_owned(),
+        _ if size < 0.0999 => format!("{size:.4}"),
+        _ if size < 0.9995 => format!("{size:.3}"),
+        _ if size < 9.995 => format!("{size:.2}"),
+        _ if size < 99.95 => format!("{size:.1}"),
+        _ => format!("{size:.0}"),
+    };
+    if value < 0.0 { format!("−{text}") } else { text }
+}
+
+#[test]
+fn every_number_of_the_ladder_is_on_the_page() {
+    let mut comparison = rich(&Recipe::usual());
+    comparison.ladder[1].bias_n = -12.34;
+    let html = html(&comparison).unwrap();
+    let document = parsed(&html);
+    let section = document.descendants().find(|n| n.attribute("id") == Some("ladder")).unwrap();
+    let rows: Vec<_> = section.descendants().filter(|n| n.has_tag_name("tr")).skip(1).collect();
+    assert_eq!(rows.len(), comparison.ladder.len());
+    for (row, rung) in rows.into_iter().zip(&comparison.ladder) {
+        let cells: Vec<String> = row
+            .children()
+            .filter(roxmltree::Node::is_element)
+            .map(|cell| cell.descendants().find_map(|n| n.text()).unwrap_or_default().trim().to_owned())
+            .collect();
+        assert_eq!(cells[0], rung.title);
+        let numbers = [rung.rmse_n, rung.rmse_percent, rung.bias_n, rung.largest_n];
+        let optional = [rung.held_out_rmse_n, rung.half_gap_rmse_n];
+        let optional = optional.map(|v| v.map_or("–".to_owned(), shown));
+        let bias = if rung.bias_n > 0.0 { format!("+{}", shown(rung.bias_n)) } else { shown(rung.bias_n) };
+        let [rmse, percent, _, largest] = numbers.map(shown);
+        assert_eq!(cells[1..7], [rmse, percent, bias, largest, optional[0].clone(), optional[1].clone()]);
+        assert_eq!(cells[8], rung.fitted.to_string());
+    }
+}
+
+#[test]
+fn sentences_name_the_side_of_an_error() {
+    let html = html(&rich(&Recipe::usual())).unwrap();
+    let words = text(&parsed(&html));
+    assert!(words.contains("At 3 bar the base pulls"), "pressure");
+    assert!(
+        words.contains("too hard on average"),
+        "the base has no friction and no bladder: it pulls too hard"
+    );
+    assert!(words.contains("the friction is there in the right size"), "loops");
+    assert!(words.contains("1 outside the plausible range (a wrong cure)"), "parameters");
+    for tag in ["implausible: a wrong cure", "at the upper bound", "not determined by these data", "nuisance"]
+    {
+        assert!(words.contains(tag), "{tag}");
+    }
+}
+
+#[test]
+fn a_sign_that_changes_with_the_direction_is_said() {
+    let mut comparison = rich(&Recipe::usual());
+    let by = comparison.by.iter_mut().find(|by| by.variable == "direction").unwrap();
+    (by.bins[0].bias_n[1], by.bins[1].bias_n[1]) = (-9.0, 9.0);
+    let html = html(&comparison).unwrap();
+    assert!(
+        html.contains(
+            "the error changes sign, so something depends on the direction: friction or hysteresis"
+        )
+    );
+}
+
+#[test]
+fn markup_in_names_stays_text() {
+    let html = html(&hostile()).unwrap();
+    assert!(!html.contains("<script") && html.contains("&lt;script&gt;"));
+    let document = parsed(&html);
+    let heading = document.descendants().find(|n| n.has_tag_name("h1")).unwrap();
+    assert_eq!(heading.text().unwrap().trim(), "<script>alert(\"1\")</script> & 'b'");
+}
+
+#[test]
+fn correlated_pairs_are_listed_once() {
+    let html = html(&rich(&Recipe::usual())).unwrap();
+    assert_eq!(html.matches("−0.973</td>").count(), 1);
+    assert_eq!(html.matches("0.914</td>").count(), 1);
+}
+
+#[test]
+fn the_same_comparison_gives_the_same_bytes() {
+    let comparison = crowded();
+    assert_eq!(html(&comparison), html(&comparison));
+    assert_eq!(plots(&comparison), plots(&comparison));
+}
+
+#[test]
+fn what_can_not_be_drawn_is_refused_with_a_reason() {
+    let refused = |change: fn(&mut Comparison)| {
+        let mut comparison = rich(&Recipe::usual());
+        change(&mut comparison);
+        let error = html(&comparison).unwrap_err();
+        assert_eq!(plots(&comparison).unwrap_err().to_string(), error.to_string());
+        error
+    };
+    let error = refused(|c| c.scatter[3][1] = f64::NAN);
+    assert!(matches!(error, PlotError::Value { .. }), "{error}");
+    let error = refused(|c| c.ladder[2].rmse_n = f64::INFINITY);
+    assert!(error.to_string().starts_with("an error of the ladder is inf: only finite"), "{error}");
+    let error = refused(|c| c.maps[0].first_n.truncate(3));
+    assert_eq!(error.to_string(), "3 cells of a residual map where 60 are needed");
+    let error = refused(|c| c.contributions[0].parts[0].force_n.truncate(3));
+    assert!(matches!(error, PlotError::Lengths { .. }), "{error}");
+    let error = refused(|c| c.scatter[0] = [1e308, -1e308, 0.0]);
+    assert!(matches!(error, PlotError::Span { .. }), "{error}");
+}
