@@ -13,6 +13,7 @@ mod effect;
 pub mod expression;
 mod geometry;
 pub mod law;
+mod learnt;
 mod load;
 mod material;
 #[cfg(test)]
@@ -26,3 +27,4 @@ pub use card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, S
 pub use catalogue::{Catalogue, CatalogueError};
 pub use describe::{CardDocument, ParameterDocument, SignatureDocument, TwinDocument, describe, overview};
 pub use effect::{Balance, Effect, Input, Jet, LANES, Moment, Place, Reshaped, Setting};
+pub use learnt::{Known, known, learnt};

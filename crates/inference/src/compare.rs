@@ -115,17 +115,43 @@ pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Compar
     })
 }
 
-/// Fits the effects to the data, without the ladder. Returns the model with nuisances, and the fit.
+/// The effects fitted to the data, and the error before and after.
+#[derive(Debug, Clone)]
+pub struct Fitting {
+    /// The model with its effects, and the rig errors that were fitted along.
+    pub model: Model,
+    /// The fit.
+    pub fit: Fit,
+    /// What the data are.
+    pub data: DataSummary,
+    /// RMS error of the muscle as stated \[N\].
+    pub before_rmse_n: f64,
+    /// RMS error with the effects \[N\].
+    pub rmse_n: f64,
+    /// What no model can go below, if anything is known of it.
+    pub noise_floor: Option<NoiseFloor>,
+}
+
+/// Fits the effects to the data, without the ladder.
 ///
 /// # Errors
 /// As [`compare`].
-pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<(Model, Fit), InferenceError> {
+pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
     let mut analysis = Analysis::new(data, muscle, options)?;
     let base = analysis.climb(0, None)?;
-    analysis.measure_noise(&base);
+    analysis.check_match(&base)?;
+    let noise_floor = analysis.measure_noise(&base);
     let climbed = analysis.climb(options.effects.len(), None)?;
+    let rmse_n = residuals::summary(&analysis, &climbed.force).rmse;
     let Climbed { prepared, theta, fit, force } = climbed;
-    Ok((prepared.model, fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force))))
+    Ok(Fitting {
+        model: prepared.model,
+        fit: fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force)),
+        data: analysis.summary(),
+        before_rmse_n: residuals::summary(&analysis, &base.force).rmse,
+        rmse_n,
+        noise_floor,
+    })
 }
 
 impl<'a> Analysis<'a> {

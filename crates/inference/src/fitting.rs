@@ -1,10 +1,11 @@
 //! The fit: many starts on a thinned record, the best ones polished on all rows, and what is to be said about the result.
 
 use bulge_model::{Model, ModelError, Record, Wanted};
-use bulge_numerics::least_squares::{LeastSquaresError, Minimum, Options, Reason, Side, minimise};
+use bulge_numerics::least_squares::{
+    Bounds, LeastSquaresError, Minimum, Options, Reason, Side, minimise, starts_in_box,
+};
 
 use crate::fit::{Convergence, Fit, Fitted};
-use crate::halton::halton;
 use crate::interval;
 use crate::nuisance::Prepared;
 use crate::problem::{FitProblem, free};
@@ -14,6 +15,8 @@ use crate::weights::{Noise, effective_rows};
 const FEW_ROWS: usize = 400;
 /// Starting points, and where every answer takes an integration.
 const STARTS: [usize; 2] = [8, 3];
+/// Part of the plausible box at either end in which no start lies.
+const EDGE: f64 = 0.1;
 /// Minima of the thinned record that are polished on all rows.
 const POLISHED: usize = 2;
 /// Costs that differ by less than this part belong to the same minimum.
@@ -98,12 +101,9 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
         max_evaluations: if costly { 20 } else { 60 },
         ..Options::default()
     };
-    for number in 0..STARTS[usize::from(costly)] {
-        let coordinates = if number == 0 {
-            clamped(problem.coordinates(start), &bounds.lower, &bounds.upper)
-        } else {
-            scattered(prepared, &problem, start, number)
-        };
+    let mut starts = vec![clamped(problem.coordinates(start), &bounds.lower, &bounds.upper)];
+    starts.extend(scattered(prepared, &problem, start, STARTS[usize::from(costly)] - 1));
+    for coordinates in starts {
         tried += 1;
         match minimise(&problem, &coordinates, &bounds, &options) {
             Ok(minimum) => ends.push((minimum.cost, problem.theta(&minimum.theta))),
@@ -132,27 +132,26 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     })
 }
 
-/// A point of the plausible box; numbers with a narrow prior stay near its mean.
-fn scattered(prepared: &Prepared, problem: &FitProblem<'_>, start: &[f64], number: usize) -> Vec<f64> {
+/// Points of the plausible box, in the coordinates of the search; numbers with a narrow prior stay near its mean.
+fn scattered(prepared: &Prepared, problem: &FitProblem<'_>, start: &[f64], count: usize) -> Vec<Vec<f64>> {
     let model = &prepared.model;
-    let mut theta = start.to_vec();
-    for (place, index) in free(model).into_iter().enumerate() {
+    let (mut lowest, mut highest) = (start.to_vec(), start.to_vec());
+    for index in free(model) {
         let p = &model.parameters()[index];
-        let u = halton(number, place);
-        let (low, high) = (p.plausible.0.max(p.low), p.plausible.1.min(p.high));
         let (low, high) = match prepared.priors[index] {
-            Some((mean, sd)) if prepared.nuisance[index] => ((mean - sd).max(p.low), (mean + sd).min(p.high)),
-            _ => (low, high),
+            Some((mean, sd)) if prepared.nuisance[index] => (mean - sd, mean + sd),
+            _ => p.plausible,
         };
-        // Not on the ends: there effects may be off or absurd.
-        let u = 0.1 + 0.8 * u;
-        theta[index] = if p.logarithmic && low > 0.0 {
-            (low.ln() + u * (high.ln() - low.ln())).exp()
-        } else {
-            low + u * (high - low)
-        };
+        (lowest[index], highest[index]) = (low.max(p.low), high.min(p.high));
     }
-    problem.coordinates(&theta)
+    let (mut lower, mut upper) = (problem.coordinates(&lowest), problem.coordinates(&highest));
+    for (low, high) in lower.iter_mut().zip(&mut upper) {
+        // Not on the ends: there effects may be off or absurd.
+        let inset = EDGE * (*high - *low);
+        (*low, *high) = (*low + inset, *high - inset);
+    }
+    // Without a finite box there is only the start itself.
+    starts_in_box(count, &Bounds { lower, upper }).unwrap_or_default()
 }
 
 fn clamped(mut coordinates: Vec<f64>, lower: &[f64], upper: &[f64]) -> Vec<f64> {
@@ -181,8 +180,8 @@ fn weights(model: &Model, theta: &[f64], task: &Task<'_>) -> Result<Vec<f64>, Mo
 fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimum, ModelError> {
     let bounds = problem.bounds();
     let start = clamped(problem.coordinates(theta), &bounds.lower, &bounds.upper);
-    // Integrations answer to about 1e-9 of the force.
-    let tolerance = if quick { 1e-4 } else { 1e-6 };
+    // Numbers are then off by this part of sqrt(rows) standard deviations.
+    let tolerance = if quick { 1e-4 } else { 1e-5 };
     let options = Options { check_curvature: false, tolerance, max_evaluations: 200, ..Options::default() };
     minimise(problem, &start, &bounds, &options).map_err(|error| match error {
         LeastSquaresError::Start(error) => error,
@@ -241,8 +240,8 @@ fn report(
             Side::Lower => "lower",
             Side::Upper => "upper",
         });
-        let found =
-            interval::of(problem, minimum, place, &scale, fitted.at_bound.is_some() || !fitted.plausible);
+        let flagged = fitted.at_bound.is_some() || !fitted.plausible || !fitted.determined;
+        let found = interval::of(problem, minimum, place, &scale, flagged);
         fitted.interval = found.method;
         let factor = model.parameters()[index].factor;
         [fitted.low, fitted.high] = found.ends.map(|x| x / factor);

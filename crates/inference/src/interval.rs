@@ -1,6 +1,6 @@
 //! Intervals of fitted numbers: from the covariance, and from the profile of the likelihood where that can't be trusted.
 
-use bulge_numerics::least_squares::Minimum;
+use bulge_numerics::least_squares::{Bounds, Minimum, Options, ProfileEnd, profile};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::problem::FitProblem;
@@ -34,7 +34,11 @@ impl Scale {
     }
 }
 
-/// The interval of the free number `place`.
+/// Rows up to which a profile is affordable: each is some forty fits more.
+const MOST_ROWS: usize = 20_000;
+
+/// The interval of the free number `place`: from the covariance, or where that can't be trusted (`flagged`) from the profile of the likelihood,
+/// whose ends are where the sum of squares, minimised over all other numbers, has risen by the square of Student's quantile.
 pub(crate) fn of(
     problem: &FitProblem<'_>,
     minimum: &Minimum,
@@ -44,8 +48,15 @@ pub(crate) fn of(
 ) -> Interval {
     let bounds = problem.bounds();
     let back = |x: f64| if problem.is_logarithmic(place) { x.exp() } else { x };
+    let profiled = if flagged && problem.measured() <= MOST_ROWS {
+        profiled(problem, minimum, &bounds, place, scale)
+    } else {
+        None
+    };
+    if let Some(ends) = profiled {
+        return Interval { ends: ends.map(back), method: "profile" };
+    }
     let x = minimum.theta[place];
-    let _ = flagged;
     let sd = minimum.standard_deviations(scale.variance)[place];
     let ends = match sd {
         Some(sd) => [x - scale.quantile * sd, x + scale.quantile * sd],
@@ -53,4 +64,26 @@ pub(crate) fn of(
     };
     let ends = [ends[0].max(bounds.lower[place]), ends[1].min(bounds.upper[place])];
     Interval { ends: ends.map(back), method: "covariance" }
+}
+
+/// The ends of the profile; none if the searches over the other numbers fail.
+fn profiled(
+    problem: &FitProblem<'_>,
+    minimum: &Minimum,
+    bounds: &Bounds,
+    place: usize,
+    scale: &Scale,
+) -> Option<[f64; 2]> {
+    let rise = scale.quantile * scale.quantile * scale.variance;
+    // An end to a thousandth of a standard deviation is more than anybody reads.
+    let options =
+        Options { tolerance: 1e-4, check_curvature: false, max_evaluations: 60, ..Options::default() };
+    let found = profile(problem, minimum, bounds, &options, place, rise).ok()?;
+    let end = |end| match end {
+        ProfileEnd::Crossed(value)
+        | ProfileEnd::AtBound { value, .. }
+        | ProfileEnd::Unbounded { value, .. }
+        | ProfileEnd::Undefined { value, .. } => value,
+    };
+    Some([end(found.lower), end(found.upper)])
 }

@@ -9,10 +9,10 @@
 mod compare;
 mod comparison;
 mod error;
+mod extension;
 mod fit;
 mod fitting;
 mod floor;
-mod halton;
 mod interval;
 mod levels;
 mod loops;
@@ -24,11 +24,12 @@ mod rows;
 mod stack;
 mod weights;
 
-pub use compare::{Options, compare, fit_effects};
+pub use compare::{Fitting, Options, compare, fit_effects};
 pub use comparison::{
     Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, LeftOut, LoopGap, NoiseFloor, Part,
     ResidualMap, Rival, Rung, Stack,
 };
 pub use error::InferenceError;
+pub use extension::{Extension, extended};
 pub use fit::{Convergence, Fit, Fitted};
 pub use weights::{Noise, effective_rows};

@@ -13,6 +13,7 @@ mod answer;
 mod base;
 mod error;
 mod evaluate;
+mod extended;
 mod lattice;
 mod model;
 mod parameter;
@@ -20,6 +21,7 @@ mod record;
 
 pub use error::ModelError;
 pub use evaluate::{Prediction, Wanted};
+pub use extended::{Extended, ExtendedError};
 pub use model::{AtRest, Chosen, Model};
 pub use parameter::ModelParameter;
 pub use record::Record;

@@ -278,7 +278,7 @@ fn rows(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> Result<
 
 /// `at 3 bar`, `while lengthening`, `on specimen A`, `in sweep 4`.
 fn place(by: &Breakdown, bin: &Bin) -> String {
-    let label = || bin.label.replace("-", "−");
+    let label = || bin.label.replace('-', "−");
     match by.variable {
         "pressure" => format!("at {} bar", level(bin.at)),
         "direction" if bin.label == "at rest" => "at rest".to_owned(),

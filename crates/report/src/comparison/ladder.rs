@@ -135,7 +135,7 @@ fn held_out(comparison: &Comparison) -> String {
         return String::new();
     };
     let last = comparison.ladder.len() - 1;
-    match unseen().last() {
+    match unseen().next_back() {
         Some((i, _, at_last)) if i == last && at_last > 1.02 * error && place < last => format!(
             " On data held out of the fit the error is lowest with “{}” ({}): what was added after it fits these readings, not the muscle.",
             rung.title,

@@ -92,19 +92,16 @@ pub(super) fn render(comparison: &Comparison) -> Result<String, PlotError> {
 
 /// A text in which `commands` stand between backticks, as markup.
 fn code(text: &str) -> Value {
-    let mut markup = String::new();
-    let pieces: Vec<&str> = text.split('`').collect();
-    // An odd backtick is one.
-    let is_paired = pieces.len() % 2 == 1;
-    for (i, piece) in pieces.iter().enumerate() {
-        let piece = HtmlEscape(piece);
-        markup += &match (is_paired, i % 2 == 1) {
-            (true, true) => format!("<code>{piece}</code>"),
-            (false, true | false) if i > 0 => format!("`{piece}"),
-            _ => piece.to_string(),
-        };
+    let pieces: Vec<String> = text.split('`').map(|piece| HtmlEscape(piece).to_string()).collect();
+    // Backticks that don't come in pairs are letters.
+    if pieces.len().is_multiple_of(2) {
+        return Value::from_safe_string(pieces.join("`"));
     }
-    Value::from_safe_string(markup)
+    let marked = pieces.into_iter().enumerate().map(|(i, piece)| match i % 2 {
+        0 => piece,
+        _ => ["<code>", &piece, "</code>"].concat(),
+    });
+    Value::from_safe_string(marked.collect())
 }
 
 fn page(comparison: &Comparison) -> Result<Page<'_>, PlotError> {

@@ -97,27 +97,12 @@ impl Grid {
                 Some(value) => {
                     let colour = signed(value / most);
                     svg.rect(corner, (size.0 + 0.3, size.1 + 0.3), colour);
-                    self.draw_value(
-                        svg,
-                        (corner.0 + 0.5 * size.0, corner.1 + 0.5 * size.1),
-                        size,
-                        *value,
-                        most,
-                    );
+                    draw_value(svg, (corner.0 + 0.5 * size.0, corner.1 + 0.5 * size.1), size, *value, most);
                 }
                 None => svg.hatch(corner, size),
             }
         }
         self.draw_frame(svg, map, size);
-    }
-
-    /// The number in its cell, where there is room for it.
-    fn draw_value(&self, svg: &mut Svg, middle: (f64, f64), size: (f64, f64), value: f64, most: f64) {
-        let words = cell(value, most);
-        if width(&words, SMALL) + 3.0 < size.0 && size.1 >= 14.0 {
-            let colour: RGBColor = if (value / most).abs() > 0.7 { WHITE } else { INK };
-            svg.text(middle, &words, Style::new(Anchor::Middle).size(SMALL).colour(colour));
-        }
     }
 
     fn draw_frame(&self, svg: &mut Svg, map: &ResidualMap, size: (f64, f64)) {
@@ -141,6 +126,15 @@ impl Grid {
         let soft = Style::new(Anchor::Middle).colour(SOFT_INK);
         svg.text((self.left + 0.5 * self.width, bottom + 32.0), "contraction [%]", soft);
         svg.text_upwards((self.left - LEFT + 10.0, self.top + 0.5 * self.height), "p [bar]", soft);
+    }
+}
+
+/// The number in its cell, where there is room for it.
+fn draw_value(svg: &mut Svg, middle: (f64, f64), size: (f64, f64), value: f64, most: f64) {
+    let words = cell(value, most);
+    if width(&words, SMALL) + 3.0 < size.0 && size.1 >= 14.0 {
+        let colour: RGBColor = if (value / most).abs() > 0.7 { WHITE } else { INK };
+        svg.text(middle, &words, Style::new(Anchor::Middle).size(SMALL).colour(colour));
     }
 }
 

@@ -3,6 +3,8 @@
 //! Plotters draws one element for every mark, in whole units, and knows neither hatching nor tabular figures; a report holds thousands of marks
 //! and is read on paper.
 
+use std::fmt::{self, Write};
+
 use plotters::style::RGBColor;
 
 use crate::palette::{INK, hex};
@@ -105,6 +107,12 @@ impl Svg {
         Self { name, width, height, body: String::new(), hatched: false }
     }
 
+    /// Adds markup.
+    fn put(&mut self, markup: fmt::Arguments<'_>) {
+        // A `String` takes all that is written to it.
+        let _ = self.body.write_fmt(markup);
+    }
+
     /// A text whose middle line is at `y`.
     pub(super) fn text(&mut self, (x, y): (f64, f64), words: &str, style: Style) {
         self.words(words, style, &format!(r#"x="{}" y="{}""#, short(x), short(y)));
@@ -123,24 +131,24 @@ impl Svg {
             Anchor::End => "end",
         };
         let weight = if style.bold { r#" font-weight="600""# } else { "" };
-        self.body += &format!(
+        self.put(format_args!(
             "<text {place} dy=\".35em\" text-anchor=\"{anchor}\" font-size=\"{}\" fill=\"{}\"{weight}>{}</text>\n",
             short(style.size),
             hex(style.colour),
             escape(words)
-        );
+        ));
     }
 
     /// A straight line.
     pub(super) fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), stroke: Stroke) {
-        self.body += &format!(
+        self.put(format_args!(
             "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>\n",
             short(x1),
             short(y1),
             short(x2),
             short(y2),
             stroke.attributes()
-        );
+        ));
     }
 
     /// A line through points.
@@ -148,17 +156,17 @@ impl Svg {
         if points.len() < 2 {
             return;
         }
-        self.body += &format!(
+        self.put(format_args!(
             "<polyline points=\"{}\" fill=\"none\" stroke-linejoin=\"round\" {}/>\n",
             listed(points),
             stroke.attributes()
-        );
+        ));
     }
 
     /// A filled area.
     pub(super) fn polygon(&mut self, points: &[(f64, f64)], fill: RGBColor) {
         if points.len() >= 3 {
-            self.body += &format!("<polygon points=\"{}\" fill=\"{}\"/>\n", listed(points), hex(fill));
+            self.put(format_args!("<polygon points=\"{}\" fill=\"{}\"/>\n", listed(points), hex(fill)));
         }
     }
 
@@ -175,13 +183,13 @@ impl Svg {
     }
 
     fn rectangle(&mut self, (x, y): (f64, f64), (width, height): (f64, f64), fill: &str) {
-        self.body += &format!(
+        self.put(format_args!(
             "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{fill}\"/>\n",
             short(x.min(x + width)),
             short(y.min(y + height)),
             short(width.abs()),
             short(height.abs())
-        );
+        ));
     }
 
     /// Round dots, all in one element: lines of no length with round caps.
@@ -189,23 +197,25 @@ impl Svg {
         if points.is_empty() {
             return;
         }
-        let path: String = points.iter().map(|(x, y)| format!("M{} {}h0", short(*x), short(*y))).collect();
-        self.body += &format!(
+        let places: Vec<String> =
+            points.iter().map(|(x, y)| format!("M{} {}h0", short(*x), short(*y))).collect();
+        let path = places.concat();
+        self.put(format_args!(
             "<path d=\"{path}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-opacity=\"{}\"/>\n",
             hex(colour),
             short(2.0 * radius),
             short(opacity)
-        );
+        ));
     }
 
     /// A diamond with a light edge, which stands out on bars.
     pub(super) fn diamond(&mut self, (x, y): (f64, f64), radius: f64, colour: RGBColor) {
         let points = [(x - radius, y), (x, y - radius), (x + radius, y), (x, y + radius)];
-        self.body += &format!(
+        self.put(format_args!(
             "<polygon points=\"{}\" fill=\"{}\" stroke=\"#FFFFFF\" stroke-width=\"1\"/>\n",
             listed(&points),
             hex(colour)
-        );
+        ));
     }
 
     /// The document.

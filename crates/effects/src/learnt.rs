@@ -1,0 +1,188 @@
+//! Effects in muscle files: `[effects.NAME]` tables as effects with their numbers, and back.
+
+use bulge_muscles::{Dimension, FileError, Learnt, LearntValue, Muscle, MuscleError, units};
+use std::sync::Arc;
+
+use crate::card::ParameterCard;
+use crate::catalogue::Catalogue;
+use crate::effect::Effect;
+
+/// An effect with its numbers \[SI\], in the order of [`Effect::parameters`].
+pub type Known = (Arc<dyn Effect>, Vec<f64>);
+
+/// The effects that a muscle states in tables of their own, with their numbers, in the order of the file.
+///
+/// The effects that shape a muscle and have fields in it ([`bulge_muscles::SHAPE_EFFECTS`]) are not among them: they are in the muscle already.
+///
+/// ```
+/// use bulge_effects::{Catalogue, known};
+///
+/// let text = "name = \"x\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n
+/// [effects.coulomb-friction]\nforce = \"14 N\"\n";
+/// let muscle = bulge_muscles::from_toml(text, "muscle.toml")?;
+/// let (friction, numbers) = &known(&muscle, &Catalogue::builtin())?[0];
+/// assert_eq!((friction.card().name, numbers.as_slice()), ("coulomb-friction", [14.0].as_slice()));
+/// # Ok::<(), bulge_muscles::FileError>(())
+/// ```
+///
+/// # Errors
+/// With the place in the file: a name that is not in the catalogue, an effect of the other kind of muscle, a key that the effect doesn't
+/// have, one that is missing, a quantity of another dimension, or a value out of the effect's bounds.
+pub fn known(muscle: &Muscle, catalogue: &Catalogue) -> Result<Vec<Known>, FileError> {
+    let names: Vec<&str> = catalogue.iter().map(|effect| effect.card().name).collect();
+    muscle.check_learnt(&names)?;
+    let one = |stated: &Learnt| {
+        let effect = catalogue
+            .find(stated.name())
+            .map_err(|error| stated.error(error.to_string(), "take the table out"))?;
+        Ok((Arc::clone(effect), numbers(stated, effect.as_ref(), muscle)?))
+    };
+    muscle.learnt().iter().map(one).collect()
+}
+
+/// The table of an effect with these numbers \[SI\] and their standard deviations, where they are known.
+///
+/// # Errors
+/// If a number is not finite, or one is missing.
+pub fn learnt(effect: &dyn Effect, numbers: &[f64], widths: &[Option<f64>]) -> Result<Learnt, MuscleError> {
+    let name = effect.card().name.to_owned();
+    let value = |(i, card): (usize, &ParameterCard<'_>)| LearntValue {
+        key: card.key.to_owned(),
+        si: numbers.get(i).copied().unwrap_or(f64::NAN),
+        dimension: dimension(card),
+        unit: card.unit.to_owned(),
+        width: widths.get(i).copied().flatten().filter(|width| width.is_finite() && *width > 0.0),
+    };
+    Learnt::new(name, effect.parameters().iter().enumerate().map(value).collect())
+}
+
+/// The dimension of a number, from its unit. A unit that nobody knows is none.
+fn dimension(card: &ParameterCard<'_>) -> Dimension {
+    units::unit(card.unit).map_or(Dimension::NONE, |(_, dimension)| dimension)
+}
+
+fn numbers(stated: &Learnt, effect: &dyn Effect, muscle: &Muscle) -> Result<Vec<f64>, FileError> {
+    let card = effect.card();
+    if let Some(owner) = card.kind.filter(|owner| *owner != muscle.kind()) {
+        let what = format!(
+            "`{}` is an effect of {} muscles, and this one is {}",
+            card.name,
+            owner.name(),
+            muscle.kind().name()
+        );
+        return Err(stated.error(what, "take the table out"));
+    }
+    let cards = effect.parameters();
+    let keys: Vec<String> = cards.iter().map(|card| format!("`{}`", card.key)).collect();
+    if let Some(strange) = stated.values().iter().find(|v| cards.iter().all(|card| card.key != v.key)) {
+        let what = format!("the effect `{}` has no `{}`", card.name, strange.key);
+        let has = if keys.is_empty() { "no numbers at all".to_owned() } else { keys.join(", ") };
+        return Err(stated.value_error(&strange.key, what, format!("it has {has}")));
+    }
+    cards.iter().map(|number| value(stated, &number.of(muscle))).collect()
+}
+
+fn value(stated: &Learnt, card: &ParameterCard<'_>) -> Result<f64, FileError> {
+    let example = format!("write `{} = \"{}\"`", card.key, shown(card.typical, card));
+    let Some(value) = stated.value(card.key) else {
+        let what = format!("the effect `{}` needs `{}`, {}", stated.name(), card.key, card.about);
+        return Err(stated.error(what, example));
+    };
+    if value.dimension != dimension(card) {
+        let what =
+            format!("`{}` is {}, not {}", card.key, dimension(card).describe(), value.dimension.describe());
+        return Err(stated.value_error(card.key, what, example));
+    }
+    // What a fit left on a bound may be off it by rounding.
+    let slack = 1e-12 * (card.high - card.low).abs();
+    if !(card.low - slack..=card.high + slack).contains(&value.si) {
+        let what = format!(
+            "`{}` = {} is out of the bounds of the effect `{}`",
+            card.key,
+            shown(value.si, card),
+            stated.name()
+        );
+        let instead = format!("it lies between {} and {}", shown(card.low, card), shown(card.high, card));
+        return Err(stated.value_error(card.key, what, instead));
+    }
+    Ok(value.si.clamp(card.low, card.high))
+}
+
+/// A number in the unit of its card.
+fn shown(si: f64, card: &ParameterCard<'_>) -> String {
+    // Twelve digits hide the rounding of the change of units.
+    let number = si / card.factor;
+    let rounded: f64 = format!("{number:.11e}").parse().unwrap_or(number);
+    format!("{rounded} {}", card.unit).trim_end().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_muscles::{Quantity, SHAPE_EFFECTS, from_toml, preset, to_toml};
+
+    fn with(kind: &str, table: &str) -> Result<Vec<Known>, FileError> {
+        let text = if kind == "pleated" {
+            "name = \"x\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n"
+        } else {
+            "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\n"
+        };
+        known(&from_toml(&format!("{text}\n{table}\n"), "m.toml").unwrap(), &Catalogue::builtin())
+    }
+
+    #[test]
+    fn every_effect_survives_a_file() {
+        let catalogue = Catalogue::builtin();
+        for name in ["ppam-2-r16", "dmsp-20-250"] {
+            let muscle = preset(name).unwrap();
+            for effect in catalogue.iter().filter(|e| e.card().kind.is_none_or(|k| k == muscle.kind())) {
+                if SHAPE_EFFECTS.contains(&effect.card().name) {
+                    continue;
+                }
+                let cards: Vec<_> = effect.parameters().into_iter().map(|card| card.of(&muscle)).collect();
+                for card in &cards {
+                    let (factor, _) = units::unit(card.unit).unwrap();
+                    assert!(
+                        (factor / card.factor - 1.0).abs() < 1e-12,
+                        "{}: {}",
+                        effect.card().name,
+                        card.unit
+                    );
+                }
+                let theta: Vec<f64> =
+                    cards.iter().map(|c| (0.37 * c.high + 0.63 * c.typical).clamp(c.low, c.high)).collect();
+                let widths: Vec<Option<f64>> = cards.iter().map(|c| Some(0.013 * (c.high - c.low))).collect();
+                let stated = learnt(effect.as_ref(), &theta, &widths).unwrap();
+                let text = to_toml(&muscle.clone().with_learnt(stated));
+                let back = from_toml(&text, "m.toml").unwrap();
+                let found = known(&back, &catalogue).unwrap();
+                assert_eq!(found.len(), 1, "{text}");
+                assert_eq!((found[0].0.card().name, &found[0].1), (effect.card().name, &theta), "{text}");
+            }
+            assert!(muscle.length().si() > 0.0);
+        }
+    }
+
+    #[test]
+    fn mistakes_are_named_with_their_place() {
+        for (kind, table, parts) in [
+            ("pleated", "[effects.coulomb-frction]\nforce = \"1 N\"", ["m.toml:7:10", "`coulomb-friction`"]),
+            ("pleated", "[effects.coulomb-friction]\nfroce = \"1 N\"", ["m.toml:8:", "it has `force`"]),
+            ("pleated", "[effects.coulomb-friction]", ["m.toml:7:10", "needs `force`"]),
+            ("pleated", "[effects.coulomb-friction]\nforce = \"1 mm\"", ["m.toml:8:", "not a length"]),
+            ("pleated", "[effects.coulomb-friction]\nforce = \"-1 N\"", ["m.toml:8:", "between 0 N and"]),
+            ("pleated", "[effects.radius-error]\nradius = \"10 mm\"", ["m.toml:7:10", "braided muscles"]),
+            (
+                "braided",
+                "[effects.radius-error]\nradius = \"90 mm\"",
+                ["m.toml:8:", "between 5 mm and 20 mm"],
+            ),
+        ] {
+            let message = with(kind, table).unwrap_err().to_string();
+            for part in parts {
+                assert!(message.contains(part), "{message:?} does not say {part:?}");
+            }
+        }
+        assert_eq!(with("braided", "[effects.end-taper]").unwrap().len(), 1);
+    }
+}

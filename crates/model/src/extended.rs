@@ -1,0 +1,323 @@
+//! A muscle with the effects that its file states: what it pulls at rest when asked for a shape or a characteristic.
+//!
+//! Effects that change the shape or the input change the muscle that is solved; effects of the load add their force at rest (no direction, no
+//! rate, no time). What belongs to a rig or to one specimen is left out: it is no part of the muscle.
+
+use bulge_effects::{Group, Known, Moment};
+use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
+use bulge_muscles::{Muscle, Pressure, Quantity};
+
+use crate::error::ModelError;
+use crate::evaluate::Wanted;
+use crate::model::Model;
+use crate::record::Record;
+
+/// Newton steps for a force to be met.
+const MOST_STEPS: usize = 60;
+/// Longest of them, in contraction.
+const MOST_STEP: f64 = 0.05;
+
+/// A muscle with the effects that its file states.
+#[derive(Debug, Clone)]
+pub struct Extended {
+    /// Reshaped, and without the effects.
+    muscle: Muscle,
+    model: Model,
+    /// Whether the force differs from that of the equilibrium of `muscle`.
+    adds: bool,
+    used: Vec<String>,
+    left_out: Vec<String>,
+}
+
+/// Force and its slopes at a point.
+#[derive(Debug, Clone, Copy)]
+struct Pull {
+    force: f64,
+    by_pressure: f64,
+    by_contraction: f64,
+}
+
+impl Extended {
+    /// A muscle with effects and their numbers, as [`bulge_effects::known`] reads them from it.
+    ///
+    /// # Errors
+    /// If the muscle can't have an effect, or not with these numbers.
+    pub fn new(muscle: &Muscle, known: &[Known]) -> Result<Self, ModelError> {
+        let plain = muscle.clone().without_learnt();
+        let mut model = Model::new(&plain);
+        let (mut used, mut left_out) = (Vec::new(), Vec::new());
+        for (effect, numbers) in known {
+            let card = effect.card();
+            if matches!(card.group, Group::Rig | Group::Specimen) {
+                left_out.push(card.name.to_owned());
+                continue;
+            }
+            used.push(card.name.to_owned());
+            model = model.with(effect, Some(numbers))?;
+        }
+        let muscle = model.reshaped(&model.start())?;
+        let adds = !model.effects().is_empty();
+        Ok(Self { muscle, model, adds, used, left_out })
+    }
+
+    /// The muscle whose equilibrium is solved: as stated, with the effects that change its shape.
+    #[must_use]
+    pub fn muscle(&self) -> &Muscle {
+        &self.muscle
+    }
+
+    /// Whether the force differs from that of the equilibrium of [`Extended::muscle`].
+    #[must_use]
+    pub fn adds_force(&self) -> bool {
+        self.adds
+    }
+
+    /// Names of the effects that take part.
+    #[must_use]
+    pub fn used(&self) -> &[String] {
+        &self.used
+    }
+
+    /// Names of effects of a rig or a specimen, which take no part.
+    #[must_use]
+    pub fn left_out(&self) -> &[String] {
+        &self.left_out
+    }
+
+    /// An equilibrium of [`Extended::muscle`] with the force and the stiffness that the effects make of it. Its contraction becomes that from
+    /// the stated length, where an effect says that the fibres have another one.
+    ///
+    /// The gas stiffness follows with the force's derivative by the pressure, F_p:  K_gas = K' + (K_gas0 - K0) F_p'/F_p.
+    ///
+    /// # Errors
+    /// If an effect gives no finite force there.
+    pub fn complete(&self, response: &Response) -> Result<Response, ModelError> {
+        if !self.adds {
+            return Ok(*response);
+        }
+        let p = response.pressure_pa;
+        let contraction = self.stated_contraction(response);
+        let with = pull(&self.model, p, contraction)?;
+        let without = pull(&Model::new(&self.muscle), p, response.contraction)?;
+        let slope = |pull: &Pull, muscle: &Muscle| -pull.by_contraction / muscle.length().si();
+        let added = slope(&with, self.model.muscle()) - slope(&without, &self.muscle);
+        let stiffness = response.stiffness_n_per_m + added;
+        let ratio = with.by_pressure / without.by_pressure;
+        let gas = |closed: f64| stiffness + (closed - response.stiffness_n_per_m) * ratio;
+        Ok(Response {
+            contraction,
+            force_n: response.force_n + (with.force - without.force),
+            stiffness_n_per_m: stiffness,
+            stiffness_isothermal_n_per_m: gas(response.stiffness_isothermal_n_per_m),
+            stiffness_adiabatic_n_per_m: gas(response.stiffness_adiabatic_n_per_m),
+            ..*response
+        })
+    }
+
+    /// The contraction of an equilibrium from the stated length.
+    fn stated_contraction(&self, response: &Response) -> f64 {
+        let stated = self.model.muscle().length().si();
+        if stated.to_bits() == self.muscle.length().si().to_bits() {
+            return response.contraction;
+        }
+        1.0 - response.length_m / stated
+    }
+
+    /// What to ask of [`Extended::muscle`] for what is asked of the muscle with its effects; not for a force.
+    #[must_use]
+    pub fn given(&self, given: Given) -> Given {
+        let stated = self.model.muscle().length().si();
+        match given {
+            Given::Contraction(e) if stated.to_bits() != self.muscle.length().si().to_bits() => {
+                Given::Length(stated * (1.0 - e))
+            }
+            _ => given,
+        }
+    }
+
+    /// The contraction at which the muscle with its effects has a given force, length or volume, and the completed equilibrium there.
+    ///
+    /// # Errors
+    /// What [`Problem::solve`] says, or if no contraction gives the force.
+    pub fn solve(
+        &self,
+        pressure: Pressure,
+        given: Given,
+        approach: Approach,
+    ) -> Result<Response, ExtendedError> {
+        let problem = Problem::new(&self.muscle, pressure)?;
+        let mut found = self.complete(&problem.solve(self.given(given), approach)?)?;
+        let Given::Force(wanted) = given else { return Ok(found) };
+        for _ in 0..MOST_STEPS {
+            let off = found.force_n - wanted;
+            // As exact as the solver itself.
+            if off.abs() <= 1e-10 * (wanted.abs() + found.force_n.abs()) + 1e-9 || !self.adds {
+                return Ok(found);
+            }
+            let slope = -found.stiffness_n_per_m * self.model.muscle().length().si();
+            let step = (-off / slope).clamp(-MOST_STEP, MOST_STEP);
+            if !step.is_finite() || slope >= 0.0 {
+                break;
+            }
+            let next = self.given(Given::Contraction(found.contraction + step));
+            found = self.complete(&problem.solve(next, approach)?)?;
+        }
+        Err(ExtendedError::Force { wanted, contraction: found.contraction, force: found.force_n })
+    }
+
+    /// The contraction at which the muscle with its effects pulls no more; none beyond the limit of the equilibrium alone.
+    ///
+    /// # Errors
+    /// As [`Extended::solve`].
+    pub fn contraction_limit(&self, pressure: Pressure, approach: Approach) -> Result<f64, ExtendedError> {
+        let problem = Problem::new(&self.muscle, pressure)?;
+        let limit = problem.contraction_limit(approach)?;
+        if !self.adds {
+            return Ok(limit);
+        }
+        let last = self.complete(&problem.solve(Given::Contraction(limit), approach)?)?;
+        if last.force_n >= 0.0 {
+            return Ok(last.contraction);
+        }
+        Ok(self.solve(pressure, Given::Force(0.0), approach)?.contraction)
+    }
+}
+
+/// Why a muscle with effects has no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum ExtendedError {
+    /// Of the equilibrium.
+    #[error("{0}")]
+    Equilibrium(Box<FibreError>),
+    /// Of an effect.
+    #[error("{0}")]
+    Model(Box<ModelError>),
+    /// No contraction gives the force.
+    #[error(
+        "no contraction was found at which the muscle with its effects pulls {wanted} N: at {:.3} % it pulls {force:.3} N", 100.0 * contraction
+    )]
+    Force {
+        /// The force asked for \[N\].
+        wanted: f64,
+        /// The last contraction.
+        contraction: f64,
+        /// The force there \[N\].
+        force: f64,
+    },
+}
+
+impl From<FibreError> for ExtendedError {
+    fn from(error: FibreError) -> Self {
+        Self::Equilibrium(Box::new(error))
+    }
+}
+
+impl From<ModelError> for ExtendedError {
+    fn from(error: ModelError) -> Self {
+        Self::Model(Box::new(error))
+    }
+}
+
+fn pull(model: &Model, pressure: f64, contraction: f64) -> Result<Pull, ModelError> {
+    let moment = Moment::at_rest(pressure, contraction);
+    let record = Record::from_moments(vec![moment], vec![0.0], std::iter::once(0..1).collect())
+        .ok_or(ModelError::Values { given: 0, expected: 1 })?;
+    let wanted = Wanted { parameters: Vec::new(), readings: true };
+    let found = model.evaluate(&record, &model.start(), &wanted)?;
+    Ok(Pull {
+        force: found.force[0],
+        by_pressure: found.by_pressure[0],
+        by_contraction: found.by_contraction[0],
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::{Catalogue, known};
+    use bulge_muscles::from_toml;
+
+    fn bar3() -> Pressure {
+        Pressure::bar(3.0)
+    }
+
+    fn braid(tables: &str) -> Extended {
+        let text = format!(
+            "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\n\n{tables}\n"
+        );
+        let muscle = from_toml(&text, "m.toml").unwrap();
+        Extended::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
+    }
+
+    const HOOP: &str =
+        "[effects.radius-error]\nradius = \"10.7 mm\"\n[effects.hoop-elasticity]\nstiffness = \"20 kN/m\"";
+
+    #[test]
+    fn a_radius_is_the_radius() {
+        let learnt = braid("[effects.radius-error]\nradius = \"10.7 mm\"");
+        let text = "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10.7 mm\"\nbraid_angle = \"25 deg\"\n";
+        let wide = Problem::new(&from_toml(text, "w.toml").unwrap(), bar3()).unwrap();
+        let wide = wide.solve(Given::Contraction(0.1), Approach::Auto).unwrap();
+        let found = learnt.solve(bar3(), Given::Contraction(0.1), Approach::Auto).unwrap();
+        assert!((found.force_n / wide.force_n - 1.0).abs() < 1e-12);
+        assert_eq!(found.volume_m3.to_bits(), wide.volume_m3.to_bits());
+    }
+
+    #[test]
+    fn stiffness_is_the_slope_of_the_completed_force() {
+        let muscle = braid(HOOP);
+        let at = |e: f64| muscle.solve(bar3(), Given::Contraction(e), Approach::Auto).unwrap();
+        let h = 1e-5;
+        let slope = -(at(0.1 + h).force_n - at(0.1 - h).force_n) / (2.0 * h * 0.25);
+        assert!((at(0.1).stiffness_n_per_m / slope - 1.0).abs() < 1e-6);
+        // The gas stiffens by the force per pressure: the same ratio for any exponent.
+        let (here, plain) = (at(0.1), Problem::new(muscle.muscle(), bar3()).unwrap());
+        let plain = plain.solve(Given::Contraction(0.1), Approach::Auto).unwrap();
+        let gas = |r: &Response, k: f64| k - r.stiffness_n_per_m;
+        let ratio =
+            gas(&here, here.stiffness_isothermal_n_per_m) / gas(&plain, plain.stiffness_isothermal_n_per_m);
+        let other =
+            gas(&here, here.stiffness_adiabatic_n_per_m) / gas(&plain, plain.stiffness_adiabatic_n_per_m);
+        assert!((ratio / other - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn forces_are_met_and_the_limit_pulls_nothing() {
+        let muscle = braid(HOOP);
+        let found = muscle.solve(bar3(), Given::Force(200.0), Approach::Auto).unwrap();
+        assert!((found.force_n - 200.0).abs() < 1e-6);
+        let alone = Problem::new(muscle.muscle(), bar3()).unwrap();
+        let limit = muscle.contraction_limit(bar3(), Approach::Auto).unwrap();
+        assert!(limit < alone.contraction_limit(Approach::Auto).unwrap() - 1e-3);
+        let there = muscle.solve(bar3(), Given::Contraction(limit), Approach::Auto).unwrap();
+        assert!(there.force_n.abs() < 1e-6);
+        assert!(muscle.solve(bar3(), Given::Force(1e6), Approach::Auto).is_err());
+    }
+
+    #[test]
+    fn other_fibres_are_asked_for_by_the_stated_length() {
+        let muscle = braid("[effects.fibre-length]\nexcess = \"1 %\"");
+        let found = muscle.solve(bar3(), Given::Contraction(0.1), Approach::Auto).unwrap();
+        assert!((found.length_m - 0.225).abs() < 1e-12 && (found.contraction - 0.1).abs() < 1e-12);
+        // A cylinder of 252.5 mm at the same length.
+        let plain = Problem::new(muscle.muscle(), bar3()).unwrap();
+        let plain = plain.solve(Given::Length(0.225), Approach::Auto).unwrap();
+        assert!((found.force_n / plain.force_n - 1.0).abs() < 1e-9);
+        assert!((found.stiffness_n_per_m / plain.stiffness_n_per_m - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_rig_is_no_part_of_the_muscle() {
+        let muscle =
+            braid("[effects.force-offset]\noffset = \"10 N\"\n[effects.coulomb-friction]\nforce = \"14 N\"");
+        assert_eq!(
+            (muscle.used(), muscle.left_out()),
+            (["coulomb-friction".to_owned()].as_slice(), ["force-offset".to_owned()].as_slice())
+        );
+        let plain =
+            Problem::new(muscle.muscle(), bar3()).unwrap().solve(Given::Contraction(0.1), Approach::Auto);
+        let found = muscle.solve(bar3(), Given::Contraction(0.1), Approach::Auto).unwrap();
+        // Friction has no direction at rest.
+        assert_eq!(found.force_n.to_bits(), plain.unwrap().force_n.to_bits());
+    }
+}
