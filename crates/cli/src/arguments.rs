@@ -1,7 +1,8 @@
 //! What several commands take: the muscle, quantities with units, the method.
 
-use bulge_effects::{Catalogue, Effect};
+use bulge_effects::{Catalogue, Effect, known};
 use bulge_fibre::{Approach, FibreError};
+use bulge_model::{Extended, ExtendedError};
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Muscle, PRESETS, Pressure, preset, read, units};
 use clap::ValueEnum;
@@ -42,11 +43,12 @@ pub(crate) fn muscle(name: &str) -> Result<Muscle, Failure> {
     Ok(read(name)?)
 }
 
-/// The muscle, if every effect that its file states is one of the catalogue or shapes the muscle.
-pub(crate) fn known(muscle: Muscle, catalogue: &Catalogue) -> Result<Muscle, Failure> {
-    let names: Vec<&str> = catalogue.iter().map(|effect| effect.card().name).collect();
-    muscle.check_learnt(&names)?;
-    Ok(muscle)
+/// A muscle with the effects that its file states, from the built-in ones and the user's own.
+pub(crate) fn extended(name: &str, own: Option<&Path>) -> Result<(Muscle, Extended), Failure> {
+    let muscle = muscle(name)?;
+    let known = known(&muscle, &catalogue(own)?)?;
+    let extended = Extended::new(&muscle, &known)?;
+    Ok((muscle, extended))
 }
 
 /// A quantity with its unit.
@@ -66,6 +68,16 @@ pub(crate) fn about(muscle: &Muscle, pressure: Pressure) -> impl Fn(FibreError) 
         muscle: muscle.clone(),
         pressure: pressure.clone(),
         source: Box::new(source),
+    }
+}
+
+/// The same of a muscle with its effects.
+pub(crate) fn about_extended(muscle: &Muscle, pressure: Pressure) -> impl Fn(ExtendedError) -> Failure {
+    let about = about(muscle, pressure);
+    move |error| match error {
+        ExtendedError::Equilibrium(source) => about(*source),
+        ExtendedError::Model(source) => Failure::Model(source),
+        ExtendedError::Force { .. } => Failure::Extended(Box::new(error)),
     }
 }
 

@@ -1,12 +1,13 @@
 //! `bulge compare`: model against measurement, and the error as effects are added.
 
-use bulge_effects::Effect;
 use bulge_effects::law::{Law, LawGeometry};
+use bulge_effects::{Effect, known};
 use bulge_inference::{Comparison, Fit, Options, compare};
 use bulge_measurements::Data;
+use bulge_report::comparison::{html, plots};
 use clap::Args;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::arguments;
@@ -38,7 +39,7 @@ pub(crate) struct CompareCommand {
     /// Fit every force law of the papers to the same data, for comparison
     #[arg(long)]
     rivals: bool,
-    /// Folder for compare.json
+    /// Folder for report.html, the plots as SVG files, and compare.json
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// One JSON document on standard output
@@ -49,10 +50,11 @@ pub(crate) struct CompareCommand {
 impl CompareCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
-        let muscle = arguments::known(arguments::muscle(&self.muscle)?, &catalogue)?;
+        let muscle = arguments::muscle(&self.muscle)?;
+        let known = known(&muscle, &catalogue)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = Data::read(&self.data)?;
-        let mut options = Options::new(catalogue, effects);
+        let mut options = Options { known, ..Options::new(catalogue, effects) };
         options.rivals = self.rivals;
         if let Some(name) = &self.law {
             let law = Law::find(name).ok_or_else(|| no_law(name))?;
@@ -63,13 +65,27 @@ impl CompareCommand {
         let document = serde_json::to_string_pretty(&comparison)? + "\n";
         let mut wrote = String::new();
         if let Some(folder) = &self.out {
-            files::folder(folder)?;
-            let path = folder.join("compare.json");
-            files::write(&path, document.as_bytes())?;
-            let _ = writeln!(wrote, "  wrote {}", path.display());
+            for path in report(folder, &comparison, &document)? {
+                let _ = writeln!(wrote, "  wrote {}", path.display());
+            }
         }
         if self.json { Ok(document) } else { Ok(text(&comparison, &options.effects) + &wrote) }
     }
+}
+
+/// Writes the report: a page, its plots one by one, and the numbers. Returns what to look at first.
+fn report(folder: &Path, comparison: &Comparison, document: &str) -> Result<[PathBuf; 2], Failure> {
+    // Everything is made before anything is written.
+    let page = html(comparison)?;
+    let plots = plots(comparison)?;
+    files::folder(folder)?;
+    for plot in &plots {
+        files::write(&folder.join(format!("{}.svg", plot.name)), plot.svg.as_bytes())?;
+    }
+    let [numbers, first] = [folder.join("compare.json"), folder.join("report.html")];
+    files::write(&numbers, document.as_bytes())?;
+    files::write(&first, page.as_bytes())?;
+    Ok([first, numbers])
 }
 
 fn no_law(name: &str) -> Failure {

@@ -1,7 +1,7 @@
 //! `bulge curve`: isobaric characteristics.
 
-use bulge_effects::Catalogue;
-use bulge_fibre::{Given, Isobar, Problem, Shape, isobars};
+use bulge_fibre::{Given, Isobar, Problem, Shape};
+use bulge_model::Extended;
 use bulge_muscles::units::{self, Quantity};
 use bulge_muscles::{Muscle, Pressure, Ratio};
 use bulge_vtk::write_series;
@@ -10,7 +10,7 @@ use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::arguments::{MethodArgument, about, known, list, muscle};
+use crate::arguments::{MethodArgument, about, about_extended, extended, list};
 use crate::characteristics;
 use crate::failure::Failure;
 use crate::files;
@@ -51,6 +51,9 @@ pub(crate) struct CurveCommand {
     /// Number of frames of the time series
     #[arg(long, default_value_t = 41)]
     frames: usize,
+    /// Your own effects, where the muscle file states them
+    #[arg(long, value_name = "FILE")]
+    effects: Option<PathBuf>,
     /// One JSON document on standard output
     #[arg(long)]
     json: bool,
@@ -58,7 +61,8 @@ pub(crate) struct CurveCommand {
 
 impl CurveCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        let muscle = known(muscle(&self.muscle)?, &Catalogue::builtin())?;
+        let (_, extended) = extended(&self.muscle, self.effects.as_deref())?;
+        let muscle = extended.muscle().clone();
         let pressures: Vec<Pressure> = list("--pressure", &self.pressure)?;
         self.check()?;
         if self.points.saturating_mul(pressures.len()) > MAX_POINTS {
@@ -76,9 +80,10 @@ impl CurveCommand {
             });
         }
         let first = pressures.first().copied().unwrap_or(Pressure::pa(0.0));
-        let contractions = self.contractions(&muscle, first)?;
-        let isobars = isobars(&muscle, &pressures, &contractions, self.method.approach())
-            .map_err(about(&muscle, first))?;
+        let contractions = self.contractions(&extended, first)?;
+        let isobars = extended
+            .isobars(&pressures, &contractions, self.method.approach())
+            .map_err(about_extended(&muscle, first))?;
         for isobar in &isobars {
             if let (true, Some((_, error))) = (isobar.points.is_empty(), isobar.without.first()) {
                 return Err(about(&muscle, Pressure::pa(isobar.pressure_pa))(error.clone()));
@@ -96,7 +101,7 @@ impl CurveCommand {
         }
         if let Some(folder) = &self.vtk {
             for isobar in &isobars {
-                let path = series(&muscle, isobar, self, folder, isobars.len() > 1)?;
+                let path = series(&extended, isobar, self, folder, isobars.len() > 1)?;
                 let _ = writeln!(wrote, "  wrote {}", path.display());
             }
         }
@@ -106,7 +111,10 @@ impl CurveCommand {
         if to_stdout {
             return Ok(characteristics::csv(&isobars));
         }
-        let heading = format!("{}\n\n", muscle.name());
+        let mut heading = format!("{}\n\n", muscle.name());
+        if extended.adds_force() {
+            let _ = writeln!(heading, "  with the effects {}, at rest\n", extended.used().join(", "));
+        }
         Ok(heading + &characteristics::summary(&isobars) + &left_out(&isobars) + &wrote)
     }
 
@@ -127,15 +135,15 @@ impl CurveCommand {
     }
 
     /// The contractions, from the option or over the range in which the muscle pulls at the first pressure.
-    fn contractions(&self, muscle: &Muscle, pressure: Pressure) -> Result<Vec<f64>, Failure> {
+    fn contractions(&self, extended: &Extended, pressure: Pressure) -> Result<Vec<f64>, Failure> {
         let (low, high) = if let Some(text) = &self.contraction {
             let (low, high): (Ratio, Ratio) = units::parse_range(text)
                 .map_err(|source| Failure::Option { option: "--contraction", source: Box::new(source) })?;
             (low.si(), high.si())
         } else {
-            let about = about(muscle, pressure);
-            let problem = Problem::new(muscle, pressure).map_err(&about)?;
-            let limit = problem.contraction_limit(self.method.approach()).map_err(&about)?;
+            let muscle = extended.muscle();
+            let limit = extended.contraction_limit(pressure, self.method.approach());
+            let limit = limit.map_err(about_extended(muscle, pressure))?;
             let singular = muscle.is_pleated() && muscle.fibre().is_none();
             (if singular { FIRST_CONTRACTION * limit / 0.4 } else { 0.0 }, limit)
         };
@@ -153,12 +161,13 @@ impl CurveCommand {
 
 /// A time series over the contractions of an isobar; "time" is the contraction in per cent.
 fn series(
-    muscle: &Muscle,
+    extended: &Extended,
     isobar: &Isobar,
     command: &CurveCommand,
     folder: &Path,
     several: bool,
 ) -> Result<PathBuf, Failure> {
+    let muscle = extended.muscle();
     let pressure = Pressure::pa(isobar.pressure_pa);
     let about = about(muscle, pressure);
     let problem = Problem::new(muscle, pressure).map_err(&about)?;
@@ -167,7 +176,10 @@ fn series(
     let shapes: Vec<(f64, Shape)> = (0..count)
         .map(|i| {
             let contraction = isobar.points[if count > 1 { i * last / (count - 1) } else { 0 }].contraction;
-            let shape = problem.shape(Given::Contraction(contraction), command.method.approach(), 101)?;
+            let shape = {
+                let given = extended.given(Given::Contraction(contraction));
+                problem.shape(given, command.method.approach(), 101)?
+            };
             Ok((contraction, shape))
         })
         .collect::<Result<_, _>>()

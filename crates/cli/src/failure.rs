@@ -5,7 +5,7 @@ use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
 use bulge_inference::InferenceError;
 use bulge_measurements::MeasurementError;
-use bulge_model::ModelError;
+use bulge_model::{ExtendedError, ModelError};
 use bulge_muscles::{FileError, PresetError, UnitError};
 use bulge_report::PlotError;
 use bulge_vtk::VtkError;
@@ -38,6 +38,12 @@ pub(crate) enum Failure {
     Measurement(Box<MeasurementError>),
     #[error("{0}")]
     Inference(Box<InferenceError>),
+    #[error("{0}")]
+    Model(Box<ModelError>),
+    #[error("{0}")]
+    Extended(Box<ExtendedError>),
+    #[error("{0}")]
+    NotConverged(String),
     #[error("the result cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
     #[error("{failed} of {all} checks failed:\n{table}")]
@@ -60,15 +66,19 @@ impl Failure {
                 _ => 3,
             },
             Self::Inference(error) => match error.as_ref() {
-                InferenceError::Model { source, .. } => match source.as_ref() {
-                    ModelError::NoEquilibrium { source, .. } => equilibrium_status(source),
-                    _ => 1,
-                },
+                InferenceError::Model { source, .. } => model_status(source),
                 _ => 1,
             },
+            Self::Model(error) => model_status(error),
+            Self::Extended(_) => 3,
+            Self::NotConverged(_) => 4,
             _ => 1,
         }
     }
+}
+
+fn model_status(error: &ModelError) -> u8 {
+    if let ModelError::NoEquilibrium { source, .. } = error { equilibrium_status(source) } else { 1 }
 }
 
 /// Data that ask for an equilibrium that doesn't exist are wrong input; a search that failed is not.
@@ -95,5 +105,6 @@ boxed!(
     Effect(CatalogueError),
     EffectFile(EffectFileError),
     Measurement(MeasurementError),
-    Inference(InferenceError)
+    Inference(InferenceError),
+    Model(ModelError)
 );

@@ -8,6 +8,7 @@ mod demo;
 mod effects;
 mod failure;
 mod files;
+mod fit;
 mod muscle;
 mod shape;
 mod sketch;
@@ -43,6 +44,8 @@ enum Command {
     Curve(curve::CurveCommand),
     /// Model against measurement: where it fails, and how the error falls as effects are added
     Compare(compare::CompareCommand),
+    /// Fit effects to measurements, and write the muscle with what was learnt
+    Fit(fit::FitCommand),
     /// The catalogue of physical effects, and of the papers' force laws
     Effects(effects::EffectsCommand),
     /// Shipped muscles: list them, or print one as a file to start from
@@ -70,6 +73,7 @@ fn main() -> ExitCode {
         Command::Shape(command) => command.run(),
         Command::Curve(command) => command.run(),
         Command::Compare(command) => command.run(),
+        Command::Fit(command) => command.run(),
         Command::Effects(command) => command.run(),
         Command::Muscle(command) => command.run(),
         Command::Validate(command) => command.run(),

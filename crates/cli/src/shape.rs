@@ -1,7 +1,7 @@
 //! `bulge shape`: one equilibrium.
 
-use bulge_effects::Catalogue;
 use bulge_fibre::{Given, MeridianPoint, PleatedNumbers, Problem, Response, Shape};
+use bulge_model::Extended;
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Construction, Force, Length, Muscle, Pressure, Ratio, Volume};
 use bulge_vtk::{Bulge, Style, write_vtp};
@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments::{MethodArgument, about, known, muscle, quantity};
+use crate::arguments::{MethodArgument, about, about_extended, extended, quantity};
 use crate::failure::Failure;
 use crate::sketch::sketch;
 use crate::text::significant;
@@ -53,6 +53,9 @@ pub(crate) struct ShapeCommand {
     /// Circumference of the unfolded cloth for the pleats, such as "300 mm" [default: just unfolded at the largest radius]
     #[arg(long, requires = "vtk")]
     cloth: Option<String>,
+    /// Your own effects, where the muscle file states them
+    #[arg(long, value_name = "FILE")]
+    effects: Option<PathBuf>,
     /// One JSON document on standard output
     #[arg(long)]
     json: bool,
@@ -82,12 +85,18 @@ struct Document<'a> {
     fibre_stress_pa: Option<f64>,
     #[serde(flatten)]
     pleated: Option<PleatedNumbers>,
+    /// Without the effects that the muscle file states.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    equilibrium_force_n: Option<f64>,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    effects: &'a [String],
     meridian: &'a [MeridianPoint],
 }
 
 impl ShapeCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        let muscle = known(muscle(&self.muscle)?, &Catalogue::builtin())?;
+        let (stated, extended) = extended(&self.muscle, self.effects.as_deref())?;
+        let muscle = extended.muscle().clone();
         let pressure: Pressure = quantity("--pressure", &self.pressure)?;
         let given = self.given()?;
         if !(3..=MAX_POINTS).contains(&self.points) {
@@ -98,8 +107,8 @@ impl ShapeCommand {
         let about = about(&muscle, pressure);
         let problem = Problem::new(&muscle, pressure).map_err(&about)?;
         let approach = self.method.approach();
-        let shape = problem.shape(given, approach, self.points).map_err(&about)?;
-        let limit = problem.contraction_limit(approach).ok();
+        let (shape, equilibrium_force) = self.shape(&stated, &extended, given)?;
+        let limit = extended.contraction_limit(pressure, approach).ok();
         if let Some(path) = &self.vtk {
             write_vtp(path, &bulge(&muscle, &shape, self.surface, cloth))?;
         }
@@ -112,6 +121,8 @@ impl ShapeCommand {
                 contraction_limit: limit,
                 fibre_stress_pa: stress,
                 pleated: problem.pleated_numbers(&shape.response),
+                equilibrium_force_n: equilibrium_force,
+                effects: extended.used(),
                 meridian: &shape.meridian,
             };
             return Ok(serde_json::to_string_pretty(&document)? + "\n");
@@ -119,7 +130,31 @@ impl ShapeCommand {
         if self.csv {
             return Ok(meridian_csv(&shape.meridian));
         }
-        Ok(self.text(&muscle, &problem, &shape, limit, stress))
+        let mut text = self.text(&muscle, &problem, &shape, limit, stress);
+        text.push_str(&effects_text(&extended, equilibrium_force));
+        Ok(text)
+    }
+
+    /// The equilibrium, and its force without effects if the muscle file states any.
+    fn shape(
+        &self,
+        stated: &Muscle,
+        extended: &Extended,
+        given: Given,
+    ) -> Result<(Shape, Option<f64>), Failure> {
+        let pressure: Pressure = quantity("--pressure", &self.pressure)?;
+        let approach = self.method.approach();
+        let about = about(stated, pressure);
+        let problem = Problem::new(extended.muscle(), pressure).map_err(&about)?;
+        if !extended.adds_force() {
+            return Ok((problem.shape(given, approach, self.points).map_err(&about)?, None));
+        }
+        let response = extended.solve(pressure, given, approach).map_err(about_extended(stated, pressure))?;
+        let there = extended.given(Given::Contraction(response.contraction));
+        let mut shape = problem.shape(there, approach, self.points).map_err(&about)?;
+        let alone = shape.response.force_n;
+        shape.response = response;
+        Ok((shape, Some(alone)))
     }
 
     fn given(&self) -> Result<Given, Failure> {
@@ -245,6 +280,24 @@ pub(crate) fn bulge<'a>(
         _ => Style::Pleats { cloth_circumference: cloth.map(Length::si) },
     };
     Bulge { shape, fibres, style, facets: style.default_facets() }
+}
+
+/// What effects of the muscle file do.
+fn effects_text(extended: &Extended, alone: Option<f64>) -> String {
+    let mut text = String::new();
+    if let Some(alone) = alone {
+        let used = extended.used().join(", ");
+        let _ = writeln!(
+            text,
+            "\n  With the effects {used}, at rest; without loads {} N.",
+            significant(alone, 6)
+        );
+    }
+    if !extended.left_out().is_empty() {
+        let left_out = extended.left_out().join(", ");
+        let _ = writeln!(text, "  Left out, as no part of the muscle: {left_out}.");
+    }
+    text
 }
 
 fn meridian_csv(meridian: &[MeridianPoint]) -> String {

@@ -4,8 +4,9 @@
 //! rate, no time). What belongs to a rig or to one specimen is left out: it is no part of the muscle.
 
 use bulge_effects::{Group, Known, Moment};
-use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
+use bulge_fibre::{Approach, FibreError, Given, Isobar, Problem, Response, isobars};
 use bulge_muscles::{Muscle, Pressure, Quantity};
+use rayon::prelude::*;
 
 use crate::error::ModelError;
 use crate::evaluate::Wanted;
@@ -16,6 +17,8 @@ use crate::record::Record;
 const MOST_STEPS: usize = 60;
 /// Longest of them, in contraction.
 const MOST_STEP: f64 = 0.05;
+/// Part of the largest force below which a force is none.
+const ROUNDING: f64 = 1e-9;
 
 /// A muscle with the effects that its file states.
 #[derive(Debug, Clone)]
@@ -163,6 +166,43 @@ impl Extended {
             found = self.complete(&problem.solve(next, approach)?)?;
         }
         Err(ExtendedError::Force { wanted, contraction: found.contraction, force: found.force_n })
+    }
+
+    /// The characteristics of the muscle with its effects, as [`bulge_fibre::isobars`] of a muscle without: on all cores, the same bytes whatever
+    /// the number of threads. Where the muscle with its effects would push, the point is left out with the reason.
+    ///
+    /// # Errors
+    /// Those of [`bulge_fibre::isobars`], or if an effect gives no finite force.
+    pub fn isobars(
+        &self,
+        pressures: &[Pressure],
+        contractions: &[f64],
+        approach: Approach,
+    ) -> Result<Vec<Isobar>, ExtendedError> {
+        let stated = self.model.muscle().length().si();
+        let own = self.muscle.length().si();
+        let same = stated.to_bits() == own.to_bits();
+        let asked: Vec<f64> =
+            contractions.iter().map(|e| if same { *e } else { 1.0 - stated * (1.0 - e) / own }).collect();
+        let mut found = isobars(&self.muscle, pressures, &asked, approach)?;
+        if !self.adds {
+            return Ok(found);
+        }
+        for isobar in &mut found {
+            isobar.contraction_limit =
+                self.contraction_limit(Pressure::pa(isobar.pressure_pa), approach).ok();
+            let completed: Vec<Response> =
+                isobar.points.par_iter().map(|point| self.complete(point)).collect::<Result<_, _>>()?;
+            let largest = completed.iter().map(|point| point.force_n.abs()).fold(0.0, f64::max);
+            let (pulling, pushing): (Vec<_>, Vec<_>) =
+                completed.into_iter().partition(|point| point.force_n >= -ROUNDING * largest);
+            isobar.points = pulling;
+            isobar.without.extend(pushing.into_iter().map(|Response { contraction, force_n, .. }| {
+                (contraction, FibreError::WouldPush { contraction, force_n })
+            }));
+            isobar.without.sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        Ok(found)
     }
 
     /// The contraction at which the muscle with its effects pulls no more; none beyond the limit of the equilibrium alone.

@@ -1,0 +1,220 @@
+//! `compare` and `fit` as a user sees them: ladders on data with a known truth, files that lead on, and messages for bad input.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod support;
+
+use bulge::effects::{Catalogue, Moment};
+use bulge::model::{Model, Record, Wanted};
+use bulge::muscles::from_toml;
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::Path;
+use support::{Folder, bulge, failure, json};
+
+const MUSCLE: &str =
+    "name = \"trial\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n";
+
+/// Loops at five pressures of a muscle with stretching fibres and friction, read without noise to 0.01 N.
+fn loops(truth: &[(&str, &[f64])]) -> String {
+    let muscle = from_toml(MUSCLE, "muscle").unwrap();
+    let catalogue = Catalogue::builtin();
+    let mut model = Model::new(&muscle);
+    for (name, values) in truth {
+        model = model.with(catalogue.find(name).unwrap(), Some(values)).unwrap();
+    }
+    let mut moments = Vec::new();
+    let mut sweeps = Vec::new();
+    for bar in 1..=5 {
+        let start = moments.len();
+        for i in 0..40 {
+            let (back, direction) = if i < 20 { (i, 1.0) } else { (39 - i, -1.0) };
+            let mut moment = Moment::at_rest(f64::from(bar) * 1e5, 0.05 + 0.012 * f64::from(back));
+            moment.direction = direction;
+            moment.begins = i == 0;
+            moments.push(moment);
+        }
+        sweeps.push(start..moments.len());
+    }
+    let record = Record::from_moments(moments.clone(), vec![0.0; moments.len()], sweeps).unwrap();
+    let force = model.evaluate(&record, &model.start(), &Wanted::default()).unwrap().force;
+    let mut csv = String::from("time [s],sweep,pressure [bar],contraction [%],force [N]\n");
+    for (i, (moment, force)) in moments.iter().zip(force).enumerate() {
+        let _ = writeln!(
+            csv,
+            "{},{},{},{:.4},{force:.2}",
+            i,
+            i / 40 + 1,
+            moment.pressure / 1e5,
+            100.0 * moment.contraction
+        );
+    }
+    csv
+}
+
+/// Fibres of 250 kN, friction of 12 N.
+const TRUTH: &[(&str, &[f64])] = &[("fibre-stretch", &[4e-6]), ("coulomb-friction", &[12.0])];
+
+fn rmse(document: &Value, rung: usize) -> f64 {
+    document["ladder"][rung]["rmse_n"].as_f64().unwrap()
+}
+
+#[test]
+fn the_error_falls_as_the_right_effects_are_added() {
+    let folder = Folder::new("ladder");
+    let data = folder.write("data.csv", &loops(TRUTH));
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let found =
+        json(&["compare", &data, "--muscle", &muscle, "--with", "fibre-stretch,coulomb-friction", "--json"]);
+    assert_eq!(found["schema"], "bulge.comparison/1");
+    assert_eq!(found["data"]["rows"], 200);
+    let errors = [0, 1, 2].map(|rung| rmse(&found, rung));
+    assert!(errors[0] > 20.0 && errors[1] < 13.0 && errors[2] < 0.01, "{errors:?}");
+    let held_out = found["ladder"][2]["held_out_rmse_n"].as_f64().unwrap();
+    assert!(held_out < 0.01, "{held_out}");
+    for (number, truth) in
+        found["ladder"][2]["fit"]["parameters"].as_array().unwrap().iter().zip([250.0, 12.0])
+    {
+        // The stretch is shown with its stiffness beside it.
+        let value = number["also"][1].as_f64().or(number["value"].as_f64()).unwrap();
+        assert!((value / truth - 1.0).abs() < 1e-3, "{number}");
+        assert_eq!(number["plausible"], true);
+    }
+}
+
+#[test]
+fn a_report_holds_page_plots_and_numbers() {
+    let folder = Folder::new("report");
+    let data = folder.write("data.csv", &loops(TRUTH));
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let out = folder.path("report");
+    let text = bulge(&["compare", &data, "--muscle", &muscle, "--with", "fibre-stretch", "--out", &out]);
+    assert!(text.status.success(), "{}", String::from_utf8_lossy(&text.stderr));
+    let page = std::fs::read_to_string(Path::new(&out).join("report.html")).unwrap();
+    assert!(page.starts_with("<!DOCTYPE html>") && page.matches("<svg").count() >= 8);
+    for name in ["ladder", "force", "residual-map", "loops", "contributions", "scatter", "parameters"] {
+        assert!(Path::new(&out).join(format!("{name}.svg")).is_file(), "{name}.svg");
+    }
+    let numbers = std::fs::read_to_string(Path::new(&out).join("compare.json")).unwrap();
+    let numbers: Value = serde_json::from_str(&numbers).unwrap();
+    assert_eq!(numbers["muscle"], "trial");
+}
+
+#[test]
+fn what_was_learnt_is_used() {
+    let folder = Folder::new("learnt");
+    let data = folder.write("data.csv", &loops(TRUTH));
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let learnt = folder.path("learnt.toml");
+    let with = "fibre-stretch,coulomb-friction";
+    let fit = json(&["fit", &data, "--muscle", &muscle, "--with", with, "--out", &learnt, "--json"]);
+    assert_eq!(fit["schema"], "bulge.fit/1");
+    assert_eq!(fit["written"], serde_json::json!(["fibre-stretch", "coulomb-friction"]));
+    let text = std::fs::read_to_string(&learnt).unwrap();
+    assert!(text.contains("[effects.coulomb-friction]") && text.starts_with("# Fitted to"), "{text}");
+    // The next comparison starts where this fit ended.
+    let next = json(&["compare", &data, "--muscle", &learnt, "--json"]);
+    let [fitted, start] = [fit["rmse_n"].as_f64().unwrap(), rmse(&next, 0)];
+    assert!((start / fitted - 1.0).abs() < 1e-6, "{start} after {fitted}");
+    // The shape is that of stretching fibres; friction has no direction at rest.
+    let shape = |file: &str| {
+        json(&["shape", file, "--pressure", "3 bar", "--contraction", "10 %", "--json"])["force_n"]
+            .as_f64()
+            .unwrap()
+    };
+    let elastic = folder.write("elastic.toml", &format!("{MUSCLE}fibre = {{ stiffness = \"6.25 kN\" }}\n"));
+    assert!((shape(&learnt) / shape(&elastic) - 1.0).abs() < 1e-4);
+    assert!((shape(&learnt) / shape(&muscle) - 1.0).abs() > 1e-3);
+    let curve = bulge(&["curve", &learnt, "--pressure", "3 bar", "--points", "5"]);
+    assert!(curve.status.success());
+    // On standard output the file itself.
+    let piped = bulge(&["fit", &data, "--muscle", &muscle, "--with", with]);
+    assert_eq!(String::from_utf8(piped.stdout).unwrap(), text);
+}
+
+#[test]
+fn a_users_own_effect_is_one_of_all() {
+    let folder = Folder::new("own");
+    let data = folder.write("data.csv", &loops(&[("coulomb-friction", &[12.0])]));
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let own = folder.write(
+        "own.toml",
+"[effects.my-drag]\ntitle = \"Drag\"\nforce = \"-drag * direction\"\nparameters.drag = { unit = \"N\", typical = \"5 N\", low = \"0 N\", high = \"100 N\" }\n",
+    );
+    let listed = bulge(&["effects", "--effects", &own]);
+    assert!(String::from_utf8(listed.stdout).unwrap().contains("my-drag"));
+    let learnt = folder.path("learnt.toml");
+    let fit = json(&[
+        "fit",
+        &data,
+        "--muscle",
+        &muscle,
+        "--effects",
+        &own,
+        "--with",
+        "my-drag",
+        "--out",
+        &learnt,
+        "--json",
+    ]);
+    let drag = fit["fit"]["parameters"][0]["value"].as_f64().unwrap();
+    assert!((drag - 12.0).abs() < 0.01, "{drag}");
+    let (status, message) = failure(&["compare", &data, "--muscle", &learnt]);
+    assert!(status == 1 && message.contains("my-drag") && message.contains("--effects"), "{message}");
+    let next = json(&["compare", &data, "--muscle", &learnt, "--effects", &own, "--json"]);
+    assert!(rmse(&next, 0) < 0.01);
+}
+
+#[test]
+fn bad_input_gets_one_clear_message() {
+    let folder = Folder::new("bad");
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let good = "pressure [bar],contraction [%],force [N]\n";
+    let cases: &[(&str, &[&str])] = &[
+        ("", &["empty"]),
+        (good, &["no row"]),
+        ("pressure [bar],contraction [%],furce [N]\n1,5,100\n", &["furce", "`force [N]`"]),
+        ("pressure [bar],contraction [%]\n1,5\n", &["force"]),
+        (
+            "pressure [bar],contraction [%],force [N]\n1,5,100\n1,abc,90\n",
+            &["data.csv:3", "contraction", "abc"],
+        ),
+        ("pressure [mm],contraction [%],force [N]\n1,5,100\n", &["pressure", "mm"]),
+        ("pressure [bar],contraction [%],force [N]\n1,5,100\n1,5\n", &["data.csv:3"]),
+        ("pressure [bar],contraction [%],force [N]\n1,60,1000\n1,61,900\n", &["line 2-3"]),
+    ];
+    for (text, parts) in cases {
+        let data = folder.write("data.csv", text);
+        let (status, message) = failure(&["compare", &data, "--muscle", &muscle]);
+        assert_eq!(status, 1, "{message}");
+        for part in *parts {
+            assert!(message.contains(part), "{message:?} does not say {part:?}");
+        }
+        assert!(message.starts_with("error: ") && message.lines().count() < 12, "{message}");
+    }
+    let one = folder.write("data.csv", &format!("{good}1,5,100\n"));
+    let (status, message) = failure(&["compare", &one, "--muscle", &muscle, "--with", "fibre-stretch"]);
+    assert!(status == 1 && message.contains("1 numbers can't be fitted to 1 rows"), "{message}");
+    let same = folder.write("data.csv", &(good.to_owned() + &"1,5,900\n".repeat(9)));
+    let (status, message) = failure(&["compare", &same, "--muscle", &muscle, "--with", "fibre-stretch"]);
+    assert!(status == 1 && message.contains("all 9 rows are identical"), "{message}");
+    let data = folder.write("data.csv", &loops(&[]));
+    for (arguments, parts) in [
+        (["--with", "fibre-strech"], ["fibre-strech", "did you mean `fibre-stretch`"]),
+        (["--with", "radius-error"], ["braided muscles", "leave it out"]),
+        (["--with", "coulomb-friction,coulomb-friction"], ["coulomb-friction", "twice"]),
+        (["--with", "temperature"], ["temperature", "these data don't have"]),
+        (["--law", "s9"], ["s9", "bulge effects --laws"]),
+        (["--effects", "nowhere.toml"], ["nowhere.toml", ""]),
+    ] {
+        let mut call = vec!["compare", &data, "--muscle", &muscle];
+        call.extend(arguments);
+        let (status, message) = failure(&call);
+        assert_eq!(status, 1, "{message}");
+        for part in parts {
+            assert!(message.contains(part), "{message:?} does not say {part:?}");
+        }
+    }
+    // Nothing is left behind.
+    assert_eq!(folder.names(), ["data.csv", "muscle.toml"]);
+}
