@@ -1,20 +1,26 @@
-"""Opens a report of Bulge in headless Chromium, with the network blocked, and looks at it as a reader would.
+"""Opens reports of Bulge in headless Chromium, with the network blocked, and looks at them as a reader would.
 
     apt-get install chromium chromium-driver
-    python validation/report_check.py report.html [--screenshot FILE.png] [--pdf FILE.pdf] [--narrow FILE.png]
+    python validation/report_check.py report.html ... [--screenshot FILE.png] [--narrow FILE.png] [--pdf FILE.pdf]
 
 Needs nothing beyond the Python standard library: Chromium is driven by chromedriver over the W3C WebDriver protocol. Looks for complaints
 on the console, requests to anywhere, drawings without size, texts in drawings that overlap or are cut, a page wider than the window (1280
-and 390 px), and drawings that do not fit on a printed A4 page. The last line is `N passed, M failed`; the exit status is 1 if anything failed.
+and 390 px), and drawings that do not fit on a printed A4 page. Pictures of several reports are numbered: FILE-1.png, FILE-2.png and so on.
+The last line is `N passed, M failed`; the exit status is 1 if anything failed, or if there is no Chromium to look with.
 """
 
 import argparse
 import base64
+import contextlib
+import http.client
 import json
+import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import urllib.error
 import urllib.request
@@ -24,6 +30,9 @@ WIDE, NARROW = 1280, 390
 HEIGHT = 900
 # CSS pixels are 1/96 inch; the page's @page rule leaves 15 mm on both sides and 16 mm above and below.
 PRINTED_WIDTH, PRINTED_HEIGHT = (round((side - 2 * margin) / 25.4 * 96) for side, margin in ((210, 15), (297, 16)))
+
+# A report that takes longer than this [s] is too heavy to read.
+LIMIT = 60
 
 LEAST_DRAWING = 100
 # Boxes of neighbouring texts are higher than their letters; this much of both may overlap.
@@ -69,21 +78,36 @@ return [...document.querySelectorAll('figure')].map(f => {
 SECTIONS = "return [...document.querySelectorAll('section')].map(s => [s.id, !!s.querySelector('h2'), (s.querySelector('.lead') || {}).textContent || '']);"
 
 
+class Trouble(Exception):
+    """The browser can't be started, doesn't answer or refuses: nothing is known of the report."""
+
+
+def installed(*names):
+    """Path of the first of the programs that there is."""
+    found = next(filter(None, map(shutil.which, names)), None)
+    if not found:
+        raise Trouble(f"{names[0]} is not installed: apt-get install chromium chromium-driver")
+    return found
+
+
 class Browser:
-    """A session of chromedriver, which ends with the `with` block."""
+    """A session of chromedriver, which ends with the `with` block, or after LIMIT seconds."""
 
     def __enter__(self):
-        driver, chromium = shutil.which("chromedriver"), shutil.which("chromium") or shutil.which("chromium-browser")
-        if not driver or not chromium:
-            sys.exit("chromium or chromedriver is not installed: apt-get install chromium chromium-driver")
-        self.folder = tempfile.TemporaryDirectory(prefix="report-check-")
+        chromium, driver = installed("chromium", "chromium-browser", "google-chrome"), installed("chromedriver")
+        self.folder = tempfile.mkdtemp(prefix="report-check-")
         self.driver = subprocess.Popen(
-            [driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+            # A group of its own, to which Chromium belongs as well.
+            [driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True
         )
+        self.is_late = False
+        self.watch = threading.Timer(LIMIT, self.too_late)
+        self.watch.daemon = True
+        self.watch.start()
         self.session = None
         try:
             self.url = f"http://127.0.0.1:{self.port()}"
-            options = {"binary": chromium, "args": [*FLAGS, f"--user-data-dir={self.folder.name}"]}
+            options = {"binary": chromium, "args": [*FLAGS, f"--user-data-dir={self.folder}"]}
             capabilities = {
                 "browserName": "chrome",
                 "goog:chromeOptions": options,
@@ -96,37 +120,54 @@ class Browser:
             raise
         return self
 
+    def too_late(self):
+        """Whoever waits for an answer gets none."""
+        self.is_late = True
+        self.end(signal.SIGTERM)
+
+    def end(self, kind):
+        """Ends chromedriver and its Chromium, which lives on when only chromedriver ends."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self.driver.pid, kind)
+
     def __exit__(self, *_):
         if self.session:
-            try:
+            with contextlib.suppress(Trouble):
                 self.send("DELETE", f"/session/{self.session}")
-            except (OSError, RuntimeError):
-                pass
-        self.driver.terminate()
+        self.watch.cancel()
+        self.end(signal.SIGTERM)
         try:
             self.driver.wait(timeout=10)
         except subprocess.TimeoutExpired:
-            self.driver.kill()
-        shutil.rmtree(self.folder.name, ignore_errors=True)
+            pass
+        self.end(signal.SIGKILL)
+        self.driver.wait()
+        self.driver.stdout.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
 
     def port(self):
         """The port that chromedriver chose and prints."""
         for line in self.driver.stdout:
             if "successfully on port" in line:
                 return int(line.rsplit("port", 1)[1].strip().rstrip("."))
-        sys.exit("chromedriver did not start")
+        raise Trouble(f"it took longer than {LIMIT} s" if self.is_late else "chromedriver did not start")
 
     def send(self, method, path, body=None):
         data = None if body is None else json.dumps(body).encode()
         request = urllib.request.Request(self.url + path, data, {"Content-Type": "application/json"}, method=method)
+        # Not through a proxy of the environment: chromedriver is on this machine.
+        opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
         try:
-            # Not through a proxy of the environment: chromedriver is on this machine.
-            opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
-            with opener.open(request, timeout=120) as answer:
+            with opener.open(request, timeout=LIMIT) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
-            value = json.load(error)["value"]
-            raise RuntimeError(f"{path}: {value.get('error')}: {value.get('message', '').splitlines()[0]}") from None
+            with error:
+                value = json.load(error)["value"]
+            says = (value.get("message") or "").split("\n")[0]
+            raise Trouble(f"the browser refuses {path.rsplit('/', 1)[-1]}: {value.get('error')}: {says}") from None
+        except (OSError, http.client.HTTPException) as error:
+            late = f"it took longer than {LIMIT} s" if self.is_late else f"the browser does not answer: {error}"
+            raise Trouble(late) from None
 
     def do(self, path, body=None):
         method = "GET" if body is None else "POST"
@@ -244,14 +285,14 @@ class Checks:
             print(f"ok     {what}")
 
 
-def look(browser, checks, arguments):
+def look(browser, checks, pictures):
     for width in (WIDE, NARROW):
         browser.size(width)
         needed, room, wide = browser.run(OVERFLOW)
         faults = [f"the page is {needed} px wide in a window of {room} px: {wide}"] if needed > room or wide else []
         checks.check(f"no horizontal overflow at {width} px", faults)
-        if width == NARROW and arguments.narrow:
-            browser.whole_page(width, arguments.narrow)
+        if width == NARROW and pictures.narrow:
+            browser.whole_page(width, pictures.narrow)
     browser.size(WIDE)
     for drawing in browser.run(DRAWINGS):
         checks.check(f"drawing {drawing['name']}", drawing_faults(drawing))
@@ -259,11 +300,11 @@ def look(browser, checks, arguments):
     checks.check("the page has sections", [] if sections else ["there is none"])
     bare = [name for name, heading, lead in sections if not heading or not lead.strip()]
     checks.check("each section begins with a heading and a sentence", [f"section {name} does not" for name in bare])
-    if arguments.screenshot:
-        browser.whole_page(WIDE, arguments.screenshot)
+    if pictures.screenshot:
+        browser.whole_page(WIDE, pictures.screenshot)
 
 
-def print_out(browser, checks, arguments):
+def print_out(browser, checks, pictures):
     browser.devtools("Emulation.setEmulatedMedia", media="print")
     browser.size(PRINTED_WIDTH, PRINTED_HEIGHT)
     needed, room, wide = browser.run(OVERFLOW)
@@ -276,27 +317,50 @@ def print_out(browser, checks, arguments):
     browser.size(WIDE)
     pdf = browser.pdf()
     checks.check("it prints to PDF", [] if pdf.startswith(b"%PDF-") and len(pdf) > 10_000 else [f"{len(pdf)} bytes"])
-    if arguments.pdf:
-        Path(arguments.pdf).write_bytes(pdf)
+    if pictures.pdf:
+        Path(pictures.pdf).write_bytes(pdf)
+
+
+def numbered(path, number, count):
+    """`FILE.png` for one report, `FILE-2.png` for the second of several; none stays none."""
+    path = path and Path(path)
+    return path and (path if count == 1 else path.with_name(f"{path.stem}-{number}{path.suffix}"))
+
+
+def check_report(report, checks, pictures):
+    with Browser() as browser:
+        browser.open(report.resolve().as_uri())
+        browser.size(WIDE)
+        look(browser, checks, pictures)
+        print_out(browser, checks, pictures)
+        checks.check("no complaint on the console", complaints_of(browser))
+        checks.check("nothing was asked of a network", requests_of(browser))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("report", type=Path)
-    parser.add_argument("--screenshot", metavar="FILE.png", help="picture of the page at 1280 px")
-    parser.add_argument("--narrow", metavar="FILE.png", help="picture of the page at 390 px")
+    parser.add_argument("reports", type=Path, nargs="+", metavar="report.html")
+    parser.add_argument("--screenshot", metavar="FILE.png", help=f"picture of the page at {WIDE} px")
+    parser.add_argument("--narrow", metavar="FILE.png", help=f"picture of the page at {NARROW} px")
     parser.add_argument("--pdf", metavar="FILE.pdf", help="the page as it is printed")
     arguments = parser.parse_args()
-    if not arguments.report.is_file():
-        sys.exit(f"{arguments.report}: no such file")
+    missing = [str(report) for report in arguments.reports if not report.is_file()]
+    if missing:
+        sys.exit(f"no such file: {', '.join(missing)}")
     checks = Checks()
-    with Browser() as browser:
-        browser.open(arguments.report.resolve().as_uri())
-        browser.size(WIDE)
-        look(browser, checks, arguments)
-        print_out(browser, checks, arguments)
-        checks.check("no complaint on the console", complaints_of(browser))
-        checks.check("nothing was asked of a network", requests_of(browser))
+    count = len(arguments.reports)
+    for number, report in enumerate(arguments.reports, 1):
+        if count > 1:
+            print(f"{report}:")
+        pictures = argparse.Namespace(
+            **{kind: numbered(getattr(arguments, kind), number, count) for kind in ("screenshot", "narrow", "pdf")}
+        )
+        start = time.monotonic()
+        try:
+            check_report(report, checks, pictures)
+        except Trouble as trouble:
+            checks.check("the browser can look at it", [str(trouble)])
+        print(f"       {time.monotonic() - start:.0f} s")
     print(f"{checks.passed} passed, {checks.failed} failed")
     return 1 if checks.failed else 0
 

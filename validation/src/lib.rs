@@ -9,10 +9,15 @@ mod closed_form;
 mod derivative;
 mod difference;
 mod energy;
+mod fluidic_muscle;
+mod force_laws;
 mod isobars;
 mod limits;
 mod lobes;
+mod lobes_and_wall;
 mod meridian;
+mod nist;
+mod pleated_ladder;
 mod published;
 mod reference;
 pub mod sample;
@@ -24,6 +29,7 @@ pub use check::Check;
 
 /// Every check, in the order of the table: from exact solutions to published numbers.
 pub const CHECKS: &[fn() -> Check] = &[
+    nist::nonlinear_regression,
     closed_form::elliptic_integrals,
     closed_form::inelastic,
     closed_form::elastic,
@@ -38,6 +44,8 @@ pub const CHECKS: &[fn() -> Check] = &[
     braid::misaligned,
     lobes::touching,
     lobes::quadrature,
+    lobes_and_wall::lobes,
+    lobes_and_wall::gas_wall,
     energy::virtual_work,
     energy::maxwell,
     energy::potential,
@@ -54,6 +62,8 @@ pub const CHECKS: &[fn() -> Check] = &[
     limits::stiff_fibres,
     limits::many_fibres,
     limits::mylar_balloon,
+    lobes_and_wall::many_lobes,
+    lobes_and_wall::thin_and_thick_wall,
     limits::force_at_rest,
     published::second_generation,
     published::contraction_limits,
@@ -62,6 +72,16 @@ pub const CHECKS: &[fn() -> Check] = &[
     published::inner_wall,
     published::measured_force,
     published::computed_volume,
+    pleated_ladder::stated_radii,
+    pleated_ladder::fits,
+    fluidic_muscle::fibre_length_and_turns,
+    fluidic_muscle::shipped_muscle,
+    fluidic_muscle::drawn_out,
+    force_laws::printed_functions,
+    force_laws::sizing_examples,
+    force_laws::correlation,
+    force_laws::half_widths,
+    force_laws::efficiencies,
 ];
 
 /// Runs every check.
