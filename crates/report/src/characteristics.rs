@@ -24,6 +24,17 @@ pub struct Curve<'a> {
 ///
 /// # Errors
 /// No curve, a curve of fewer than 2 points, or a value that isn't finite.
+///
+/// # Examples
+/// ```
+/// use bulge_fibre::Response;
+/// use bulge_report::{Curve, PlotError, characteristics_svg};
+///
+/// fn isobar(points: &[Response]) -> Result<String, PlotError> {
+///     characteristics_svg("A braided muscle at 2 bar", &[Curve { pressure_pa: 2e5, points }])
+/// }
+/// assert_eq!(isobar(&[]), Err(PlotError::TooFewPoints { pressure_pa: 2e5, found: 0 }));
+/// ```
 pub fn characteristics_svg(title: &str, curves: &[Curve]) -> Result<String, PlotError> {
     check(curves)?;
     let mut svg = String::new();

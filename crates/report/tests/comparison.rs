@@ -1,5 +1,7 @@
 //! The report of a comparison through the public API: rich, bare, crowded and hostile samples.
 
+#![expect(clippy::unwrap_used, reason = "a test that can't be set up fails")]
+
 mod sample;
 
 use bulge_inference::Comparison;
@@ -219,9 +221,69 @@ fn a_sign_that_changes_with_the_direction_is_said() {
     let html = html(&comparison).unwrap();
     assert!(
         html.contains(
-            "the error changes sign, so something depends on the direction: friction or hysteresis"
+            "The error changes sign, which points to something that depends on the direction: friction or hysteresis"
         )
     );
+}
+
+#[test]
+fn sentences_follow_the_numbers() {
+    let words = |change: fn(&mut Comparison)| {
+        let mut comparison = rich(&Recipe::usual());
+        change(&mut comparison);
+        text(&parsed(&html(&comparison).unwrap()))
+    };
+    for (change, says) in [
+        (
+            (|c| {
+                c.ladder.truncate(2);
+                (c.ladder[0].rmse_n, c.ladder[1].rmse_n) = (10.0, 20.0);
+            }) as fn(&mut Comparison),
+            "by 10.0 N; 1 effect raises the error to 20.0 N. None of the effects lowers the error.",
+        ),
+        (
+            |c| c.ladder[4].rmse_n = 2.51,
+            "That is 1.00 times the noise floor: as good as these data can tell.",
+        ),
+        (|c| c.ladder[4].held_out_rmse_n = Some(3.9), "is 3.90 N, about as large: the model does as well"),
+        (
+            |c| c.ladder[4].held_out_rmse_n = Some(39.0),
+            "is 39.0 N, much larger: the fit knows these readings",
+        ),
+        (
+            |c| c.ladder[4].held_out_rmse_n = Some(39.0),
+            "lowest with “Gain of the pressure sensor” (5.85 N): what was added after it follows these readings",
+        ),
+        (|c| c.noise_floor = None, "The scatter of the readings is not known"),
+        (|c| c.ladder[4].bias_n = 0.0, "the model with all effects pulls as hard as the muscle."),
+        (
+            |c| c.ladder[4].fit.as_mut().unwrap().convergence.minima = 3,
+            "and 2 other minima with larger errors were seen as well.",
+        ),
+        (
+            |c| c.ladder[4].fit.as_mut().unwrap().convergence.converged = false,
+            "The search did not end in a minimum",
+        ),
+        (
+            |c| c.loops.iter_mut().for_each(|l| l.half_gap_model_n[1].iter_mut().for_each(|f| *f *= 0.5)),
+            "part of the friction is still missing",
+        ),
+    ] {
+        assert!(words(change).contains(says), "{says}");
+    }
+}
+
+#[test]
+fn a_ladder_on_which_nothing_was_fitted_has_no_search() {
+    let mut comparison = rich(&Recipe::usual());
+    for rung in &mut comparison.ladder {
+        if let Some(fit) = &mut rung.fit {
+            fit.parameters.clear();
+            fit.correlations.clear();
+        }
+    }
+    let words = text(&parsed(&html(&comparison).unwrap()));
+    assert!(words.contains("Nothing was fitted") && !words.contains("How the search ended"));
 }
 
 #[test]

@@ -6,10 +6,10 @@ use plotters::style::RGBColor;
 use crate::PlotError;
 use crate::axis::Axis;
 use crate::comparison::legend::{self, Mark};
-use crate::comparison::number::{level, newton};
+use crate::comparison::number::{level, newton, ticks};
 use crate::comparison::panel::{BELOW, LEFT, Panel, columns};
-use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, fitted, name_fitted};
-use crate::comparison::wording::{has_effects, last_model, names, negligible_n, pulls, sentence};
+use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, name_fitted};
+use crate::comparison::wording::{has_effects, named, names, negligible_n, pulls, sentence};
 use crate::comparison::{Plot, WIDTH};
 use crate::palette::{ALERT, FIRST, GRID, INK, LAST};
 
@@ -24,7 +24,9 @@ struct Variable {
     plot: &'static str,
     /// Heading.
     title: &'static str,
-    /// What it hints at if the error changes sign with it.
+    /// No group of it.
+    nowhere: &'static str,
+    /// What an error that depends on it points to.
     hint: &'static str,
 }
 
@@ -33,49 +35,57 @@ const VARIABLES: [Variable; 8] = [
         name: "pressure",
         plot: "error-by-pressure",
         title: "Error by pressure",
-        hint: "something that grows with the pressure is missing, or a gauge reads wrongly",
+        nowhere: "at no pressure",
+        hint: "something that depends on the pressure, or to a gauge that reads wrongly",
     },
     Variable {
         name: "contraction",
         plot: "error-by-contraction",
         title: "Error by contraction",
-        hint: "the shape of the force curve is not right: geometry, elasticity, or the zero of the length",
+        nowhere: "at no contraction",
+        hint: "the shape of the force curve: geometry, elasticity, or the zero of the length",
     },
     Variable {
         name: "direction",
         plot: "error-by-direction",
         title: "Error by direction",
-        hint: "something depends on the direction: friction or hysteresis",
+        nowhere: "in no direction",
+        hint: "something that depends on the direction: friction or hysteresis",
     },
     Variable {
         name: "rate",
         plot: "error-by-rate",
         title: "Error by rate of contraction",
-        hint: "something depends on the speed or the direction: friction, or viscous losses",
+        nowhere: "at no rate",
+        hint: "something that depends on the speed or the direction: friction, or viscous losses",
     },
     Variable {
         name: "time",
         plot: "error-by-time",
         title: "Error by time",
-        hint: "something changes during the measurement: creep, warming or a drifting sensor",
+        nowhere: "in no stretch of time",
+        hint: "something that changes in the course of the measurement: creep, warming, a drifting sensor, or the specimen",
     },
     Variable {
         name: "sweep",
         plot: "error-by-sweep",
         title: "Error by sweep",
-        hint: "sweeps differ from one another: running-in, or a drifting sensor",
+        nowhere: "in no sweep",
+        hint: "sweeps that differ from one another: running-in, a drifting sensor, or the specimen",
     },
     Variable {
         name: "specimen",
         plot: "error-by-specimen",
         title: "Error by specimen",
-        hint: "the specimens differ: each may need a number of its own",
+        nowhere: "on no specimen",
+        hint: "specimens that differ: each may need a number of its own",
     },
     Variable {
         name: "temperature",
         plot: "error-by-temperature",
         title: "Error by temperature",
-        hint: "something depends on the temperature: the rubber, or a sensor",
+        nowhere: "at no temperature",
+        hint: "something that depends on the temperature: the rubber, or a sensor",
     },
 ];
 
@@ -208,7 +218,7 @@ fn bars(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> Result<
         panel.draw_upwards(&mut svg, kind.quantity());
         let slot = width / by.bins.len() as f64;
         let mut labels = Vec::new();
-        for (i, bin) in by.bins.iter().enumerate() {
+        for (i, (bin, label)) in by.bins.iter().zip(bar_labels(by, slot)).enumerate() {
             let middle = left + (i as f64 + 0.5) * slot;
             let errors = kind.errors(bin, has_effects(comparison));
             let thick = (0.8 * slot / errors.len() as f64).min(24.0);
@@ -217,7 +227,7 @@ fn bars(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> Result<
                 let corner = (start + rung as f64 * thick, panel.up(0.0));
                 svg.rect(corner, (thick, panel.up(error) - panel.up(0.0)), colour);
             }
-            labels.push((middle, tick(by, bin, slot)));
+            labels.push((middle, label));
         }
         for floor in kind.floors(comparison) {
             let y = panel.up(floor);
@@ -228,9 +238,14 @@ fn bars(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> Result<
     Ok(svg.finish(variable.title))
 }
 
-/// What stands under a bar: its middle where there is a unit, its name where there is none.
-fn tick(by: &Breakdown, bin: &Bin, slot: f64) -> String {
-    if by.unit.is_empty() { fitted(&bin.label, TEXT, slot.max(60.0)) } else { level(bin.at) }
+/// What stands under the bars: the middle of a group where there is a unit, its name where there is none.
+fn bar_labels(by: &Breakdown, slot: f64) -> Vec<String> {
+    if by.unit.is_empty() {
+        return by.bins.iter().map(|bin| name_fitted(&bin.label, TEXT, slot.max(60.0))).collect();
+    }
+    let middles: Vec<f64> = by.bins.iter().map(|bin| bin.at).collect();
+    // Pressures are levels and not evenly spaced.
+    if by.variable == "pressure" { middles.into_iter().map(level).collect() } else { ticks(&middles) }
 }
 
 /// Lying bars of groups with names, which may be long.
@@ -283,8 +298,9 @@ fn place(by: &Breakdown, bin: &Bin) -> String {
         "pressure" => format!("at {} bar", level(bin.at)),
         "direction" if bin.label == "at rest" => "at rest".to_owned(),
         "direction" => format!("while {}", bin.label),
-        "specimen" => format!("on specimen {}", bin.label),
-        "sweep" => format!("in sweep {}", bin.label),
+        "specimen" => format!("on {}", named("specimen", &bin.label)),
+        "sweep" => format!("in {}", named("sweep", &bin.label)),
+        "time" => format!("from {} {}", label(), by.unit),
         _ => format!("at {} {}", label(), by.unit),
     }
 }
@@ -295,36 +311,35 @@ fn says(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> String 
         |rung: usize| by.bins.iter().max_by(|a, b| a.bias_n[rung].abs().total_cmp(&b.bias_n[rung].abs()));
     let (Some(first), Some(last)) = (worst(0), worst(1)) else { return String::new() };
     let base = format!("{} the base {} on average", sentence(&place(by, first)), pulls(first.bias_n[0]));
-    let after = if has_effects(comparison) {
-        let model = last_model(comparison);
-        format!(
-            "; for {model} the largest mean error is {}, {}",
-            newton(last.bias_n[1].abs()),
-            place(by, last)
-        )
-    } else {
-        String::new()
-    };
-    format!("{base}{after}: {}.", meaning(comparison, variable, by))
+    if !has_effects(comparison) {
+        return format!("{base}. {}.", sentence(&meaning(comparison, variable, by)));
+    }
+    let left = newton(last.bias_n[1].abs());
+    let place = place(by, last);
+    format!(
+        "{base}; with all effects the largest mean error is {left}, {place}. {}.",
+        sentence(&meaning(comparison, variable, by))
+    )
 }
 
 /// What the mean errors of the last rung mean.
 fn meaning(comparison: &Comparison, variable: &Variable, by: &Breakdown) -> String {
     let negligible = negligible_n(comparison);
     let (low, high) = crate::axis::range(by.bins.iter().map(|bin| bin.bias_n[1])).unwrap_or((0.0, 0.0));
+    let nowhere = variable.nowhere;
     if low >= -negligible && high <= negligible {
         return match comparison.noise_floor {
-            Some(_) => format!("no {} is off by more than a single reading scatters", variable.name),
-            None => format!("no {} is off by more than half a per cent of full scale", variable.name),
+            Some(_) => format!("{nowhere} is the mean error larger than a single reading scatters"),
+            None => format!("{nowhere} is the mean error larger than half a per cent of full scale"),
         };
     }
     if low < -0.5 * negligible && high > 0.5 * negligible {
-        return format!("the error changes sign, so {}", variable.hint);
+        return format!("the error changes sign, which points to {}", variable.hint);
     }
     if high - low > negligible {
-        return format!("the error is not equally large everywhere, so {}", variable.hint);
+        return format!("the error is not equally large everywhere, which points to {}", variable.hint);
     }
-    "the model is off to the same side throughout".to_owned()
+    "the model is off to the same side throughout, by about as much".to_owned()
 }
 
 #[cfg(test)]
@@ -351,6 +366,8 @@ mod tests {
         let by = |variable, unit| Breakdown { variable, unit, bins: Vec::new() };
         assert_eq!(place(&by("pressure", "bar"), &bin("2.50")), "at 2.5 bar");
         assert_eq!(place(&by("direction", ""), &bin("lengthening")), "while lengthening");
+        assert_eq!(place(&by("sweep", ""), &bin("3 up")), "in sweep “3 up”");
+        assert_eq!(place(&by("time", "s"), &bin("0.0 to 9.5")), "from 0.0 to 9.5 s");
         assert_eq!(place(&by("rate", "%/s"), &bin("-1.5 to 0.0")), "at −1.5 to 0.0 %/s");
     }
 }

@@ -10,6 +10,7 @@ use crate::comparison::levels::spread;
 use crate::comparison::number::{bar, newton};
 use crate::comparison::panel::{BELOW, Panel, columns};
 use crate::comparison::svg::{Stroke, Svg, TEXT, fitted};
+use crate::comparison::wording::effect_title;
 use crate::comparison::{Plot, WIDTH};
 use crate::palette::{CATEGORIES, INK};
 
@@ -40,7 +41,8 @@ pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let chosen: Vec<&Stack> = spread(stacks.len(), LEVELS).into_iter().map(|i| stacks[i]).collect();
     let mut entries = vec![(Mark::Dot(INK), "measured − base: what is to be explained".to_owned())];
     entries.push((Mark::Line(Stroke::solid(INK, 1.5)), "sum of all effects".to_owned()));
-    entries.extend(shares.iter().map(|s| (Mark::Box(s.colour), fitted(&s.name, TEXT, 300.0))));
+    let title = |share: &Share| fitted(effect_title(comparison, &share.name), TEXT, 300.0);
+    entries.extend(shares.iter().map(|share| (Mark::Box(share.colour), title(share))));
     let start = legend::height(&entries, WIDTH - 20.0) + 6.0;
     let mut svg = Svg::new("contributions", WIDTH, start + HEAD + HEIGHT + BELOW);
     legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, &entries);
@@ -58,13 +60,18 @@ pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     } else {
         String::new()
     };
+    let (both, friction) = if comparison.data.is_path {
+        let friction = " Friction adds as much on one branch as it takes on the other, so it is small here.";
+        (", averaged over both directions", friction)
+    } else {
+        ("", "")
+    };
     Ok(Some(Plot {
         name: "contributions",
         title: "What each effect contributes".to_owned(),
         caption: format!(
-            "Dots show what the base misses, averaged over both directions; coloured areas show what each effect adds (above zero) or \
-             takes away (below); the line is their sum. Where the line runs through the dots, the effects explain what the base \
-             misses. Friction adds as much on one branch as it takes on the other, so it is small here.{left_out}"
+            "Dots show what the base misses{both}; coloured areas show what each effect adds (above zero) or takes away (below); the \
+             line is their sum. Where the line runs through the dots, the effects explain what the base misses.{friction}{left_out}"
         ),
         svg: svg.finish("Contribution of each effect to the force"),
     }))
@@ -177,9 +184,12 @@ pub(super) fn says(comparison: &Comparison) -> String {
         return "No effect was added: the base stands alone.".to_owned();
     };
     let others = match ranked.get(1) {
-        Some((second, size)) => format!("; next comes “{second}” with {}", newton(*size)),
+        Some((second, size)) => {
+            format!("; next comes “{}” with {}", effect_title(comparison, second), newton(*size))
+        }
         None => String::new(),
     };
+    let name = effect_title(comparison, name);
     format!("“{name}” changes the force most, by {} on average over all levels{others}.", newton(*size))
 }
 

@@ -22,10 +22,8 @@ pub(super) fn says(comparison: &Comparison) -> String {
     };
     let others = match end.minima {
         0 | 1 => "no other minimum was seen".to_owned(),
-        n => format!(
-            "{} with larger errors were seen as well",
-            count(n - 1, "other minimum").replace("minimums", "minima")
-        ),
+        2 => "another minimum with a larger error was seen as well".to_owned(),
+        n => format!("{} other minima with larger errors were seen as well", n - 1),
     };
     format!("The search ended in a minimum{agreeing}, and {others}.")
 }

@@ -47,7 +47,7 @@ pub(super) fn says(pairs: &[Pair], all: usize) -> String {
         if all > pairs.len() { format!(" The {} nearest are listed.", pairs.len()) } else { String::new() };
     let (these, move_) = if all == 1 { ("1 pair".to_owned(), "moves") } else { (count(all, "pair"), "move") };
     format!(
-        "{these} of numbers {move_} together, first of all {} and {} (r = {}): if one is changed, the other makes up for it, so \
+        "{these} of numbers {move_} together, first of all “{}” and “{}” (r = {}): if one is changed, the other makes up for it, so \
          neither can be believed on its own.{more}",
         first.first, first.second, first.correlation
     )

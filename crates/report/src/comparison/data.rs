@@ -30,10 +30,12 @@ pub(super) fn says(comparison: &Comparison) -> String {
     };
     let worst = comparison.quality.iter().map(|finding| finding.severity).max();
     let verdict = match worst {
-        None => "the quality gate found nothing wrong",
-        Some(Severity::Note) => "the quality gate has remarks, but nothing that spoils the comparison",
-        Some(Severity::Warning) => "the quality gate found something that may spoil the comparison",
-        Some(Severity::Error) => "the quality gate found faults: repair the data before trusting this page",
+        None => "the check of the data found nothing wrong",
+        Some(Severity::Note) => {
+            "the check of the data has remarks, but found nothing that spoils the comparison"
+        }
+        Some(Severity::Warning) => "the check of the data found something that may spoil the comparison",
+        Some(Severity::Error) => "the check of the data found faults: repair them before trusting this page",
     };
     format!("{used}; {verdict}.")
 }
@@ -57,7 +59,7 @@ pub(super) fn facts(comparison: &Comparison) -> Vec<(&'static str, String)> {
     };
     let mut facts = vec![
         ("kind", kind),
-        ("specimens", and(&names)),
+        (if data.specimens.len() == 1 { "specimen" } else { "specimens" }, and(&names)),
         ("pressure", range(data.pressure_pa, bar)),
         ("contraction", range(data.contraction, percent)),
         ("force", range(data.force_n, newton)),

@@ -9,7 +9,7 @@ use crate::comparison::levels::{Shown, specimens};
 use crate::comparison::number::{bar, newton};
 use crate::comparison::panel::{BELOW, Panel, columns};
 use crate::comparison::svg::{BOLD, Stroke, Svg, name_fitted};
-use crate::comparison::wording::{has_effects, last_model, pulls, sentence};
+use crate::comparison::wording::{has_effects, named, pulls, sentence};
 use crate::comparison::{Plot, WIDTH};
 use crate::palette::{INK, SOFT_INK};
 
@@ -67,8 +67,9 @@ pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
         name: "force",
         title: "Force against contraction".to_owned(),
         caption: format!(
-            "Dots are readings, lines the model at the same readings; colour is the pressure. The closer the solid lines run through \
-             the dots, the better.{}{specimens}",
+            "Dots are readings, lines the model at the same readings; colour is the pressure. The closer the {} lines run through the \
+             dots, the better.{}{specimens}",
+            if has_effects(comparison) { "solid" } else { "dashed" },
             shown.caption()
         ),
         svg: svg.finish("Force against contraction, measured and modelled"),
@@ -94,18 +95,18 @@ fn draw_curve(svg: &mut Svg, panel: &Panel, curve: &Curve, shown: &Shown, has_ef
     let place = |p: &CurvePoint, force_n: f64| panel.at((100.0 * p.contraction, force_n));
     let dots: Vec<_> = curve.points.iter().map(|p| place(p, p.measured_n)).collect();
     // Few dots must be seen, many must not hide the lines.
-    let (radius, opacity) = if dots.len() < 60 { (2.8, 0.8) } else { (1.8, 0.45) };
+    let (radius, opacity, line) = if dots.len() < 60 { (2.8, 0.8, 1.8) } else { (2.6, 0.3, 1.3) };
     svg.dots(&dots, radius, colour, opacity);
     for stretch in stretches(&curve.points) {
-        let mut line: Vec<_> = stretch.iter().map(|p| place(p, p.first_n)).collect();
+        let mut points: Vec<_> = stretch.iter().map(|p| place(p, p.first_n)).collect();
         // Dashes of both branches lie on one another if both begin on the left.
-        if line.first() > line.last() {
-            line.reverse();
+        if points.first() > points.last() {
+            points.reverse();
         }
-        svg.polyline(&line, Stroke::dashed(colour, 1.0));
+        svg.polyline(&points, Stroke::dashed(colour, 1.0));
         if has_effects {
-            let line: Vec<_> = stretch.iter().map(|p| place(p, p.last_n)).collect();
-            svg.polyline(&line, Stroke::solid(colour, 1.8));
+            let points: Vec<_> = stretch.iter().map(|p| place(p, p.last_n)).collect();
+            svg.polyline(&points, Stroke::solid(colour, line));
         }
     }
 }
@@ -148,17 +149,18 @@ pub(super) fn says(comparison: &Comparison) -> String {
     let (Some((first, before)), Some((last, after))) = (worst(0), worst(1)) else { return String::new() };
     let several = specimens(comparison.curves.iter().map(|curve| &curve.specimen)).len() > 1;
     let place = |curve: &Curve| {
-        let specimen = if several { format!(" on specimen {}", curve.specimen) } else { String::new() };
+        let specimen =
+            if several { format!(" on {}", named("specimen", &curve.specimen)) } else { String::new() };
         format!("at {}{specimen}", bar(curve.pressure_pa))
     };
     let base = format!(
-        "{} the base {} on average: there it is furthest off.",
+        "{} the base {} on average{}.",
         sentence(&place(first)),
-        pulls(before)
+        pulls(before),
+        if comparison.curves.len() > 1 { ": there it is furthest off" } else { "" }
     );
     if has_effects(comparison) {
-        let model = last_model(comparison);
-        format!("{base} For {model} the largest mean error is {}, {}.", newton(after.abs()), place(last))
+        format!("{base} With all effects the largest mean error is {}, {}.", newton(after.abs()), place(last))
     } else {
         base
     }

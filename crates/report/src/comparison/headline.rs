@@ -4,7 +4,7 @@ use bulge_inference::Comparison;
 use serde::Serialize;
 
 use crate::comparison::number::{count, newton, three};
-use crate::comparison::wording::{has_effects, last_fit};
+use crate::comparison::wording::{has_effects, last_fit, pulls};
 
 /// A number in large print with what it is.
 #[derive(Debug, Serialize)]
@@ -64,14 +64,29 @@ pub(super) fn says(comparison: &Comparison) -> String {
     )
 }
 
+/// Where the error lies: its mean over all readings.
+pub(super) fn mean_says(comparison: &Comparison) -> String {
+    let (Some(first), Some(last)) = (comparison.ladder.first(), comparison.ladder.last()) else {
+        return "No model was compared with these data.".to_owned();
+    };
+    let base = format!("On average over all readings the base {}", pulls(first.bias_n));
+    if has_effects(comparison) {
+        format!("{base}; the model with all effects {}.", pulls(last.bias_n))
+    } else {
+        format!("{base}.")
+    }
+}
+
 /// How far that is above the noise floor, and what that means.
 pub(super) fn verdict(comparison: &Comparison) -> Vec<String> {
     let mut verdict = Vec::new();
     let Some(last) = comparison.ladder.last() else { return verdict };
     if let Some(floor) = comparison.noise_floor.as_ref().filter(|floor| floor.sd_n > 0.0) {
         let ratio = last.rmse_n / floor.sd_n;
-        let meaning = if ratio < 0.8 {
+        let meaning = if ratio < 0.8 && last.fitted > 0 {
             "less than the readings themselves scatter, so part of the scatter was fitted"
+        } else if ratio < 0.8 {
+            "less than the readings themselves are thought to scatter, so the floor is an overestimate"
         } else if ratio < 1.3 {
             "as good as these data can tell"
         } else if ratio < 3.0 {
@@ -82,19 +97,20 @@ pub(super) fn verdict(comparison: &Comparison) -> Vec<String> {
         verdict.push(format!("That is {} times the noise floor: {meaning}.", three(ratio)));
     } else {
         verdict.push(
-            "The scatter of the readings is not known, so it can't be said how much of that is noise."
+            "The scatter of the readings is not known, so how much of that is noise cannot be said."
                 .to_owned(),
         );
     }
     if let Some(held_out) = last.held_out_rmse_n.filter(|_| last.fitted > 0) {
-        verdict.push(if held_out > 1.5 * last.rmse_n {
-            format!(
-                "On data held out of the fit the error is {}, much more: the fit knows these readings better than the muscle.",
-                newton(held_out)
-            )
+        let ratio = if last.rmse_n > 0.0 { held_out / last.rmse_n } else { f64::INFINITY };
+        let meaning = if ratio < 1.15 {
+            "about as large: the model does as well on what it has not seen"
+        } else if ratio < 1.5 {
+            "somewhat larger: the model does nearly as well on what it has not seen"
         } else {
-            format!("On data held out of the fit the error is {}: the model predicts what it has not seen.", newton(held_out))
-        });
+            "much larger: the fit knows these readings better than the muscle"
+        };
+        verdict.push(format!("On data held out of the fit the error is {}, {meaning}.", newton(held_out)));
     }
     if last_fit(comparison).is_some_and(|fit| fit.parameters.iter().any(|p| !p.plausible)) {
         verdict.push(

@@ -15,6 +15,8 @@ use crate::palette::{ALERT, FIRST, GRID, INK, LAST, SOFT_INK};
 /// Room for the names of the rungs and for the numbers.
 const NAMES: f64 = 310.0;
 const NUMBERS: f64 = 150.0;
+/// From this ratio on an error on unseen data is worse than that of an earlier rung: less may be chance.
+const MUCH_WORSE: f64 = 1.2;
 
 /// The plot; none without a ladder.
 ///
@@ -55,11 +57,20 @@ pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     Ok(Some(Plot {
         name: "ladder",
         title: "Error after each effect added".to_owned(),
-        caption: "Each row adds one effect to those above it; a shorter bar is better. No model can get below the noise floor for \
-                  good: a bar to the left of it follows the scatter of these readings."
-            .to_owned(),
+        caption: caption(comparison),
         svg: svg.finish("Error after each effect added"),
     }))
+}
+
+fn caption(comparison: &Comparison) -> String {
+    let rows = if has_effects(comparison) { "Each row adds one effect to those above it; a" } else { "A" };
+    let floor = match comparison.noise_floor {
+        Some(_) => {
+            " No model can get below the noise floor for good: a bar that ends to the left of it follows the scatter of these readings."
+        }
+        None => "",
+    };
+    format!("{rows} shorter bar is better.{floor}")
 }
 
 fn axis(rungs: &[Rung], floor: Option<f64>) -> Result<Axis, PlotError> {
@@ -116,14 +127,18 @@ pub(super) fn says(comparison: &Comparison) -> String {
         |pair| format!(" “{}” helps most: {} less.", pair[1].title, newton(pair[0].rmse_n - pair[1].rmse_n)),
     );
     let effects = count(comparison.ladder.len() - 1, "effect");
-    let moved = if last.rmse_n < first.rmse_n { "bring" } else { "leave" };
-    let to = if last.rmse_n < first.rmse_n { "down to" } else { "at" };
+    let [before, after] = [first, last].map(|rung| newton(rung.rmse_n));
+    let (moved, to) = if before == after {
+        ("leave", "at")
+    } else if last.rmse_n < first.rmse_n {
+        ("bring", "down to")
+    } else {
+        ("raise", "to")
+    };
     let verb = if comparison.ladder.len() == 2 { format!("{moved}s") } else { moved.to_owned() };
+    let held_out = held_out(comparison);
     format!(
-        "The base alone misses the measurement by {}; {effects} {verb} the error {to} {}.{helps}{}",
-        newton(first.rmse_n),
-        newton(last.rmse_n),
-        held_out(comparison)
+        "The base alone misses the measurement by {before}; {effects} {verb} the error {to} {after}.{helps}{held_out}"
     )
 }
 
@@ -136,8 +151,8 @@ fn held_out(comparison: &Comparison) -> String {
     };
     let last = comparison.ladder.len() - 1;
     match unseen().next_back() {
-        Some((i, _, at_last)) if i == last && at_last > 1.02 * error && place < last => format!(
-            " On data held out of the fit the error is lowest with “{}” ({}): what was added after it fits these readings, not the muscle.",
+        Some((i, _, at_last)) if i == last && at_last > MUCH_WORSE * error && place < last => format!(
+            " On data held out of the fit the error is lowest with “{}” ({}): what was added after it follows these readings, not the muscle.",
             rung.title,
             newton(error)
         ),

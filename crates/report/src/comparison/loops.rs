@@ -130,7 +130,13 @@ pub(super) fn says(comparison: &Comparison) -> String {
     if !has_effects(comparison) {
         return format!("{base} {of_base}.");
     }
-    let share = if measured.abs() > 0.0 { last / measured } else { 1.0 };
+    if measured <= 0.0 {
+        return format!(
+            "{base} {of_base}, the model with all effects {}: a muscle with friction would have a gap above zero.",
+            newton(last)
+        );
+    }
+    let share = last / measured;
     let meaning = if (share - 1.0).abs() < 0.1 {
         "the friction is there in the right size"
     } else if share < 1.0 {

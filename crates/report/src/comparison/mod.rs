@@ -56,6 +56,64 @@ pub struct Plot {
 ///
 /// # Errors
 /// A number that isn't finite, lists of different lengths that belong together, or values too far apart for an axis.
+///
+/// # Examples
+/// A base without effects that is off by 41 N:
+/// ```
+/// # use bulge_inference::{Comparison, DataSummary, Rung};
+/// use bulge_report::comparison::html;
+///
+/// # let rung = Rung {
+/// #     added: None,
+/// #     title: "Ideal braided cylinder".to_owned(),
+/// #     rmse_n: 41.0,
+/// #     rmse_percent: 5.1,
+/// #     bias_n: -38.0,
+/// #     largest_n: 90.0,
+/// #     held_out_rmse_n: None,
+/// #     held_out_by: None,
+/// #     r_squared: 0.96,
+/// #     fitted: 0,
+/// #     half_gap_rmse_n: None,
+/// #     fit: None,
+/// # };
+/// # let data = DataSummary {
+/// #     rows: 2,
+/// #     used: 2,
+/// #     left_out: Vec::new(),
+/// #     sha256: String::new(),
+/// #     files: vec!["isobars.csv".to_owned()],
+/// #     sweeps: 1,
+/// #     specimens: vec!["A".to_owned()],
+/// #     is_path: false,
+/// #     pressure_pa: [1e5, 3e5],
+/// #     contraction: [0.0, 0.25],
+/// #     force_n: [0.0, 800.0],
+/// #     full_scale_n: 800.0,
+/// # };
+/// # let comparison = Comparison {
+/// #     schema: "bulge.comparison/1",
+/// #     muscle: "Braided muscle <20 mm>".to_owned(),
+/// #     base: "equilibrium".to_owned(),
+/// #     data,
+/// #     quality: Vec::new(),
+/// #     noise_floor: None,
+/// #     ladder: vec![rung],
+/// #     by: Vec::new(),
+/// #     loops: Vec::new(),
+/// #     maps: Vec::new(),
+/// #     curves: Vec::new(),
+/// #     contributions: Vec::new(),
+/// #     scatter: vec![[100.0, 130.0, 130.0], [800.0, 841.0, 841.0]],
+/// #     rivals: Vec::new(),
+/// #     warnings: Vec::new(),
+/// # };
+/// let page = html(&comparison)?;
+/// assert!(page.contains("The base alone misses the measured force by 41.0 N (5.10 % of full scale)."));
+/// // Names are text, whatever they look like.
+/// assert!(page.contains("Braided muscle &lt;20 mm&gt;"));
+/// # Ok::<(), bulge_report::PlotError>(())
+/// ```
 pub fn html(comparison: &Comparison) -> Result<String, PlotError> {
     check::check(comparison)?;
     page::render(comparison)
@@ -65,6 +123,21 @@ pub fn html(comparison: &Comparison) -> Result<String, PlotError> {
 ///
 /// # Errors
 /// As [`html`].
+///
+/// # Examples
+/// ```
+/// use bulge_inference::Comparison;
+/// use bulge_report::comparison::plots;
+///
+/// /// The page and its plots as files.
+/// fn write(comparison: &Comparison, folder: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
+///     std::fs::write(folder.join("report.html"), bulge_report::comparison::html(comparison)?)?;
+///     for plot in plots(comparison)? {
+///         std::fs::write(folder.join(plot.name).with_extension("svg"), plot.svg)?;
+///     }
+///     Ok(())
+/// }
+/// ```
 pub fn plots(comparison: &Comparison) -> Result<Vec<Plot>, PlotError> {
     check::check(comparison)?;
     let mut plots = Vec::new();

@@ -24,6 +24,7 @@ pub(super) fn three(value: f64) -> String {
     };
     if rounded < 0.0 { format!("−{text}") } else { text }
 }
+
 /// A share of variance: near 1, where three digits tell nothing, four decimals.
 pub(super) fn share(value: f64) -> String {
     if (0.99..1.0).contains(&value) { format!("{value:.4}") } else { three(value) }
@@ -68,10 +69,27 @@ pub(super) fn percent(share: f64) -> String {
 /// Three digits without trailing zeros.
 pub(super) fn level(value: f64) -> String {
     let text = three(value);
-    if text.contains('.') && !text.contains('×') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
+    let (digits, power) = text.split_once(' ').map_or((text.as_str(), None), |(d, p)| (d, Some(p)));
+    let digits =
+        if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
+    power.map_or_else(|| digits.to_owned(), |power| format!("{digits} {power}"))
+}
+
+/// Labels of evenly spaced values: as few decimals as show each to a twentieth of the distance to its neighbour.
+pub(super) fn ticks(values: &[f64]) -> Vec<String> {
+    let gaps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let gap = gaps.filter(|gap| *gap > 0.0).fold(f64::INFINITY, f64::min);
+    let shown = |decimals: usize| -> Vec<String> {
+        values.iter().map(|value| format!("{:.decimals$}", value + 0.0)).collect()
+    };
+    let is_near = |decimals: &usize| {
+        shown(*decimals).iter().zip(values).all(|(text, value)| {
+            text.parse::<f64>().is_ok_and(|rounded| (rounded - value).abs() <= 0.05 * gap)
+        })
+    };
+    match (0..5).find(is_near).filter(|_| gap.is_finite() && values.iter().all(|v| v.abs() < 1e6)) {
+        Some(decimals) => shown(decimals).into_iter().map(|text| text.replace('-', "−")).collect(),
+        None => values.iter().copied().map(level).collect(),
     }
 }
 
@@ -119,6 +137,15 @@ mod tests {
     fn levels_have_no_trailing_zeros() {
         assert_eq!([1e5, 2.5e5, 12_500.0, 0.0].map(bar), ["1 bar", "2.5 bar", "0.125 bar", "0 bar"]);
         assert_eq!([0.1, 0.125, -0.02].map(percent), ["10 %", "12.5 %", "−2 %"]);
+    }
+
+    #[test]
+    fn ticks_have_equally_many_decimals() {
+        assert_eq!(ticks(&[1.75, 4.25, 6.75, 11.75]), ["1.8", "4.2", "6.8", "11.8"]);
+        assert_eq!(ticks(&[-8.99, 26.97, 44.95]), ["−9", "27", "45"]);
+        assert_eq!(ticks(&[0.0, 2e7]), ["0", "2 × 10⁷"]);
+        assert_eq!(ticks(&[12.34]), ["12.3"]);
+        assert_eq!(ticks(&[]), [""; 0]);
     }
 
     #[test]

@@ -52,6 +52,7 @@ struct Page<'a> {
     rungs: Vec<ladder_table::Row>,
     force: Option<Figure>,
     errors: Vec<Figure>,
+    errors_says: String,
     maps: Option<Figure>,
     loops: Option<Figure>,
     contributions: Option<Figure>,
@@ -130,6 +131,7 @@ fn page(comparison: &Comparison) -> Result<Page<'_>, PlotError> {
         rungs: ladder_table::rows(comparison),
         force: figure(force::plot(comparison)?, force::says(comparison)),
         errors: errors.into_iter().map(|(plot, says)| Figure::new(plot, says)).collect(),
+        errors_says: headline::mean_says(comparison),
         maps: figure(residual_map::plot(comparison)?, residual_map::says(comparison)),
         loops: figure(loops::plot(comparison)?, loops::says(comparison)),
         contributions: figure(contributions::plot(comparison)?, String::new()),
@@ -149,4 +151,25 @@ fn page(comparison: &Comparison) -> Result<Page<'_>, PlotError> {
         files: &comparison.data.files,
         sha256: &comparison.data.sha256,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_between_backticks_are_marked_and_markup_stays_text() {
+        let shown =
+            ["a `b` <c>", "`<a>` and `b`", "an odd ` one", "", "`a"].map(|text| code(text).to_string());
+        assert_eq!(
+            shown,
+            [
+                "a <code>b</code> &lt;c&gt;",
+                "<code>&lt;a&gt;</code> and <code>b</code>",
+                "an odd ` one",
+                "",
+                "`a"
+            ]
+        );
+    }
 }

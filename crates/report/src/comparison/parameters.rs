@@ -127,7 +127,10 @@ pub(super) fn says(comparison: &Comparison) -> String {
     if remarks.is_empty() {
         format!("{fitted} {were} fitted: all are plausible, and the data determine them.")
     } else {
-        format!("{fitted} {were} fitted: {}. Do not use these values elsewhere.", remarks.join(", "))
+        format!(
+            "{fitted} {were} fitted: {}. Do not use the values that are marked elsewhere.",
+            remarks.join(", ")
+        )
     }
 }
 

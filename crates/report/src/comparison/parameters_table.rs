@@ -3,7 +3,7 @@
 use bulge_inference::{Comparison, Fitted};
 use serde::Serialize;
 
-use crate::comparison::number::three;
+use crate::comparison::number::{level, three};
 use crate::comparison::wording::last_fit;
 
 /// One row.
@@ -55,9 +55,9 @@ fn row(parameter: &Fitted) -> Row {
             .unwrap_or_default(),
         interval: interval(parameter),
         plausible: match (low.is_finite(), high.is_finite()) {
-            (true, true) => format!("{} to {}", three(low), three(high)),
-            (true, false) => format!("from {}", three(low)),
-            (false, true) => format!("up to {}", three(high)),
+            (true, true) => format!("{} to {}", level(low), level(high)),
+            (true, false) => format!("from {}", level(low)),
+            (false, true) => format!("up to {}", level(high)),
             (false, false) => "any".to_owned(),
         },
         alerts,

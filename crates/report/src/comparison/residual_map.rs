@@ -4,7 +4,7 @@ use bulge_inference::{Comparison, ResidualMap};
 use plotters::style::{RGBColor, WHITE};
 
 use crate::PlotError;
-use crate::comparison::number::{bar, level, percent, three};
+use crate::comparison::number::{bar, level, percent, three, ticks};
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, width};
 use crate::comparison::wording::{has_effects, names, pulls, sentence};
 use crate::comparison::{Plot, WIDTH};
@@ -34,7 +34,7 @@ pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let heights: Vec<f64> = maps.iter().map(|map| row_height(map) * map.pressure_pa.len() as f64).collect();
     let total: f64 = heights.iter().map(|height| HEAD + height + BELOW).sum();
     let mut svg = Svg::new("residual-map", WIDTH, total + SCALE);
-    let each = WIDTH / 2.0;
+    let each = WIDTH / names.len() as f64;
     let mut top = 0.0;
     for (map, height) in maps.iter().zip(&heights) {
         for (i, name) in names.iter().enumerate() {
@@ -45,7 +45,9 @@ pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
                 width: each - LEFT - 16.0,
                 height: *height,
             };
-            let heading = format!("{}, {name}", map.direction);
+            // Single readings have no direction to name.
+            let heading =
+                if comparison.data.is_path { format!("{}, {name}", map.direction) } else { sentence(name) };
             svg.text((grid.left, grid.top - 13.0), &heading, Style::new(Anchor::Start).bold());
             grid.draw(&mut svg, map, values, most[i]);
         }
@@ -57,12 +59,26 @@ pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     Ok(Some(Plot {
         name: "residual-map",
         title: "Map of the mean errors".to_owned(),
-        caption: "Each cell is the mean of measured − model, in N. Orange: the model pulls too weakly; blue: too hard; pale: it is right. \
-                  Hatched: nothing was measured. Before and after have scales of their own; the second is never finer than three times \
-                  the noise floor, so a pattern that is seen there is an effect that is missing."
-            .to_owned(),
+        caption: caption(comparison),
         svg: svg.finish("Mean errors over pressure and contraction"),
     }))
+}
+
+fn caption(comparison: &Comparison) -> String {
+    let scales = match (has_effects(comparison), &comparison.noise_floor) {
+        (true, Some(_)) => {
+            " Before and after have scales of their own; the second is never finer than three times the noise floor, so a pattern that \
+             is seen there hints at an effect that is missing."
+        }
+        (true, None) => {
+            " Before and after have scales of their own: look at the numbers before comparing colours."
+        }
+        (false, _) => "",
+    };
+    format!(
+        "Each cell is the mean of measured − model, in N. Orange: the model pulls too weakly; blue: too hard; pale: it is right. Hatched: \
+         nothing was measured.{scales}"
+    )
 }
 
 /// Error at the ends of the colours of the first and the last rung \[N\].
@@ -113,7 +129,8 @@ impl Grid {
             let y = self.top + (rows - i) as f64 * size.1 - 0.5 * size.1;
             svg.text((self.left - 6.0, y), &level(pressure / 1e5), Style::new(Anchor::End));
         }
-        let labels: Vec<String> = map.contraction.iter().map(|c| level(100.0 * c)).collect();
+        let percents: Vec<f64> = map.contraction.iter().map(|c| 100.0 * c).collect();
+        let labels = ticks(&percents);
         let widest = labels.iter().map(|label| width(label, TEXT)).fold(0.0, f64::max);
         let every = ((widest + 6.0) / size.0).ceil().max(1.0);
         for (i, label) in labels.iter().enumerate().filter(|(i, _)| *i as f64 % every == 0.0) {
@@ -179,8 +196,12 @@ pub(super) fn says(comparison: &Comparison) -> String {
         cells.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
     };
     let place = |(_, pressure, contraction, direction): (f64, f64, f64, &str)| {
-        let motion = if direction == "at rest" { direction.to_owned() } else { format!("while {direction}") };
-        format!("at {} and {} contraction {motion}", bar(pressure), percent(contraction))
+        let motion = match direction {
+            _ if !comparison.data.is_path => String::new(),
+            "at rest" => " at rest".to_owned(),
+            _ => format!(" while {direction}"),
+        };
+        format!("at {} and {} contraction{motion}", bar(pressure), percent(contraction))
     };
     let (Some(first), Some(last)) = (worst(false), worst(true)) else { return String::new() };
     let base = format!("{} the base {}: no cell is worse.", sentence(&place(first)), pulls(first.0));

@@ -27,13 +27,19 @@ pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let values = || rows.iter().flat_map(|row| row.iter().take(1 + names.len())).copied();
     let axis = Axis::with_intervals(values(), 6.0).ok_or_else(|| PlotError::span("force [N]", values()))?;
     let mut svg = Svg::new("scatter", WIDTH, HEAD + HEIGHT + BELOW);
+    // A panel that is alone stands in the middle.
+    let aside = if names.len() == 1 { 0.25 * WIDTH } else { 0.0 };
     for (i, ((left, width), name)) in columns(2, WIDTH).into_iter().zip(&names).enumerate() {
+        let left = left + aside;
         let panel = Panel { x: axis, y: axis, left, top: HEAD, width, height: HEIGHT };
         panel.draw(&mut svg, &sentence(name), "measured force [N]", "predicted force [N]");
         let [low, high] = axis.ends();
         svg.line(panel.at((low, low)), panel.at((high, high)), Stroke::solid(INK, 1.0));
         let dots: Vec<_> = rows.iter().map(|row| panel.at((row[0], row[1 + i]))).collect();
-        svg.dots(&dots, 2.0, if i == 0 { FIRST } else { LAST }, 0.5);
+        let radius = if dots.len() < 200 { 3.0 } else { 2.0 };
+        // Grey fades more than blue.
+        let (colour, opacity) = if i == 0 { (FIRST, 0.9) } else { (LAST, 0.5) };
+        svg.dots(&dots, radius, colour, opacity);
     }
     Ok(Some(Plot {
         name: "scatter",
@@ -49,18 +55,17 @@ pub(super) fn says(comparison: &Comparison) -> String {
     let (Some(first), Some(last)) = (comparison.ladder.first(), comparison.ladder.last()) else {
         return String::new();
     };
-    let explained = |r_squared: f64| format!("R² = {}", share(r_squared));
+    let [before, after] = [first, last].map(|rung| share(rung.r_squared));
+    let better = "The closer the dots lie to the line, the better";
     if has_effects(comparison) {
         format!(
-            "The closer the dots lie to the line, the better: {} for the base, {} with all effects, where the largest single error is {}.",
-            explained(first.r_squared),
-            explained(last.r_squared),
+            "{better}: R², which is 1 for a perfect model, is {before} for the base and {after} with all effects; the largest single error \
+             that is left is {}.",
             newton(last.largest_n)
         )
     } else {
         format!(
-            "The closer the dots lie to the line, the better: {}, and the largest single error is {}.",
-            explained(first.r_squared),
+            "{better}: R², which is 1 for a perfect model, is {before}, and the largest single error is {}.",
             newton(first.largest_n)
         )
     }

@@ -21,6 +21,9 @@ pub(super) fn names(comparison: &Comparison) -> Vec<&'static str> {
 
 /// `pulls 41 N too hard` for a mean error measured - model of -41 N.
 pub(super) fn pulls(error_n: f64) -> String {
+    if newton(error_n) == newton(0.0) {
+        return "pulls as hard as the muscle".to_owned();
+    }
     let side = if error_n < 0.0 { "too hard" } else { "too weakly" };
     format!("pulls {} {side}", newton(error_n.abs()))
 }
@@ -30,9 +33,22 @@ pub(super) fn negligible_n(comparison: &Comparison) -> f64 {
     comparison.noise_floor.as_ref().map_or(0.005 * comparison.data.full_scale_n.abs(), |floor| floor.sd_n)
 }
 
-/// The fit of the last rung that has one.
+/// The fit of the last rung in which something was fitted.
 pub(super) fn last_fit(comparison: &Comparison) -> Option<&Fit> {
-    comparison.ladder.iter().rev().find_map(|rung| rung.fit.as_ref())
+    let mut fits = comparison.ladder.iter().rev().filter_map(|rung| rung.fit.as_ref());
+    fits.find(|fit| !fit.parameters.is_empty())
+}
+
+/// `specimen A`, `sweep “3, after the break”`: a name of several words stands in quotes.
+pub(super) fn named(what: &str, name: &str) -> String {
+    let is_one_word = name.chars().all(|c| c.is_alphanumeric() || c == '-' || c == '_');
+    if is_one_word { format!("{what} {name}") } else { format!("{what} “{}”", name.trim()) }
+}
+
+/// The title of an effect, or its name if it is on no rung.
+pub(super) fn effect_title<'a>(comparison: &'a Comparison, effect: &'a str) -> &'a str {
+    let rung = comparison.ladder.iter().find(|rung| rung.added.as_deref() == Some(effect));
+    rung.map_or(effect, |rung| &rung.title)
 }
 
 /// A first letter as at the beginning of a sentence.
@@ -48,6 +64,13 @@ mod tests {
     #[test]
     fn a_negative_error_means_that_the_model_pulls_too_hard() {
         assert_eq!([pulls(-41.04), pulls(3.0)], ["pulls 41.0 N too hard", "pulls 3.00 N too weakly"]);
+        assert_eq!(pulls(-0.0), "pulls as hard as the muscle");
         assert_eq!(sentence("the base"), "The base");
+    }
+
+    #[test]
+    fn names_of_several_words_stand_in_quotes() {
+        let shown = ["A", "run-3", "3, after the break "].map(|name| named("sweep", name));
+        assert_eq!(shown, ["sweep A", "sweep run-3", "sweep “3, after the break”"]);
     }
 }

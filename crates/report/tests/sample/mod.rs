@@ -1,5 +1,7 @@
 //! Comparisons to draw: a simulated braided muscle in loops, and odd cases made from it.
 
+#![expect(clippy::float_cmp, reason = "values are compared with those they were copied from")]
+
 use bulge_inference::{
     Bin, Breakdown, Comparison, Convergence, Curve, CurvePoint, DataSummary, Fit, Fitted, LeftOut, LoopGap,
     NoiseFloor, Part, ResidualMap, Rival, Rung, Stack,
@@ -503,6 +505,7 @@ pub(crate) fn bare() -> Comparison {
     all.quality.clear();
     all.noise_floor = None;
     all.ladder.truncate(1);
+    all.ladder[0].half_gap_rmse_n = None;
     all.by.retain(|by| by.variable == "contraction");
     for map in &mut all.maps {
         map.direction = "at rest";
@@ -574,24 +577,24 @@ pub(crate) fn hostile() -> Comparison {
     let recipe =
         Recipe { pressures_pa: vec![1e5, 2e5], specimens: vec![name.to_owned(), "2".to_owned()], rows: 10 };
     let mut all = rich(&recipe);
-    all.muscle = name.to_owned();
-    all.base = name.to_owned();
+    name.clone_into(&mut all.muscle);
+    name.clone_into(&mut all.base);
     all.data.files = vec![name.to_owned(), name.to_owned()];
     all.warnings.push(name.to_owned());
-    all.quality[0].says = name.to_owned();
-    all.data.left_out[0].why = name.to_owned();
+    name.clone_into(&mut all.quality[0].says);
+    name.clone_into(&mut all.data.left_out[0].why);
     for rung in &mut all.ladder {
-        rung.title = name.to_owned();
+        name.clone_into(&mut rung.title);
         rung.added = rung.added.as_ref().map(|_| name.to_owned());
         for parameter in rung.fit.iter_mut().flat_map(|fit| &mut fit.parameters) {
-            parameter.name = name.to_owned();
-            parameter.unit = name.to_owned();
+            name.clone_into(&mut parameter.name);
+            name.clone_into(&mut parameter.unit);
             parameter.low = f64::NEG_INFINITY;
             parameter.plausible_range[1] = f64::INFINITY;
         }
     }
     for part in all.contributions.iter_mut().flat_map(|stack| &mut stack.parts) {
-        part.effect = name.to_owned();
+        name.clone_into(&mut part.effect);
     }
     all
 }
