@@ -34,7 +34,7 @@ PRINTED_WIDTH, PRINTED_HEIGHT = (round((side - 2 * margin) / 25.4 * 96) for side
 # A report that takes longer than this [s] is too heavy to read.
 LIMIT = 60
 
-LEAST_DRAWING = 100
+LEAST_DRAWING = 60
 # Boxes of neighbouring texts are higher than their letters; this much of both may overlap.
 OVERLAP = 2.5
 # Texts may reach beyond the edge of a drawing by this much: a box is wider than its letters.

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use crate::arguments;
 use crate::failure::Failure;
 use crate::files;
-use crate::text::significant;
+use crate::text::{significant, with_interval};
 
 /// Model against measurement. Effects are fitted only if you name them with `--with`.
 #[derive(Debug, Args)]
@@ -191,7 +191,7 @@ pub(crate) fn parameters(out: &mut String, fit: &Fit) {
     for p in &fit.parameters {
         let mut notes = Vec::new();
         if p.nuisance {
-            notes.push("noise of the rig".to_owned());
+            notes.push("rig, within its data sheet".to_owned());
         }
         if !p.plausible {
             notes.push("IMPLAUSIBLE".to_owned());
@@ -205,16 +205,14 @@ pub(crate) fn parameters(out: &mut String, fit: &Fit) {
         if let Some((name, value, unit)) = &p.also {
             notes.push(format!("{name} {} {unit}", three(*value)));
         }
-        let _ = writeln!(
-            out,
-            "    {:<width$}  {:>9} {:<6} {} to {}  {}",
+        let [value, low, high] = with_interval(p.value, p.low, p.high);
+        let line = format!(
+            "    {:<width$}  {value:>9} {:<6} {low} to {high}  {}",
             label(p),
-            three(p.value),
             p.unit,
-            three(p.low),
-            three(p.high),
             notes.join(", ")
         );
+        let _ = writeln!(out, "{}", line.trim_end());
     }
 }
 

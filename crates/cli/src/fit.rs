@@ -13,7 +13,7 @@ use crate::arguments;
 use crate::compare::parameters;
 use crate::failure::Failure;
 use crate::files;
-use crate::text::significant;
+use crate::text::{significant, with_interval};
 
 /// Fits the named effects, and writes the muscle with what was learnt: a file for `shape`, `curve` and the next `compare`.
 #[derive(Debug, Args)]
@@ -144,16 +144,9 @@ fn provenance(fitting: &Fitting) -> String {
     }
     for p in &fitting.fit.parameters {
         let flag = if p.plausible { "" } else { "; IMPLAUSIBLE: a wrong cure" };
-        let _ = writeln!(
-            text,
-            "# {} {} = {} {} (95 %: {} to {}){flag}",
-            p.effect,
-            p.name,
-            significant(p.value, 4),
-            p.unit,
-            significant(p.low, 4),
-            significant(p.high, 4)
-        );
+        let [value, low, high] = with_interval(p.value, p.low, p.high);
+        let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
+        let _ = writeln!(text, "# {} {} = {value}{unit} (95 %: {low} to {high}){flag}", p.effect, p.name);
     }
     text + "\n"
 }

@@ -19,6 +19,12 @@ pub(crate) fn significant(value: f64, digits: i32) -> String {
     rounded
 }
 
+/// A value and the ends of its interval, so that the interval can be seen.
+pub(crate) fn with_interval(value: f64, low: f64, high: f64) -> [String; 3] {
+    bulge_report::with_interval(value, [low, high])
+        .unwrap_or_else(|| [value, low, high].map(|x| significant(x, 3)))
+}
+
 /// A table; the first row is the heading. Columns of numbers are aligned to the right, others to the left.
 pub(crate) fn table(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);

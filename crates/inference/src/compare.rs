@@ -173,8 +173,8 @@ impl<'a> Analysis<'a> {
         Ok(Self { data, muscle, options, record, used, levels, folds, noise, full_scale })
     }
 
-    /// The base with what the muscle file states.
-    fn base(&self) -> Result<Model, ModelError> {
+    /// The base with what the muscle file states, but for those of the first `count` effects: they are fitted anew.
+    fn base(&self, count: usize) -> Result<Model, ModelError> {
         let mut model = match &self.options.law {
             Some((law, values, free)) => Model::from_law(self.muscle, law, values, *free),
             None => Model::new(self.muscle),
@@ -182,7 +182,7 @@ impl<'a> Analysis<'a> {
         .for_specimens(self.record.specimens());
         for (effect, values) in &self.options.known {
             let is_asked = |other: &Arc<dyn Effect>| other.card().name == effect.card().name;
-            if !self.options.effects.iter().any(is_asked) {
+            if !self.options.effects[..count].iter().any(is_asked) {
                 model = model.with(effect, Some(values))?;
             }
         }
@@ -192,7 +192,7 @@ impl<'a> Analysis<'a> {
     /// The model with the first `count` effects.
     pub(crate) fn model(&self, count: usize) -> Result<Prepared, InferenceError> {
         let with_effects = || {
-            let mut model = self.base()?;
+            let mut model = self.base(count)?;
             for effect in &self.options.effects[..count] {
                 model = model.with(effect, None)?;
             }

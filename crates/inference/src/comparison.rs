@@ -114,7 +114,7 @@ pub struct Rung {
     pub r_squared: f64,
     /// Number of numbers fitted.
     pub fitted: usize,
-    /// Mean of the shortening and lengthening half-gap error \[N\], where there are loops.
+    /// RMS error of half the gap between lengthening and shortening \[N\], where there are loops.
     pub half_gap_rmse_n: Option<f64>,
     /// The fit, where something was fitted.
     pub fit: Option<Fit>,
@@ -153,7 +153,7 @@ pub struct LoopGap {
     pub pressure_pa: f64,
     /// The specimen.
     pub specimen: String,
-    /// Contractions.
+    /// Mean contractions of the readings that were taken together.
     pub contraction: Vec<f64>,
     /// Mean of both branches, measured \[N\].
     pub mean_measured_n: Vec<f64>,

@@ -7,11 +7,11 @@ use crate::residuals::{bin, contractions};
 /// Bins of contraction.
 const BINS: usize = 25;
 
-/// Sums over one bin: rows, measured and two models, for shortening and lengthening.
+/// Sums over one bin: rows, contraction, measured and two models, for shortening and lengthening.
 #[derive(Debug, Clone, Copy, Default)]
 struct Branches {
     rows: [usize; 2],
-    sums: [[f64; 3]; 2],
+    sums: [[f64; 4]; 2],
 }
 
 /// Mean and half-gap at each pressure level and specimen where both branches were measured. The means of a bin are taken at slightly
@@ -28,13 +28,15 @@ pub(crate) fn gaps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<LoopG
         let at = place(analysis.levels.of[row], m.specimen as usize, bin(m.contraction, low, high, BINS));
         let branch = usize::from(m.direction < 0.0);
         bins[at].rows[branch] += 1;
-        for (sum, value) in
-            bins[at].sums[branch].iter_mut().zip([measured[row], forces[0][row], forces[1][row]])
-        {
+        for (sum, value) in bins[at].sums[branch].iter_mut().zip([
+            m.contraction,
+            measured[row],
+            forces[0][row],
+            forces[1][row],
+        ]) {
             *sum += value;
         }
     }
-    let width = (high - low) / BINS as f64;
     let mut gaps = Vec::new();
     for (level, pressure_pa) in analysis.levels.mean.iter().enumerate() {
         for (specimen, name) in specimens.iter().enumerate() {
@@ -57,8 +59,8 @@ pub(crate) fn gaps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<LoopG
                 let half = |what: usize| {
                     [0.5 * (mean(1, what) + mean(0, what)), 0.5 * (mean(1, what) - mean(0, what))]
                 };
-                gap.contraction.push(low + (i as f64 + 0.5) * width);
-                let all = [half(0), half(1), half(2)];
+                gap.contraction.push(half(0)[0]);
+                let all = [half(1), half(2), half(3)];
                 gap.mean_measured_n.push(all[0][0]);
                 gap.half_gap_measured_n.push(all[0][1]);
                 for model in 0..2 {

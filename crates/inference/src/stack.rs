@@ -26,7 +26,7 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
         let mut final_values = theta.clone();
         carry_over(&last.prepared.model, &last.theta, &prepared.model, &mut final_values);
         for (i, value) in theta.iter_mut().enumerate() {
-            if asked(i) || count == effects.len() && effects.is_empty() {
+            if asked(i) {
                 *value = final_values[i];
             }
         }
@@ -39,7 +39,7 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
         names.push("rig within its data sheets".to_owned());
     }
     let [low, high] = contractions(analysis);
-    let width = (high - low) / BINS as f64;
+    let contraction: Vec<f64> = thin.moments().iter().map(|m| m.contraction).collect();
     let mut stacks = Vec::new();
     for (level, pressure_pa) in analysis.levels.mean.iter().enumerate() {
         let mut rows_of = vec![Vec::new(); BINS];
@@ -48,12 +48,11 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
                 rows_of[bin(thin.moments()[i].contraction, low, high, BINS)].push(i);
             }
         }
-        let filled: Vec<(usize, &Vec<usize>)> =
-            rows_of.iter().enumerate().filter(|(_, rows)| !rows.is_empty()).collect();
+        let filled: Vec<&Vec<usize>> = rows_of.iter().filter(|rows| !rows.is_empty()).collect();
         let mean = |values: &[f64]| -> Vec<f64> {
             filled
                 .iter()
-                .map(|(_, rows)| rows.iter().map(|i| values[*i]).sum::<f64>() / rows.len() as f64)
+                .map(|rows| rows.iter().map(|i| values[*i]).sum::<f64>() / rows.len() as f64)
                 .collect()
         };
         let added = |i: usize| -> Vec<f64> {
@@ -61,7 +60,7 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
         };
         stacks.push(Stack {
             pressure_pa: *pressure_pa,
-            contraction: filled.iter().map(|(i, _)| low + (*i as f64 + 0.5) * width).collect(),
+            contraction: mean(&contraction),
             measured_n: mean(thin.force()),
             base_n: mean(&forces[0]),
             parts: names

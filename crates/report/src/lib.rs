@@ -9,7 +9,9 @@ mod axis;
 mod characteristics;
 pub mod comparison;
 mod error;
+mod interval;
 mod palette;
 
 pub use characteristics::{Curve, characteristics_svg};
 pub use error::PlotError;
+pub use interval::with_interval;

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use crate::comparison::number::{level, three};
 use crate::comparison::wording::last_fit;
+use crate::interval::with_interval;
 
 /// One row.
 #[derive(Debug, Serialize)]
@@ -75,17 +76,27 @@ pub(super) fn label(parameter: &Fitted) -> String {
 
 /// The value with its unit.
 pub(super) fn value(parameter: &Fitted) -> String {
-    with_unit(&three(parameter.value), &parameter.unit)
+    with_unit(&shown(parameter)[0], &parameter.unit)
 }
 
 fn with_unit(value: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { value.to_owned() } else { format!("{value} {unit}") }
 }
 
+/// Value and ends of the interval, so that the interval can be seen.
+fn shown(parameter: &Fitted) -> [String; 3] {
+    let ends = [parameter.low, parameter.high];
+    match with_interval(parameter.value, ends) {
+        Some(shown) => shown.map(|text| text.replace('-', "−")),
+        None => [parameter.value, parameter.low, parameter.high].map(three),
+    }
+}
+
 /// The interval in brackets.
 pub(super) fn interval(parameter: &Fitted) -> String {
+    let [_, low, high] = shown(parameter);
     match (parameter.low.is_finite(), parameter.high.is_finite()) {
         (false, false) => "[unbounded]".to_owned(),
-        _ => format!("[{} to {}]", three(parameter.low), three(parameter.high)),
+        _ => format!("[{low} to {high}]"),
     }
 }

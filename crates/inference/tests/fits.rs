@@ -1,0 +1,256 @@
+//! Fits on simulated data with a known truth: numbers come back within their intervals, and what can't be known is said to be so.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use bulge_effects::{Catalogue, Effect, Moment, known};
+use bulge_inference::{Fit, Fitting, Options, compare, extended, fit_effects};
+use bulge_measurements::Data;
+use bulge_model::{Model, Record, Wanted};
+use bulge_muscles::{Muscle, from_toml, to_toml};
+use std::fmt::Write;
+use std::sync::Arc;
+
+/// Reproducible normal numbers (Knuth's MMIX sequence, Box and Muller).
+struct Noise(u64);
+
+impl Noise {
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    }
+
+    fn normal(&mut self) -> f64 {
+        let (radius, angle) = ((-2.0 * self.uniform().ln()).sqrt(), std::f64::consts::TAU * self.uniform());
+        radius * angle.cos()
+    }
+}
+
+const PLEATED: &str =
+    "name = \"trial\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n";
+const BRAIDED: &str = "name = \"trial\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"cylinder\"\n\
+                       wall = \"2 mm\"\n";
+
+fn muscle(text: &str) -> Muscle {
+    from_toml(text, "muscle.toml").unwrap()
+}
+
+fn effects(names: &[&str]) -> Vec<Arc<dyn Effect>> {
+    let catalogue = Catalogue::builtin();
+    names.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect()
+}
+
+fn options(names: &[&str]) -> Options {
+    Options::new(Catalogue::builtin(), effects(names))
+}
+
+/// Loops at five pressures, one sweep each, of a muscle with effects, with white noise of `sd` newtons.
+fn measured(muscle: &Muscle, truth: &[(&str, &[f64])], sd: f64, seed: u64) -> Data {
+    let mut model = Model::new(muscle);
+    for (name, values) in truth {
+        model = model.with(&effects(&[name])[0], Some(values)).unwrap();
+    }
+    let mut moments = Vec::new();
+    let mut sweeps = Vec::new();
+    // A braid with rubber in it doesn't pull at all contractions at low pressures.
+    let first = if muscle.is_pleated() { 1 } else { 3 };
+    for bar in first..first + 5 {
+        let start = moments.len();
+        for i in 0..30 {
+            let (back, direction) = if i < 15 { (i, 1.0) } else { (29 - i, -1.0) };
+            let mut moment = Moment::at_rest(f64::from(bar) * 1e5, 0.04 + 0.013 * f64::from(back));
+            moment.direction = direction;
+            moment.begins = i == 0;
+            moments.push(moment);
+        }
+        sweeps.push(start..moments.len());
+    }
+    let record = Record::from_moments(moments.clone(), vec![0.0; moments.len()], sweeps).unwrap();
+    let force = model.evaluate(&record, &model.start(), &Wanted::default()).unwrap().force;
+    let mut noise = Noise(seed);
+    let mut csv = String::from("time [s],sweep,pressure [Pa],contraction [-],force [N]\n");
+    for (i, (moment, force)) in moments.iter().zip(force).enumerate() {
+        let force = force + sd * noise.normal();
+        let _ = writeln!(csv, "{i},{},{},{},{force}", i / 30 + 1, moment.pressure, moment.contraction);
+    }
+    Data::from_csv(&csv, "simulated.csv").unwrap()
+}
+
+fn fitted(data: &Data, muscle: &Muscle, names: &[&str]) -> Fitting {
+    fit_effects(data, muscle, &options(names)).unwrap()
+}
+
+fn value(fit: &Fit, effect: &str) -> (f64, [f64; 2]) {
+    let p = fit.parameters.iter().find(|p| p.effect == effect).unwrap();
+    (p.value, [p.low, p.high])
+}
+
+#[test]
+fn exact_data_give_exact_numbers() {
+    for (text, truth) in [
+        (
+            PLEATED,
+            vec![("fibre-stretch", [4e-6]), ("coulomb-friction", [12.0]), ("length-zero-error", [3e-4])],
+        ),
+        (
+            BRAIDED,
+            vec![("radius-error", [0.0104]), ("braid-angle-error", [0.012]), ("coulomb-friction", [9.0])],
+        ),
+    ] {
+        let muscle = muscle(text);
+        let truth: Vec<(&str, &[f64])> = truth.iter().map(|(name, v)| (*name, v.as_slice())).collect();
+        let data = measured(&muscle, &truth, 0.0, 1);
+        let names: Vec<&str> = truth.iter().map(|(name, _)| *name).collect();
+        let found = fitted(&data, &muscle, &names);
+        assert!(found.fit.convergence.converged, "{:?}", found.fit.convergence);
+        for (value, true_value) in found.fit.theta.iter().zip(truth.iter().flat_map(|(_, v)| v.iter())) {
+            assert!((value / true_value - 1.0).abs() < 1e-3, "{names:?}: {value} for {true_value}");
+        }
+        assert!(found.rmse_n < 1e-3 * found.before_rmse_n);
+    }
+}
+
+#[test]
+fn intervals_hold_the_truth_as_often_as_they_say() {
+    let muscle = muscle(PLEATED);
+    let truth: &[(&str, &[f64])] = &[("fibre-stretch", &[4e-6]), ("coulomb-friction", &[12.0])];
+    let (mut held, mut asked) = (0, 0);
+    for seed in 1..=60 {
+        let data = measured(&muscle, truth, 4.0, seed);
+        let fit = fitted(&data, &muscle, &["fibre-stretch", "coulomb-friction"]).fit;
+        // In the units shown: per cent per kilonewton, newtons.
+        for (effect, true_value) in [("fibre-stretch", 0.4), ("coulomb-friction", 12.0)] {
+            let (_, [low, high]) = value(&fit, effect);
+            held += usize::from(low <= true_value && true_value <= high);
+            asked += 1;
+        }
+    }
+    println!("{held} of {asked} intervals of 95 % hold the truth");
+    // 114 expected; 106 to 120 with 99.9 %.
+    assert!(held >= 106, "{held} of {asked}");
+}
+
+#[test]
+fn a_wrong_cure_is_flagged() {
+    let muscle = muscle(BRAIDED);
+    let data = measured(&muscle, &[("bladder-elasticity", &[3e5])], 3.0, 5);
+    let geometry = compare(&data, &muscle, &options(&["radius-error", "braid-angle-error"])).unwrap();
+    let right = compare(&data, &muscle, &options(&["bladder-elasticity"])).unwrap();
+    let last = geometry.ladder.last().unwrap();
+    assert!(last.rmse_n < 0.8 * geometry.ladder[0].rmse_n, "the error falls");
+    let fit = last.fit.as_ref().unwrap();
+    assert!(fit.parameters.iter().any(|p| !p.plausible), "{:?}", fit.parameters);
+    assert!(geometry.warnings.iter().any(|w| w.contains("a wrong cure")), "{:?}", geometry.warnings);
+    let right = right.ladder.last().unwrap();
+    assert!(right.rmse_n < 3.5 && right.fit.as_ref().unwrap().parameters.iter().all(|p| p.plausible));
+    assert!(right.held_out_rmse_n.unwrap() < 3.6);
+}
+
+#[test]
+fn what_the_data_do_not_tell_is_said() {
+    // Gains of pressure and force are the same on a cylinder without rubber.
+    let muscle = muscle(BRAIDED);
+    let data = measured(&muscle, &[("force-gain", &[0.05])], 2.0, 3);
+    let found = fitted(&data, &muscle, &["force-gain", "pressure-gain"]);
+    let told = |p: &bulge_inference::Fitted| {
+        p.determined && (p.high - p.low) < 0.5 * (p.plausible_range[1] - p.plausible_range[0])
+    };
+    assert!(
+        found.fit.parameters.iter().all(|p| !told(p))
+            || found.fit.warnings.iter().any(|w| w.contains("cannot be told apart")),
+        "{:?} {:?}",
+        found.fit.parameters,
+        found.fit.warnings
+    );
+    // Friction cannot be negative: a muscle that moves by itself leaves it at its bound, with a one-sided interval.
+    let data = measured(&muscle, &[], 2.0, 4);
+    let data = {
+        let mut csv = String::from("time [s],sweep,pressure [Pa],contraction [-],force [N]\n");
+        for row in 0..data.len() {
+            let direction = if row % 30 < 15 { 1.0 } else { -1.0 };
+            let (p, e) = (data.pressure()[row], data.contraction(0.25)[row]);
+            let _ = writeln!(csv, "{row},{},{p},{e},{}", row / 30 + 1, data.force()[row] + 0.3 * direction);
+        }
+        Data::from_csv(&csv, "odd.csv").unwrap()
+    };
+    let fit = fitted(&data, &muscle, &["coulomb-friction"]).fit;
+    let friction = &fit.parameters[0];
+    assert_eq!((friction.at_bound, friction.interval), (Some("lower"), "profile"), "{friction:?}");
+    assert!(friction.low == 0.0 && friction.high > 0.0 && friction.high < 1.0, "{friction:?}");
+}
+
+#[test]
+fn a_profile_of_a_line_is_its_covariance() {
+    // The force is linear in an offset. An implausible one gets a profile, which is the same but for what the prior has to say.
+    let muscle = muscle(&PLEATED.replace("trial", "offset"));
+    let catalogue = Catalogue::builtin();
+    let offset = catalogue.find("force-offset").unwrap();
+    let most = offset.parameters()[0].plausible.unwrap().1;
+    let inside =
+        fitted(&measured(&muscle, &[("force-offset", &[0.9 * most])], 2.0, 8), &muscle, &["force-offset"]);
+    let beyond =
+        fitted(&measured(&muscle, &[("force-offset", &[1.1 * most])], 2.0, 8), &muscle, &["force-offset"]);
+    let (one, two) = (&inside.fit.parameters[0], &beyond.fit.parameters[0]);
+    assert_eq!((one.interval, two.interval), ("covariance", "profile"));
+    assert!(((one.high - one.low) / (two.high - two.low) - 1.0).abs() < 0.04, "{one:?} {two:?}");
+}
+
+#[test]
+fn rig_errors_within_their_data_sheets_are_noise() {
+    let with_rig = format!("{BRAIDED}[instruments]\nforce = {{ noise = \"2 N\", zero = \"8 N\" }}\n");
+    let muscle = muscle(&with_rig);
+    let data = measured(&muscle, &[("force-offset", &[6.0]), ("coulomb-friction", &[10.0])], 2.0, 11);
+    let found = fitted(&data, &muscle, &["coulomb-friction"]);
+    let (offset, _) = value(&found.fit, "force-offset");
+    assert!((offset - 6.0).abs() < 1.0, "{offset}");
+    assert!(found.fit.parameters.iter().any(|p| p.nuisance && p.effect == "force-offset"));
+    let extension = extended(&found.model, &found.fit).unwrap();
+    assert_eq!(extension.written, ["coulomb-friction"]);
+    assert_eq!(extension.left_out[0].0, "force-offset");
+}
+
+#[test]
+fn the_extended_muscle_predicts_what_was_fitted() {
+    for (text, truth) in [
+        (PLEATED, vec![("fibre-stretch", 4e-6), ("end-radius", 0.0165), ("coulomb-friction", 12.0)]),
+        (BRAIDED, vec![("bladder-elasticity", 3e5), ("radius-error", 0.0105), ("length-zero-error", 2e-3)]),
+        (BRAIDED, vec![("wall-thickness", 5e-4), ("fibre-length", 0.004), ("hoop-elasticity", 2e3)]),
+    ] {
+        let muscle = muscle(text);
+        let names: Vec<&str> = truth.iter().map(|(name, _)| *name).collect();
+        let values: Vec<[f64; 1]> = truth.iter().map(|(_, v)| [*v]).collect();
+        let truth: Vec<(&str, &[f64])> = names.iter().zip(&values).map(|(n, v)| (*n, v.as_slice())).collect();
+        let data = measured(&muscle, &truth, 1.0, 21);
+        let found = fitted(&data, &muscle, &names);
+        let extension = extended(&found.model, &found.fit).unwrap();
+        let back = from_toml(&to_toml(&extension.muscle), "learnt.toml").unwrap();
+        let known = known(&back, &Catalogue::builtin()).unwrap();
+        let next = compare(&data, &back, &Options { known, ..options(&[]) }).unwrap();
+        let (fitted, start) = (found.rmse_n, next.ladder[0].rmse_n);
+        assert!((start / fitted - 1.0).abs() < 1e-9, "{names:?}: {start} after {fitted}");
+        assert_eq!(extension.written, names);
+    }
+}
+
+#[test]
+fn the_same_bytes_on_one_thread_or_two() {
+    let muscle = muscle(PLEATED);
+    let data = measured(&muscle, &[("fibre-stretch", &[4e-6])], 3.0, 2);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let comparison =
+            pool.install(|| compare(&data, &muscle, &options(&["fibre-stretch", "coulomb-friction"])));
+        serde_json::to_string(&comparison.unwrap()).unwrap()
+    };
+    assert!(run(1) == run(2));
+}
+
+#[test]
+fn an_effect_that_follows_the_noise_does_not_lower_the_held_out_error() {
+    let muscle = muscle(BRAIDED);
+    let data = measured(&muscle, &[], 3.0, 33);
+    let comparison = compare(&data, &muscle, &options(&["force-nonlinearity", "pressure-friction"])).unwrap();
+    let held_out: Vec<f64> = comparison.ladder.iter().map(|rung| rung.held_out_rmse_n.unwrap()).collect();
+    assert!(held_out[2] > 0.995 * held_out[0], "{held_out:?}");
+    let floor = comparison.noise_floor.unwrap();
+    assert!((floor.sd_n / 3.0 - 1.0).abs() < 0.15, "{floor:?}");
+}
