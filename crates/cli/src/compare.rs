@@ -74,7 +74,11 @@ impl CompareCommand {
 }
 
 /// Writes the report: a page, its plots one by one, and the numbers. Returns what to look at first.
-fn report(folder: &Path, comparison: &Comparison, document: &str) -> Result<[PathBuf; 2], Failure> {
+pub(crate) fn report(
+    folder: &Path,
+    comparison: &Comparison,
+    document: &str,
+) -> Result<[PathBuf; 2], Failure> {
     // Everything is made before anything is written.
     let page = html(comparison)?;
     let plots = plots(comparison)?;
@@ -135,7 +139,7 @@ pub(crate) fn text(comparison: &Comparison, effects: &[Arc<dyn Effect>]) -> Stri
     out
 }
 
-fn ladder(out: &mut String, comparison: &Comparison) {
+pub(crate) fn ladder(out: &mut String, comparison: &Comparison) {
     let width = comparison
         .ladder
         .iter()

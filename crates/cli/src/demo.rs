@@ -1,21 +1,33 @@
 //! `bulge demo`: the tour, on shipped muscles.
 
+use bulge_effects::Catalogue;
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response, isobars};
-use bulge_muscles::{Bladder, Braided, Construction, Ends, Length, Muscle, MuscleError, Pressure, preset};
+use bulge_inference::{Comparison, Options, compare};
+use bulge_measurements::Data;
+use bulge_muscles::{
+    Bladder, Braided, Construction, Ends, Length, Muscle, MuscleError, Pressure, from_toml, preset,
+};
 use bulge_vtk::{write_series, write_vtp};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::arguments::about;
 use crate::characteristics;
+use crate::compare::{ladder, parameters, report};
 use crate::failure::Failure;
 use crate::files;
 use crate::shape::bulge;
 use crate::sketch::sketch;
 use crate::text::{significant, table};
 
+/// Measurements of the tour, and the muscle as its data sheet describes it.
+const DATA: (&str, &str) = ("braid-loops.csv", include_str!("../data/braid-loops.csv"));
+const MUSCLE: (&str, &str) = ("braid.toml", include_str!("../data/braid.toml"));
+/// Effects that the tour adds to it.
+const ADDED: [&str; 3] = ["end-taper", "bladder-elasticity", "coulomb-friction"];
 /// Frames of the bulging in the time series.
 const FRAMES: u32 = 21;
 
@@ -51,6 +63,8 @@ struct Document {
     pleated: Response,
     shooting_minus_closed_form: f64,
     braid: Vec<Step>,
+    /// Titles of the rungs with their errors \[N\].
+    ladder: Vec<(String, f64)>,
     files: Vec<PathBuf>,
 }
 
@@ -61,21 +75,31 @@ impl Demo {
         let mut written = Vec::new();
         let (pleated, difference) = pleated(&self.out, &mut text, &mut written)?;
         let braid = braid(&self.out, &mut text, &mut written)?;
+        let comparison = measured(&self.out, &mut text, &mut written)?;
         if self.json {
             let document = Document {
                 schema: "bulge.demo/1",
                 pleated,
                 shooting_minus_closed_form: difference,
                 braid,
+                ladder: comparison.ladder.iter().map(|rung| (rung.title.clone(), rung.rmse_n)).collect(),
                 files: written,
             };
             return Ok(serde_json::to_string_pretty(&document)? + "\n");
         }
-        text.push_str("Files of this tour (open the .pvd or a .vtp in ParaView, the .svg in a browser):\n\n");
+        text.push_str("Files of this tour (open report.html and the .svg in a browser, the .pvd or a .vtp in ParaView):\n\n");
         for path in &written {
             let _ = writeln!(text, "  {}", path.display());
         }
         text.push_str("\nNext: `bulge muscle ppam-2-r16 > my.toml`, change it, then `bulge shape my.toml --pressure \"2 bar\" --force \"500 N\"`.\n");
+        let (data, muscle) = (self.out.join(DATA.0), self.out.join(MUSCLE.0));
+        let _ = writeln!(
+            text,
+            "Or see what another effect does: `bulge compare {} --muscle {} --with {},pressure-friction`.",
+            data.display(),
+            muscle.display(),
+            ADDED.join(",")
+        );
         Ok(text)
     }
 }
@@ -165,6 +189,34 @@ fn braid(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result<Ve
     text.push_str(&table(&rows));
     text.push('\n');
     Ok(steps)
+}
+
+/// Measurements of a braid against the textbook, and the error as effects are added.
+fn measured(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result<Comparison, Failure> {
+    for (name, content) in [DATA, MUSCLE] {
+        let path = out.join(name);
+        files::write(&path, content.as_bytes())?;
+        written.push(path);
+    }
+    let muscle = from_toml(MUSCLE.1, MUSCLE.0)?;
+    let data = Data::from_csv(DATA.1, DATA.0)?;
+    let catalogue = Catalogue::builtin();
+    let effects = ADDED.iter().map(|name| Ok(Arc::clone(catalogue.find(name)?)));
+    let effects = effects.collect::<Result<Vec<_>, Failure>>()?;
+    let comparison = compare(&data, &muscle, &Options::new(catalogue, effects))?;
+    let _ = writeln!(
+        text,
+        "3. {} readings of a braid (simulated, with noise) against the textbook: the error falls as the right effects are added",
+        data.len()
+    );
+    ladder(text, &comparison);
+    if let Some(fit) = comparison.ladder.last().and_then(|rung| rung.fit.as_ref()) {
+        parameters(text, fit);
+    }
+    text.push_str("\n  It was simulated with c10 = 0.31 MPa and a friction of 14 N.\n\n");
+    let document = serde_json::to_string_pretty(&comparison)? + "\n";
+    written.extend(report(&out.join("report"), &comparison, &document)?);
+    Ok(comparison)
 }
 
 /// The same braid as a cylinder, with its ends clamped, and with its bladder.

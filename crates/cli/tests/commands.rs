@@ -4,7 +4,6 @@
 
 mod support;
 
-use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 use support::{Folder, bulge, failure, json};
