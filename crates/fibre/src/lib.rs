@@ -1,5 +1,6 @@
 //! Shape, force and volume of pressurised fibre nets: one meridian equation for pleated and braided pneumatic muscles.
 pub mod closed_form;
+mod continuation;
 mod cylinder;
 mod draw;
 mod error;
@@ -11,6 +12,7 @@ mod meridian;
 mod net;
 mod outcome;
 mod problem;
+mod quadrature;
 mod shape;
 mod shooting;
 mod solve;

@@ -236,6 +236,11 @@ impl<D: Real> Net<D> {
         Local { sigma, force, hoop, hoop_r, tension_r, force_t, hoop_t }
     }
 
+    /// The tension of inextensible fibres from the meridional force N = T sigma + w_1.
+    pub(crate) fn tension_of(&self, r: D, sigma: D, force: D) -> D {
+        (force - self.wall(sigma, r).w_1) / sigma
+    }
+
     /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis at radius `r` with A'(r) = `push`:
     /// A' - h = k N.
     ///
@@ -372,10 +377,15 @@ impl<D: Real> Bladder<D> {
 }
 
 impl<D: Real> Cloth<D> {
+    /// pi K/r_u: u over (r - r_u)^2.
+    pub(crate) fn scale(&self) -> D {
+        self.stiffness * PI / self.radius
+    }
+
     /// sigma u(r) with u = pi K (r - r_u)^2/r_u.
     fn add(&self, wall: &mut Wall<D>, sigma: D, r: D) {
         let excess = r - self.radius;
-        let scale = self.stiffness * PI / self.radius;
+        let scale = self.scale();
         let u = scale * excess * excess;
         let u_r = scale * excess * 2.0;
         wall.w += sigma * u;

@@ -10,7 +10,7 @@ use crate::meridian::{COS, SIN, TENSION};
 use crate::net::Net;
 use crate::problem::Problem;
 use crate::shape::{Convergence, Method};
-use crate::shooting::{self, EXACT, Ending, Total, USUAL, Unknowns};
+use crate::shooting::{self, Ending, Total, USUAL, Unknowns, Way};
 
 /// The group of [`FibreError::TooSoft`] beyond which straight fibres balloon: `F(phi_R|m)/(L y) = 1 + kappa/y^2` has a solution in y up to
 /// kappa L^2 = F^2/4, and F is at most 1.854 where the force vanishes (m = 1/2).
@@ -104,7 +104,7 @@ impl Problem {
         self.judged(contraction, || match method {
             _ if self.is_cylinder() => by_cylinder(net, contraction),
             Method::ClosedForm => by_closed_form(net, contraction),
-            Method::Shooting => by_shooting(&self.net, net, contraction, from, USUAL),
+            Method::Shooting => by_shooting(&self.net, net, contraction, from, (USUAL, Way::Ode)),
         })
     }
 
@@ -115,6 +115,7 @@ impl Problem {
         contraction: f64,
         net: &Net<Dual<N>>,
         from: Option<Unknowns>,
+        ending: Ending,
     ) -> Result<Outcome<N>, FibreError> {
         self.judged(contraction, || match method {
             _ if self.is_cylinder() => by_cylinder(net, contraction),
@@ -123,10 +124,10 @@ impl Problem {
                 let groups = Groups::of(net);
                 let plain = &self.net;
                 match groups.count() {
-                    0..=2 => by_groups::<N, 4>(plain, net, &groups, contraction, from),
-                    3..=4 => by_groups::<N, 6>(plain, net, &groups, contraction, from),
-                    5..=6 => by_groups::<N, 8>(plain, net, &groups, contraction, from),
-                    _ => by_groups::<N, 12>(plain, net, &groups, contraction, from),
+                    0..=2 => by_groups::<N, 4>(plain, net, &groups, contraction, (from, ending)),
+                    3..=4 => by_groups::<N, 6>(plain, net, &groups, contraction, (from, ending)),
+                    5..=6 => by_groups::<N, 8>(plain, net, &groups, contraction, (from, ending)),
+                    _ => by_groups::<N, 12>(plain, net, &groups, contraction, (from, ending)),
                 }
             }
         })
@@ -252,10 +253,10 @@ fn by_shooting<const N: usize>(
     net: &Net<Dual<N>>,
     contraction: f64,
     from: Option<Unknowns>,
-    ending: Ending,
+    (ending, way): (Ending, Way),
 ) -> Result<Outcome<N>, FibreError> {
     let (unknowns, effort) = shooting::solve(plain, contraction, from, ending)?;
-    let found = shooting::finish(net, contraction, unknowns)?;
+    let found = shooting::finish(net, contraction, unknowns, way)?;
     let run = &found.trajectory;
     let volume = Total {
         value: 2.0 * found.half_volume.value,
@@ -287,9 +288,9 @@ fn by_groups<const N: usize, const M: usize>(
     net: &Net<Dual<N>>,
     groups: &Groups<N>,
     contraction: f64,
-    from: Option<Unknowns>,
+    (from, ending): (Option<Unknowns>, Ending),
 ) -> Result<Outcome<N>, FibreError> {
-    let found = by_shooting::<M>(plain, &groups.net(net), contraction, from, EXACT)?;
+    let found = by_shooting::<M>(plain, &groups.net(net), contraction, from, (ending, Way::Fastest))?;
     Ok(Outcome {
         force: groups.expand(&found.force),
         volume: groups.expand(&found.volume),

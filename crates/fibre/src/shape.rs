@@ -26,9 +26,10 @@ impl std::fmt::Display for Method {
 pub struct Convergence {
     /// Newton iterations on the two unknowns of the meridian.
     pub iterations: u32,
-    /// Evaluations: of the equilibrium ODE's right-hand side (shooting) or of the pair of elliptic integrals (closed form).
+    /// Evaluations: of the equilibrium ODE's right-hand side, of the integrands where the search takes the meridian by quadrature (shooting), or
+    /// of the pair of elliptic integrals (closed form).
     pub evaluations: u32,
-    /// Integration steps accepted in the last integration; 0 for the closed form.
+    /// Integration steps accepted in the last integration (pieces, if it is a quadrature); 0 for the closed form.
     pub steps: u32,
     /// Largest relative residual of the end conditions (radius, fibre length, end distance).
     pub residual: f64,

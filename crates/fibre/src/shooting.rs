@@ -11,20 +11,23 @@
 //! Where lobes limit the radius, B is nearly the same for all of them and T = A'/k a ratio of two numbers near 0: the first unknown is then
 //! ln(T/B), from which A'(r_mid) = k B (T/B) fixes B (for an angle or cloth besides, A'/(k B) takes the place of T/B).
 //!
-//! Newton's method takes exact derivatives from the integration of dual numbers, loosely at first.
+//! Newton's method takes exact derivatives from the integration of dual numbers, loosely at first; or from the quadrature of the same meridian
+//! (see `quadrature`), which costs a tenth, where the fibres don't stretch.
 
 use bulge_numerics::{Dual, Real};
 
 use crate::FibreError;
+use crate::continuation::{continuation, stiffening};
 use crate::meridian::{Middle, NoTrajectory, SHORTENING, Trajectory, VOLUME, trajectory};
 use crate::net::Net;
+use crate::quadrature;
 use crate::start::start;
 
 /// Tolerance of the last integrations, relative to the scale of each component.
 pub(crate) const TOLERANCE: f64 = 4e-12;
 /// Newton iterations after which the solve is given up.
 const MAX_ITERATIONS: u32 = 40;
-/// Evaluations of the right-hand side after which the search for an equilibrium that may not exist ends (some 20 ms). The longest braid takes
+/// Evaluations of the right-hand side (or of the integrands) after which the search for an equilibrium that may not exist ends (some 20 ms). The longest braid takes
 /// under 10 000.
 const MOST_EVALUATIONS: u32 = 200_000;
 /// Largest steps of ln|B| and ln|k|.
@@ -48,16 +51,25 @@ pub(crate) struct Ending {
     /// If the trajectory was integrated to this tolerance at least: else the next step is the error of the integration.
     tolerance: f64,
     /// Tolerance to begin with from a start that was given.
-    first: f64,
+    pub(crate) first: f64,
     /// Tolerance of what is expected to be the last iteration, at most.
     last_but_one: f64,
+    /// Evaluations after which a search ends.
+    most: u32,
 }
 
 /// Where a second last integration costs as much as the iteration that it saves.
-pub(crate) const USUAL: Ending = Ending { step: 1e-4, tolerance: 1e-7, first: 1e-4, last_but_one: 1e-5 };
+pub(crate) const USUAL: Ending =
+    Ending { step: 1e-4, tolerance: 1e-7, first: 1e-4, last_but_one: 1e-5, most: MOST_EVALUATIONS };
 /// Where the last integration carries many derivatives and must not be repeated; and a start that was given lies near.
 pub(crate) const EXACT: Ending =
-    Ending { step: 3e-5, tolerance: 2.5e-10, first: 2.5e-10, last_but_one: 2.5e-10 };
+    Ending { step: 3e-5, tolerance: 2.5e-10, first: 2.5e-10, last_but_one: 2.5e-10, most: MOST_EVALUATIONS };
+/// The same in a fit, which asks thousands of times and may ask far from sense: nothing that is found takes more.
+pub(crate) const FITTED: Ending = Ending { most: 40_000, ..EXACT };
+/// Newton iterations from a start that was given, after which the search begins anew: a good one takes two or three.
+const MOST_FROM_NEAR: u32 = 8;
+/// Where the meridian is a quadrature, which has no tolerance and costs little: the step after which the next one is as small as rounding lets it be.
+const QUADRATURE: f64 = 1e-5;
 /// Step after which the next one is expected to be the last.
 const LAST_BUT_ONE: f64 = 1e-2;
 
@@ -138,10 +150,23 @@ pub(crate) fn steepest(net: &Net<f64>, r: f64) -> f64 {
 }
 
 /// Counters of a solve.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Effort {
     pub(crate) iterations: u32,
     pub(crate) evaluations: u32,
+    /// Evaluations after which the search ends.
+    most: u32,
+}
+
+impl Effort {
+    pub(crate) const fn of_at_most(most: u32) -> Self {
+        Self { iterations: 0, evaluations: 0, most }
+    }
+
+    /// Whether it is time to give up.
+    pub(crate) fn is_spent(&self) -> bool {
+        self.evaluations > self.most
+    }
 }
 
 /// Residuals of the end conditions.
@@ -181,10 +206,11 @@ pub(crate) fn solve(
     from: Option<Unknowns>,
     ending: Ending,
 ) -> Result<(Unknowns, Effort), FibreError> {
-    let mut effort = Effort::default();
+    let mut effort = Effort::of_at_most(ending.most);
     let contraction = beside_straight(net, contraction);
     if let Some(start) = from
-        && let Ok(found) = newton(net, contraction, start, (ending, ending.first), &mut effort)
+        && let Ok(found) =
+            newton_within(net, contraction, start, (ending, ending.first), &mut effort, MOST_FROM_NEAR)
     {
         return Ok((found, effort));
     }
@@ -194,7 +220,7 @@ pub(crate) fn solve(
     let found = match direct {
         Some(found) => Ok(found),
         None if net.cloth.is_some() || net.bladder.is_some() => stiffening(net, contraction, &mut effort)
-            .or_else(|_| continuation(net, contraction, &mut Effort::default())),
+            .or_else(|_| continuation(net, contraction, &mut Effort::of_at_most(ending.most))),
         None => continuation(net, contraction, &mut effort),
     };
     Ok((found?, effort))
@@ -211,18 +237,27 @@ fn beside_straight(net: &Net<f64>, contraction: f64) -> f64 {
     }
 }
 
-/// On the way to the asked equilibrium.
-const ON_THE_WAY: (Ending, f64) = (USUAL, USUAL.first);
-
 /// Newton's method with backtracking from `start`, integrating to the tolerance `first` to begin with.
-fn newton(
+pub(crate) fn newton(
+    net: &Net<f64>,
+    contraction: f64,
+    start: Unknowns,
+    tolerances: (Ending, f64),
+    effort: &mut Effort,
+) -> Result<Unknowns, FibreError> {
+    newton_within(net, contraction, start, tolerances, effort, MAX_ITERATIONS)
+}
+
+fn newton_within(
     net: &Net<f64>,
     contraction: f64,
     start: Unknowns,
     (ending, first): (Ending, f64),
     effort: &mut Effort,
+    most: u32,
 ) -> Result<Unknowns, FibreError> {
     let lifted = net.lift::<2>();
+    let exact = quadrature::suits(net);
     let mut at = start;
     // Near the straight meridian the shortening that counts is a small difference.
     let excess = straight_contraction(net).map_or(1.0, |straight| (contraction - straight).abs());
@@ -230,12 +265,18 @@ fn newton(
     let mut previous = f64::INFINITY;
     let mut last_step = [0.0, 0.0];
     let mut halvings = 0;
-    for iteration in 1..=MAX_ITERATIONS {
+    for iteration in 1..=most {
         effort.iterations += 1;
         let nothing = NoTrajectory { evaluations: 1 };
-        let run = at.seeded(&lifted).ok_or(nothing).and_then(|middle| trajectory(&lifted, middle, tolerance));
+        let run = at.seeded(&lifted).ok_or(nothing).and_then(|middle| {
+            if exact {
+                quadrature::trajectory(&lifted, middle)
+            } else {
+                trajectory(&lifted, middle, tolerance)
+            }
+        });
         effort.evaluations += run.as_ref().map_or_else(|none| none.evaluations, |run| run.evaluations);
-        if effort.evaluations > MOST_EVALUATIONS {
+        if effort.is_spent() {
             break;
         }
         let found = run.map(|run| residuals(&lifted, Dual::from(contraction), &run));
@@ -265,102 +306,14 @@ fn newton(
         if !moved.is_finite() {
             break;
         }
-        if moved < ending.step && tolerance <= ending.tolerance {
+        if if exact { moved < QUADRATURE } else { moved < ending.step && tolerance <= ending.tolerance } {
             return Ok(at);
         }
         // The next residual will be about the square of this step: no point in integrating it more exactly than that.
         let most = if moved < LAST_BUT_ONE { ending.last_but_one } else { 1e-5 };
         tolerance = (1e-2 * moved * moved).clamp(TOLERANCE, most);
     }
-    Err(FibreError::NotConverged { contraction, residual: previous, iterations: MAX_ITERATIONS })
-}
-
-/// The same contraction with a bladder and a cloth that are soft at first and stiffen, by steps that adapt: the starts know nothing of them.
-fn stiffening(net: &Net<f64>, contraction: f64, effort: &mut Effort) -> Result<Unknowns, FibreError> {
-    let failed = |effort: &Effort| FibreError::NotConverged {
-        contraction,
-        residual: f64::INFINITY,
-        iterations: effort.iterations,
-    };
-    let mut part = 1e-2;
-    let mut at = loop {
-        let soft = net.with_walls(part);
-        if let Some(start) = start(&soft, contraction)
-            && let Ok(found) = newton(&soft, contraction, start, ON_THE_WAY, effort)
-        {
-            break found;
-        }
-        part *= 0.1;
-        if part < 1e-9 || effort.evaluations > MOST_EVALUATIONS {
-            return Err(failed(effort));
-        }
-    };
-    let mut rate = [0.0, 0.0]; // d(unknowns)/d ln(part)
-    let mut grow: f64 = 3.0;
-    while part < 1.0 {
-        let next = (part * grow).min(1.0);
-        let jump = (next / part).ln();
-        let guess = Unknowns { logs: [at.logs[0] + rate[0] * jump, at.logs[1] + rate[1] * jump], ..at };
-        if let Ok(found) = newton(&net.with_walls(next), contraction, guess, ON_THE_WAY, effort) {
-            rate = [(found.logs[0] - at.logs[0]) / jump, (found.logs[1] - at.logs[1]) / jump];
-            (at, part) = (found, next);
-            grow = (1.0 + (grow - 1.0) * 1.5).min(10.0);
-        } else {
-            grow = 1.0 + (grow - 1.0) * 0.4;
-            if grow < 1.005 || effort.evaluations > MOST_EVALUATIONS {
-                return Err(failed(effort));
-            }
-        }
-    }
-    Ok(at)
-}
-
-/// From a shallow bulge (or waist), where the start is good, towards the asked contraction in steps that adapt.
-fn continuation(net: &Net<f64>, contraction: f64, effort: &mut Effort) -> Result<Unknowns, FibreError> {
-    let straight = straight_contraction(net).unwrap_or(0.0);
-    let failed =
-        FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: effort.iterations };
-    let whole = contraction - straight;
-    let mut part = 0.02;
-    let mut at = loop {
-        let there = straight + part * whole;
-        if let Some(start) = start(net, there)
-            && let Ok(found) = newton(net, there, start, ON_THE_WAY, effort)
-        {
-            break found;
-        }
-        part *= 0.2;
-        if part < 1e-7 || effort.evaluations > MOST_EVALUATIONS {
-            return Err(failed);
-        }
-    };
-    // d(unknowns)/d ln(part) of a shallow bulge, where B, k and 1/T grow with the root of the contraction.
-    let mut rate = [if net.lobes.is_some() && at.side > 0.0 { -1.0 } else { 0.5 }, 0.5];
-    let mut grow: f64 = 2.0;
-    while part < 1.0 {
-        let next = (part * grow).min(1.0);
-        let jump = (next / part).ln();
-        let guess = Unknowns { logs: [at.logs[0] + rate[0] * jump, at.logs[1] + rate[1] * jump], ..at };
-        match newton(net, straight + next * whole, guess, ON_THE_WAY, effort) {
-            Ok(found) => {
-                rate = [(found.logs[0] - at.logs[0]) / jump, (found.logs[1] - at.logs[1]) / jump];
-                (at, part) = (found, next);
-                grow = (1.0 + (grow - 1.0) * 1.5).min(2.0);
-            }
-            Err(error) => {
-                grow = 1.0 + (grow - 1.0) * 0.4;
-                if grow < 1.002 || effort.evaluations > MOST_EVALUATIONS {
-                    return Err(match error {
-                        FibreError::NotConverged { residual, iterations, .. } => {
-                            FibreError::NotConverged { contraction, residual, iterations }
-                        }
-                        other => other,
-                    });
-                }
-            }
-        }
-    }
-    Ok(at)
+    Err(FibreError::NotConverged { contraction, residual: previous, iterations: most })
 }
 
 /// The 2 x 2 system J x = g.
@@ -413,12 +366,22 @@ pub(crate) struct Total<const N: usize> {
     pub(crate) by_parameter: [f64; N],
 }
 
+/// How the last trajectory is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// By the equilibrium ODE, whose first integral and end conditions then check everything that led there.
+    Ode,
+    /// By quadrature where the meridian is one.
+    Fastest,
+}
+
 /// One last integration at the unknowns, whose own small Newton step corrects the values to second order, and the implicit function
 /// theorem: the unknowns z follow a parameter a by `dz/da = -J^-1 dg/da`, an output o by `do/da + (do/dz) dz/da`.
 pub(crate) fn finish<const N: usize>(
     net: &Net<Dual<N>>,
     contraction: f64,
     unknowns: Unknowns,
+    way: Way,
 ) -> Result<Solved<N>, FibreError> {
     let failed = FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: 0 };
     let asked = contraction;
@@ -427,7 +390,11 @@ pub(crate) fn finish<const N: usize>(
     let mut evaluations = 0;
     let (run, g, jacobian, step, bulge) = loop {
         let middle = at.seeded(net).ok_or_else(|| failed.clone())?;
-        let run = trajectory(net, middle, TOLERANCE).map_err(|_| failed.clone())?;
+        let run = match way {
+            Way::Fastest if quadrature::suits(net) => quadrature::trajectory(net, middle),
+            _ => trajectory(net, middle, TOLERANCE),
+        };
+        let run = run.map_err(|_| failed.clone())?;
         let bulge = middle.bulge;
         let g = residuals(net, Dual::from(contraction), &run);
         let jacobian = g.map(|g| [g.gradient()[0], g.gradient()[1]]);
@@ -490,7 +457,7 @@ mod tests {
             let limit = longest(&net);
             let force = |contraction: f64| {
                 let (unknowns, _) = solve(&net, contraction, None, USUAL)?;
-                finish::<2>(&net.lift(), contraction, unknowns).map(|found| found.force.value)
+                finish::<2>(&net.lift(), contraction, unknowns, Way::Ode).map(|found| found.force.value)
             };
             let forces = [1e-2, 1e-3, 1e-4].map(|part| force(limit * (1.0 - part)).unwrap());
             // F ~ a + b distance^(-1/2): the differences grow by sqrt(10).
@@ -506,7 +473,7 @@ mod tests {
         let at = |length: f64| {
             let net = braid(length, 50.0);
             let (unknowns, _) = solve(&net, 0.05, None, USUAL).unwrap();
-            let found = finish::<2>(&net.lift(), 0.05, unknowns).unwrap();
+            let found = finish::<2>(&net.lift(), 0.05, unknowns, Way::Ode).unwrap();
             (unknowns.logs[1], found.trajectory.first_integral)
         };
         let (half, full) = (at(50.0), at(100.0));
@@ -521,7 +488,7 @@ mod tests {
         let (near, _) = solve(&net, 0.19, None, USUAL).unwrap();
         let (cold, effort) = solve(&net, 0.2, None, USUAL).unwrap();
         let (warm, _) = solve(&net, 0.2, Some(near), USUAL).unwrap();
-        let force = |unknowns| finish::<2>(&net.lift(), 0.2, unknowns).unwrap().force.value;
+        let force = |unknowns| finish::<2>(&net.lift(), 0.2, unknowns, Way::Ode).unwrap().force.value;
         assert!((force(cold) / force(warm) - 1.0).abs() < 1e-11);
         assert!(effort.iterations < 8);
     }

@@ -8,7 +8,7 @@ use crate::FibreError;
 use crate::outcome::{Approach, Outcome, Solution};
 use crate::problem::{Problem, Variable};
 use crate::shape::{Method, Response};
-use crate::shooting::{self, Total, Unknowns};
+use crate::shooting::{self, EXACT, Total, Unknowns};
 use crate::start::longest;
 
 /// Ambient pressure for the stiffness at constant gas amount \[Pa\] (standard atmosphere).
@@ -94,7 +94,7 @@ impl Problem {
         const N: usize = 2 + Variable::COUNT;
         let seeded = self.seeded::<N>(|variable| 2 + variable.index());
         let outcome =
-            self.outcome_of_many(self.method(approach)?, contraction, &self.net_of(&seeded), None)?;
+            self.outcome_of_many(self.method(approach)?, contraction, &self.net_of(&seeded), None, EXACT)?;
         let [force, volume] = physical(&outcome, seeded);
         let by_variable = Variable::all()
             .filter(|variable| match variable {

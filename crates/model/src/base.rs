@@ -1,6 +1,6 @@
 //! The base law at one pressure and contraction: the equilibrium of the reshaped muscle, with derivatives by what reshaped it.
 
-use bulge_fibre::{Approach, FibreError, Linearised, Problem, Variable};
+use bulge_fibre::{Approach, FibreError, Linear, Linearised, Problem, Start, Variable};
 use bulge_muscles::{Muscle, Parameter, Pressure};
 
 use crate::answer::{Answer, Graded, SHAPE};
@@ -10,8 +10,11 @@ use crate::answer::{Answer, Graded, SHAPE};
 pub(crate) enum ShapeVariable {
     /// Through numbers of the muscle, each with d(number)/d(parameter).
     Numbers(Vec<(Parameter, f64)>),
-    /// By the quotient of a small change: where the effect is off, and the number that it moves doesn't exist yet.
-    Quotient { muscle: Box<Muscle>, step: f64 },
+    /// The same at a neighbour: where the effect is off, and the number that it moves doesn't exist yet, the muscle has it a very small
+    /// part of its usual size further on.
+    Beside { muscle: Box<Muscle>, moved: Vec<(Parameter, f64)> },
+    /// By differences to the muscles at one, one half and one quarter of a step: where nothing says which numbers move.
+    Difference { muscles: Box<[Muscle; 3]>, step: f64 },
 }
 
 /// A muscle to be solved, with the parameters by which its answers are differentiated.
@@ -19,49 +22,85 @@ pub(crate) enum ShapeVariable {
 pub(crate) struct Equilibrium {
     /// At 1 bar; other pressures are derived from it.
     problem: Problem,
-    /// What moves, in the order of `variables`, without doubles.
+    /// What moves, without doubles.
     numbers: Vec<Variable>,
-    variables: Vec<ShapeVariable>,
-    /// One for each quotient.
-    neighbours: Vec<Option<(Problem, f64)>>,
+    slopes: Vec<Slope>,
+}
+
+/// Where the derivatives by one parameter come from.
+#[derive(Debug, Clone)]
+enum Slope {
+    /// (place among the numbers, factor)
+    Own(Vec<(usize, f64)>),
+    Beside {
+        problem: Box<Problem>,
+        numbers: Vec<Variable>,
+        places: Vec<(usize, f64)>,
+    },
+    Difference {
+        problems: Box<[Problem; 3]>,
+        step: f64,
+    },
 }
 
 /// Any pressure will do to make the problem.
 const REFERENCE: f64 = 1e5;
+/// Weights of the values here and at one, one half and one quarter of a step in the derivative here, times the step: three forward differences,
+/// extrapolated to no step (Richardson).
+const WEIGHTS: [f64; 4] = [-7.0, 1.0 / 3.0, -4.0, 32.0 / 3.0];
+
+fn places(moved: &[(Parameter, f64)], numbers: &mut Vec<Variable>) -> Vec<(usize, f64)> {
+    let place = |(parameter, factor): &(Parameter, f64)| {
+        let number = Variable::Parameter(*parameter);
+        let place = numbers.iter().position(|other| *other == number).unwrap_or_else(|| {
+            numbers.push(number);
+            numbers.len() - 1
+        });
+        (place, *factor)
+    };
+    moved.iter().map(place).collect()
+}
 
 impl Equilibrium {
     pub(crate) fn new(muscle: &Muscle, variables: Vec<ShapeVariable>) -> Result<Self, FibreError> {
-        let problem = Problem::new(muscle, Pressure::pa(REFERENCE))?;
+        let problem_of = |muscle: &Muscle| Problem::new(muscle, Pressure::pa(REFERENCE));
         let mut numbers: Vec<Variable> = Vec::new();
-        let mut neighbours = Vec::new();
-        for variable in &variables {
-            match variable {
-                ShapeVariable::Numbers(moved) => {
-                    for (parameter, _) in moved {
-                        let number = Variable::Parameter(*parameter);
-                        if !numbers.contains(&number) {
-                            numbers.push(number);
-                        }
-                    }
-                    neighbours.push(None);
+        let slope_of = |variable| {
+            Ok(match variable {
+                ShapeVariable::Numbers(moved) => Slope::Own(places(&moved, &mut numbers)),
+                ShapeVariable::Beside { muscle, moved } => {
+                    let mut numbers = Vec::new();
+                    let places = places(&moved, &mut numbers);
+                    Slope::Beside { problem: Box::new(problem_of(&muscle)?), numbers, places }
                 }
-                ShapeVariable::Quotient { muscle, step } => {
-                    neighbours.push(Some((Problem::new(muscle, Pressure::pa(REFERENCE))?, *step)));
+                ShapeVariable::Difference { muscles, step } => {
+                    let [a, b, c] = &*muscles;
+                    let problems = Box::new([problem_of(a)?, problem_of(b)?, problem_of(c)?]);
+                    Slope::Difference { problems, step }
                 }
-            }
-        }
-        Ok(Self { problem, numbers, variables, neighbours })
+            })
+        };
+        let slopes = variables.into_iter().map(slope_of).collect::<Result<_, FibreError>>()?;
+        Ok(Self { problem: problem_of(muscle)?, numbers, slopes })
+    }
+
+    fn problems(&self) -> impl Iterator<Item = &Problem> {
+        let others = |slope| match slope {
+            &Slope::Own(_) => [].as_slice(),
+            Slope::Beside { problem, .. } => std::slice::from_ref(problem.as_ref()),
+            Slope::Difference { problems, .. } => problems.as_slice(),
+        };
+        std::iter::once(&self.problem).chain(self.slopes.iter().flat_map(others))
     }
 
     /// Whether force/p, shape and volume don't depend on the pressure.
     pub(crate) fn is_scale_free(&self) -> bool {
-        self.problem.is_scale_free() && self.neighbours.iter().flatten().all(|(p, _)| p.is_scale_free())
+        self.problems().all(Problem::is_scale_free)
     }
 
-    /// Whether each answer takes an integration of the equilibrium ODE, and a lattice is worth its while.
+    /// Whether each answer takes a search for the equilibrium, and a lattice is worth its while.
     pub(crate) fn is_costly(&self) -> bool {
-        let shoots = |problem: &Problem| problem.shoots();
-        shoots(&self.problem) || self.neighbours.iter().flatten().any(|(p, _)| shoots(p))
+        self.problems().any(Problem::shoots)
     }
 
     /// Whether the force grows without bound towards contraction 0.
@@ -69,62 +108,67 @@ impl Equilibrium {
         self.problem.is_singular()
     }
 
-    /// The answer at a pressure \[Pa\] and a contraction.
-    pub(crate) fn answer(&self, pressure: f64, contraction: f64) -> Result<Answer, FibreError> {
-        let here = self.problem.at_pressure(Pressure::pa(pressure))?;
-        let found = here.linearised(contraction, &self.numbers, Approach::Auto)?;
+    /// The answer at a pressure \[Pa\] and a contraction, and where a search for a similar one may start.
+    pub(crate) fn answer(
+        &self,
+        pressure: f64,
+        contraction: f64,
+        from: Option<&Start>,
+    ) -> Result<(Answer, Option<Start>), FibreError> {
+        let pressure = Pressure::pa(pressure);
+        let here = self.problem.at_pressure(pressure)?;
+        let found = here.linearised_from(from, contraction, &self.numbers, Approach::Auto)?;
         let mut answer = Answer {
             force: plain(&found.force_n),
             tension: plain(&found.equator_force_n),
             mid_radius: plain(&found.mid_radius_m),
             volume: plain(&found.volume_polygon_m3),
         };
-        for (j, variable) in self.variables.iter().enumerate().take(SHAPE) {
-            let slopes = self.by_shape(j, variable, &found, pressure, contraction)?;
-            let places = [&mut answer.force, &mut answer.tension, &mut answer.mid_radius, &mut answer.volume];
-            for (place, slope) in places.into_iter().zip(slopes) {
-                place.by_shape[j] = slope;
-            }
-        }
-        Ok(answer)
-    }
-
-    fn by_shape(
-        &self,
-        j: usize,
-        variable: &ShapeVariable,
-        found: &Linearised,
-        pressure: f64,
-        contraction: f64,
-    ) -> Result<[f64; 4], FibreError> {
-        if let (ShapeVariable::Quotient { .. }, Some((problem, step))) = (variable, &self.neighbours[j]) {
-            let moved =
-                problem.at_pressure(Pressure::pa(pressure))?.linearised(contraction, &[], Approach::Auto)?;
-            return Ok([
-                (moved.force_n.value - found.force_n.value) / step,
-                (moved.equator_force_n.value - found.equator_force_n.value) / step,
-                (moved.mid_radius_m.value - found.mid_radius_m.value) / step,
-                (moved.volume_polygon_m3.value - found.volume_polygon_m3.value) / step,
-            ]);
-        }
-        let ShapeVariable::Numbers(moved) = variable else { return Ok([0.0; 4]) };
-        let mut slopes = [0.0; 4];
-        for (parameter, factor) in moved {
-            let place = self.numbers.iter().position(|number| *number == Variable::Parameter(*parameter));
-            if let Some(place) = place {
-                let outputs =
-                    [&found.force_n, &found.equator_force_n, &found.mid_radius_m, &found.volume_polygon_m3];
-                for (slope, output) in slopes.iter_mut().zip(outputs) {
-                    *slope += factor * output.by_variable()[place];
+        let near = |problem: &Problem, numbers: &[Variable]| {
+            problem.at_pressure(pressure)?.linearised_from(
+                found.start(),
+                contraction,
+                numbers,
+                Approach::Auto,
+            )
+        };
+        for (j, slope) in self.slopes.iter().enumerate().take(SHAPE) {
+            let slopes = match slope {
+                Slope::Own(places) => along(&found, places),
+                Slope::Beside { problem, numbers, places } => along(&near(problem, numbers)?, places),
+                Slope::Difference { problems, step } => {
+                    let mut sum = outputs(&found).map(|output| WEIGHTS[0] * output.value);
+                    for (problem, weight) in problems.iter().zip(&WEIGHTS[1..]) {
+                        let moved = near(problem, &[])?;
+                        for (sum, output) in sum.iter_mut().zip(outputs(&moved)) {
+                            *sum += weight * output.value;
+                        }
+                    }
+                    sum.map(|sum| sum / step)
                 }
+            };
+            let graded = [&mut answer.force, &mut answer.tension, &mut answer.mid_radius, &mut answer.volume];
+            for (graded, slope) in graded.into_iter().zip(slopes) {
+                graded.by_shape[j] = slope;
             }
         }
-        Ok(slopes)
+        Ok((answer, found.start().copied()))
     }
 }
 
+/// Force, meridional force, radius and volume.
+fn outputs(found: &Linearised) -> [&Linear; 4] {
+    [&found.force_n, &found.equator_force_n, &found.mid_radius_m, &found.volume_polygon_m3]
+}
+
+/// Their derivatives by a parameter that moves the variables at `places`.
+fn along(found: &Linearised, places: &[(usize, f64)]) -> [f64; 4] {
+    outputs(found)
+        .map(|output| places.iter().map(|(place, factor)| factor * output.by_variable()[*place]).sum())
+}
+
 /// One of the outputs without derivatives by the shape.
-fn plain(output: &bulge_fibre::Linear) -> Graded {
+fn plain(output: &Linear) -> Graded {
     Graded {
         value: output.value,
         by_pressure: output.by_pressure,

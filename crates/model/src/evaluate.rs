@@ -1,18 +1,20 @@
 //! A model along a history: the force of every row, with exact derivatives.
 
-use bulge_effects::law::LawPoint;
-use bulge_effects::{Balance, Effect, Input, Jet, LANES, Moment, Place, Stage};
-use bulge_fibre::FibreError;
+use bulge_effects::{Effect, Input, Jet, LANES, Moment, Place, Setting, Stage};
+use bulge_fibre::{FibreError, Start};
 use bulge_numerics::{Dual, Real};
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::answer::{Carried, SHAPE};
+use crate::answer::SHAPE;
 use crate::base::Equilibrium;
 use crate::error::ModelError;
-use crate::lattice::{self, Lattice};
+use crate::lattice::{FEWEST_NODES, Lattice};
 use crate::model::{AtRest, Base, Model};
 use crate::record::Record;
+use crate::row::NORMAL;
+use crate::warm::{Slots, Warm};
 
 /// What is wanted of [`Model::evaluate`] besides the force.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -36,39 +38,33 @@ pub struct Prediction {
     pub by_contraction: Vec<f64>,
 }
 
-/// Rows up to which shooting muscles are solved row by row.
-const FEW_ROWS: usize = 150;
-/// Rows handed to one core at a time, where nothing is remembered from row to row. Fixed, so that results don't depend on the number of threads.
-const CHUNK: usize = 2048;
-/// Newton steps for a contraction that depends on the force.
-const MOST_GIVE_STEPS: usize = 50;
-/// Nodes and weights of the Gauss-Hermite rule of degree 5 for a standard normal number.
-const NORMAL: [(f64, f64); 3] =
-    [(0.0, 2.0 / 3.0), (1.732_050_807_568_877_2, 1.0 / 6.0), (-1.732_050_807_568_877_2, 1.0 / 6.0)];
-
+/// Rows handed to one core at a time, where nothing is remembered from row to row, and where each of them takes a search. Fixed, so that results
+/// don't depend on the number of threads.
+const CHUNK: [usize; 2] = [2048, 8];
 /// Everything that stays the same for all rows of one evaluation.
-struct Run<'a> {
-    model: &'a Model,
-    theta: &'a [f64],
+pub(crate) struct Run<'a> {
+    pub(crate) model: &'a Model,
+    pub(crate) theta: &'a [f64],
+    pub(crate) setting: Setting,
     /// Parameters that change the shape, in the order of the answers' derivatives.
     shapes: Vec<usize>,
-    equilibrium: Option<Equilibrium>,
-    lattice: Option<Lattice>,
+    pub(crate) equilibrium: Option<Equilibrium>,
+    pub(crate) lattice: Option<Lattice>,
 }
 
 /// Which variable each lane carries in one pass.
-struct Pass {
-    theta: Vec<Jet>,
+pub(crate) struct Pass {
+    pub(crate) theta: Vec<Jet>,
     pressure_lane: Option<usize>,
     contraction_lane: Option<usize>,
     /// Lane of each shape parameter.
-    shape_lanes: Vec<Option<usize>>,
+    pub(crate) shape_lanes: Vec<Option<usize>>,
     /// (lane, place among the wanted parameters)
     columns: Vec<(usize, usize)>,
 }
 
 /// Why a row has no force.
-enum RowError {
+pub(crate) enum RowError {
     Solver { pressure: f64, contraction: f64, source: FibreError },
     NotFinite,
 }
@@ -93,22 +89,76 @@ impl Model {
         theta: &[f64],
         wanted: &Wanted,
     ) -> Result<Prediction, ModelError> {
-        let run = self.run(record, theta, &wanted.parameters)?;
-        let passes = Self::passes(theta, wanted, &run.shapes);
-        let segments = self.segments(record);
-        let columns = wanted.parameters.len();
+        self.evaluate_with(record, theta, wanted, None, &mut Slots::default())
+    }
+
+    /// The same within a fit: searches start where those of the evaluation before ended, and each of the rows that count (see
+    /// [`Warm::of_rows`]) has an answer or there is none: the error then lists the first such row of each segment only.
+    ///
+    /// The forces are those of [`Model::evaluate`] within the accuracy of the solver, some 1e-10 of them.
+    ///
+    /// # Errors
+    /// Those of [`Model::evaluate`], for the rows that count.
+    pub fn evaluate_warm(
+        &self,
+        record: &Record,
+        theta: &[f64],
+        wanted: &Wanted,
+        warm: &Warm,
+    ) -> Result<Prediction, ModelError> {
+        let mut slots = warm.take();
+        let found = self.evaluate_with(record, theta, wanted, Some(warm), &mut slots);
+        warm.put(slots);
+        found
+    }
+
+    fn evaluate_with(
+        &self,
+        record: &Record,
+        theta: &[f64],
+        wanted: &Wanted,
+        warm: Option<&Warm>,
+        slots: &mut Slots,
+    ) -> Result<Prediction, ModelError> {
+        let counts = |row: usize| warm.is_none_or(|warm| warm.counts(row));
+        let run = self.run(record, theta, &wanted.parameters, &counts, &mut slots.nodes)?;
+        let segments = run.segments(record);
+        slots.fit(segments.iter().map(Range::len));
+        let task = Task {
+            record,
+            passes: Self::passes(theta, wanted, &run.shapes),
+            columns: wanted.parameters.len(),
+            readings: wanted.readings,
+            counts: &counts,
+            within_fit: warm.is_some(),
+        };
         let parts: Vec<Part> = segments
             .par_iter()
-            .map(|rows| run.segment(record, rows.clone(), &passes, columns, wanted.readings))
+            .zip(&mut slots.rows)
+            .map(|(rows, slots)| run.segment(&task, rows.clone(), slots))
             .collect();
         gather(parts, record.len())
     }
 
-    fn run<'a>(&'a self, record: &Record, theta: &'a [f64], wanted: &[usize]) -> Result<Run<'a>, ModelError> {
+    fn run<'a>(
+        &'a self,
+        record: &Record,
+        theta: &'a [f64],
+        wanted: &[usize],
+        counts: &dyn Fn(usize) -> bool,
+        nodes: &mut HashMap<[i64; 2], Start>,
+    ) -> Result<Run<'a>, ModelError> {
         if theta.len() != self.parameters().len() {
             return Err(ModelError::Values { given: theta.len(), expected: self.parameters().len() });
         }
-        let mut run = Run { model: self, theta, shapes: Vec::new(), equilibrium: None, lattice: None };
+        let mut run = Run {
+            model: self,
+            theta,
+            setting: self.setting,
+            shapes: Vec::new(),
+            equilibrium: None,
+            lattice: None,
+        };
         if let Base::Law { .. } = self.base {
             return Ok(run);
         }
@@ -125,21 +175,21 @@ impl Model {
             source: Box::new(source),
         };
         let equilibrium = Self::equilibrium(&muscle, &variables).map_err(no_problem)?;
+        // Lengths stay those stated: what an effect takes from them would else move without a derivative.
+        let found = Setting::of(&muscle);
+        run.setting = Setting { fibres: found.fibres, has_bladder: found.has_bladder, ..self.setting };
         run.shapes = variables.iter().map(|(index, _)| *index).collect();
-        if equilibrium.is_costly() && record.len() > FEW_ROWS {
+        if equilibrium.is_costly() && record.len() > FEWEST_NODES {
             let rows = run.inputs(record);
-            run.lattice = Some(Lattice::around(&equilibrium, run.shapes.len(), self.refinement, &rows));
+            let counted = || rows.iter().enumerate().filter(|(row, _)| counts(*row)).map(|(_, row)| row);
+            let lattice = Lattice::around(&equilibrium, run.shapes.len(), self.refinement, counted());
+            // A node costs what a row costs.
+            if lattice.needed() < counted().count() {
+                run.lattice = Some(lattice.solved(&equilibrium, nodes));
+            }
         }
         run.equilibrium = Some(equilibrium);
         Ok(run)
-    }
-
-    /// Sweeps where something is remembered along them, else chunks of equal size.
-    fn segments(&self, record: &Record) -> Vec<Range<usize>> {
-        if self.effects.iter().any(|chosen| chosen.effect.memory() > 0) {
-            return record.sweeps().to_vec();
-        }
-        (0..record.len()).step_by(CHUNK).map(|start| start..(start + CHUNK).min(record.len())).collect()
     }
 
     fn passes(theta: &[f64], wanted: &Wanted, shapes: &[usize]) -> Vec<Pass> {
@@ -176,7 +226,7 @@ impl Model {
     pub(crate) fn rest(&self, theta: &[f64], moment: &Moment) -> Result<AtRest, ModelError> {
         let record = Record::from_moments(vec![*moment], vec![0.0], std::iter::once(0..1).collect());
         let Some(record) = record else { return Err(ModelError::Values { given: 0, expected: 1 }) };
-        let run = self.run(&record, theta, &[])?;
+        let run = self.run(&record, theta, &[], &|_| true, &mut HashMap::new())?;
         let pass = Pass {
             theta: theta.iter().map(|v| Jet::from(*v)).collect(),
             pressure_lane: None,
@@ -185,7 +235,7 @@ impl Model {
             columns: Vec::new(),
         };
         let mut memory = run.memory();
-        match run.row(moment, &pass, &mut memory) {
+        match run.row(moment, &pass, &mut memory, &mut None) {
             Ok(row) => Ok(AtRest {
                 equilibrium_n: row.equilibrium.value(),
                 force_n: row.force.value(),
@@ -196,20 +246,38 @@ impl Model {
     }
 }
 
-/// The force of one row at three stages.
-struct Row {
-    equilibrium: Jet,
-    force: Jet,
-    reading: Jet,
+/// What is asked of every segment.
+struct Task<'a> {
+    record: &'a Record,
+    passes: Vec<Pass>,
+    columns: usize,
+    readings: bool,
+    counts: &'a (dyn Fn(usize) -> bool + Sync),
+    within_fit: bool,
 }
 
 impl Run<'_> {
+    fn remembers(&self) -> bool {
+        self.model.effects.iter().any(|chosen| chosen.effect.memory() > 0)
+    }
+
+    /// Sweeps where something is remembered along them, else chunks of equal size.
+    fn segments(&self, record: &Record) -> Vec<Range<usize>> {
+        if self.remembers() {
+            return record.sweeps().to_vec();
+        }
+        let searches =
+            self.lattice.is_none() && self.equilibrium.as_ref().is_some_and(Equilibrium::is_costly);
+        let chunk = CHUNK[usize::from(searches)];
+        (0..record.len()).step_by(chunk).map(|start| start..(start + chunk).min(record.len())).collect()
+    }
+
     fn memory(&self) -> Vec<Vec<Jet>> {
         self.model.effects.iter().map(|chosen| vec![Jet::from(0.0); chosen.effect.memory()]).collect()
     }
 
     /// Effects that act at a stage, with their numbers and memory. Effects of the shape may also change the input.
-    fn act(
+    pub(crate) fn act(
         &self,
         moment: &Moment,
         pass: &Pass,
@@ -225,7 +293,7 @@ impl Run<'_> {
         }
     }
 
-    fn input(&self, moment: &Moment, pass: &Pass, memory: &mut [Vec<Jet>]) -> Input {
+    pub(crate) fn input(&self, moment: &Moment, pass: &Pass, memory: &mut [Vec<Jet>]) -> Input {
         let seeded = |value: f64, lane: Option<usize>| match lane {
             Some(lane) => Dual::variable(value, lane),
             None => Jet::from(value),
@@ -234,7 +302,7 @@ impl Run<'_> {
             seeded(moment.pressure, pass.pressure_lane),
             seeded(moment.contraction, pass.contraction_lane),
         );
-        let setting = &self.model.setting;
+        let setting = &self.setting;
         self.act(moment, pass, memory, &[Stage::Shape, Stage::Input], |effect, theta, memory| {
             effect.act(moment, setting, theta, memory, Place::Input(&mut input));
         });
@@ -267,190 +335,64 @@ impl Run<'_> {
             let mut memory = self.memory();
             record.moments()[rows.clone()].iter().map(|moment| row(&mut memory, moment)).collect::<Vec<_>>()
         };
-        let segments = self.model.segments(record);
+        let segments = self.segments(record);
         segments.par_iter().map(of_segment).collect::<Vec<_>>().into_iter().flatten().collect()
     }
 
-    fn segment(
-        &self,
-        record: &Record,
-        rows: Range<usize>,
-        passes: &[Pass],
-        columns: usize,
-        readings: bool,
-    ) -> Part {
+    fn segment(&self, task: &Task<'_>, rows: Range<usize>, slots: &mut [Option<Start>]) -> Part {
         let count = rows.len();
         let sized = |wanted: bool| if wanted { vec![0.0; count] } else { Vec::new() };
         let mut part = Part {
             force: vec![0.0; count],
-            jacobian: vec![0.0; count * columns],
-            by_pressure: sized(readings),
-            by_contraction: sized(readings),
+            jacobian: vec![0.0; count * task.columns],
+            by_pressure: sized(task.readings),
+            by_contraction: sized(task.readings),
             failed: Vec::new(),
         };
-        for (number, pass) in passes.iter().enumerate() {
+        // Rows that don't count matter only for what they leave in the memory.
+        let remembers = self.remembers();
+        for (number, pass) in task.passes.iter().enumerate() {
             let mut memory = self.memory();
-            for (i, row) in rows.clone().enumerate() {
-                let moment = &record.moments()[row];
+            for ((i, row), slot) in rows.clone().enumerate().zip(slots.iter_mut()) {
+                let (moment, counts) = (&task.record.moments()[row], (task.counts)(row));
                 if moment.begins {
                     memory.iter_mut().flatten().for_each(|m| *m = Jet::from(0.0));
                 }
-                let reading = match self.row(moment, pass, &mut memory) {
-                    Ok(row) => row.reading,
-                    Err(error) => {
-                        if number == 0 {
-                            part.failed.push((row, error));
+                if !(counts || remembers) {
+                    continue;
+                }
+                match self.row(moment, pass, &mut memory, slot) {
+                    Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
+                    Err(error) if counts && number == 0 => {
+                        part.failed.push((row, error));
+                        if task.within_fit {
+                            return part;
                         }
-                        continue;
                     }
-                };
-                if number == 0 {
-                    part.force[i] = reading.value();
-                }
-                let gradient = reading.gradient();
-                for (lane, column) in &pass.columns {
-                    part.jacobian[i * columns + column] = gradient[*lane];
-                }
-                if let Some(lane) = pass.pressure_lane {
-                    part.by_pressure[i] = gradient[lane];
-                }
-                if let Some(lane) = pass.contraction_lane {
-                    part.by_contraction[i] = gradient[lane];
+                    Ok(_) | Err(_) => {}
                 }
             }
         }
         part
     }
+}
 
-    fn row(&self, moment: &Moment, pass: &Pass, memory: &mut [Vec<Jet>]) -> Result<Row, RowError> {
-        let input = self.input(moment, pass, memory);
-        let (found, contraction) = self.balance(moment, &input, pass)?;
-        let balance = Balance {
-            pressure: input.pressure,
-            contraction,
-            force: found.force,
-            tension: found.tension,
-            mid_radius: found.mid_radius,
-            volume: found.volume,
-            slope: found.slope[0],
-        };
-        let setting = &self.model.setting;
-        let mut load = Jet::from(0.0);
-        self.act(moment, pass, memory, &[Stage::Load], |effect, theta, memory| {
-            effect.act(moment, setting, theta, memory, Place::Load(&balance, &mut load));
-        });
-        let force = found.force + load;
-        let mut reading = force;
-        self.act(moment, pass, memory, &[Stage::Output], |effect, theta, memory| {
-            effect.act(moment, setting, theta, memory, Place::Output(&balance, &mut reading));
-        });
-        let is_finite = reading.value().is_finite() && reading.gradient().iter().all(|g| g.is_finite());
-        if is_finite {
-            Ok(Row { equilibrium: found.force, force, reading })
-        } else {
-            Err(RowError::NotFinite)
+impl Part {
+    /// What one pass says of row `i`.
+    fn fill(&mut self, i: usize, number: usize, pass: &Pass, columns: usize, reading: Jet) {
+        if number == 0 {
+            self.force[i] = reading.value();
         }
-    }
-
-    /// The equilibrium behind an input, and the contraction at which it is.
-    ///
-    /// ```text
-    /// e = contraction + give_force F(e) + give_tension N(e)        Newton's method, then one step more that carries the derivatives
-    /// ```
-    fn balance(&self, moment: &Moment, input: &Input, pass: &Pass) -> Result<(Carried, Jet), RowError> {
-        let pressure = input.pressure * input.area / input.wall;
-        let gives = [input.give_force, input.give_tension];
-        let rigid = gives.iter().all(|g| g.value() == 0.0 && g.gradient().iter().all(|d| *d == 0.0));
-        let mut e = input.contraction;
-        if !rigid {
-            let mut at = input.contraction.value();
-            for _ in 0..MOST_GIVE_STEPS {
-                let found = self.averaged(moment, pressure, Jet::from(at), input, pass)?;
-                let gap =
-                    Jet::from(at) - input.contraction - gives[0] * found.force - gives[1] * found.tension;
-                let slope = 1.0 - gives[0].value() * found.slope[0] - gives[1].value() * found.slope[1];
-                // With derivatives: those of the gap at fixed e, over the slope.
-                e = Jet::from(at) - gap / slope;
-                let step = e.value() - at;
-                if step.abs() <= 1e-14 + 1e-13 * at.abs() {
-                    break;
-                }
-                at = e.value();
-            }
+        let gradient = reading.gradient();
+        for (lane, column) in &pass.columns {
+            self.jacobian[i * columns + column] = gradient[*lane];
         }
-        let found = self.averaged(moment, pressure, e, input, pass)?;
-        Ok((found, e))
-    }
-
-    /// Averaged over fibres of unequal length.
-    fn averaged(
-        &self,
-        moment: &Moment,
-        pressure: Jet,
-        e: Jet,
-        input: &Input,
-        pass: &Pass,
-    ) -> Result<Carried, RowError> {
-        let stiffen = |found: Carried| found.stiffened(input.wall);
-        let spread = input.spread;
-        if spread.value() == 0.0 {
-            return self.base(moment, pressure, e, pass).map(stiffen);
+        if let Some(lane) = pass.pressure_lane {
+            self.by_pressure[i] = gradient[lane];
         }
-        let mut sum: Option<Carried> = None;
-        for (z, weight) in NORMAL {
-            let part = self.base(moment, pressure, e + spread * z, pass)?.scaled(weight);
-            sum = Some(sum.map_or(part, |sum| sum.plus(part)));
+        if let Some(lane) = pass.contraction_lane {
+            self.by_contraction[i] = gradient[lane];
         }
-        sum.map(stiffen).ok_or(RowError::NotFinite)
-    }
-
-    /// The base law.
-    fn base(&self, moment: &Moment, pressure: Jet, e: Jet, pass: &Pass) -> Result<Carried, RowError> {
-        match (&self.model.base, &self.equilibrium) {
-            (Base::Law { law, geometry }, _) => {
-                let point = LawPoint { pressure, contraction: e, direction: moment.direction };
-                let count = law.coefficients.len();
-                let force = law.force(point, geometry, &pass.theta[..count]);
-                // Laws know no shape: a cylinder of the muscle's radius stands for it.
-                let radius = Jet::from(geometry.radius);
-                let area = std::f64::consts::PI * geometry.radius * geometry.radius;
-                let slope = self.law_slope(moment, pressure.value(), e.value());
-                Ok(Carried {
-                    force,
-                    tension: force + pressure * area,
-                    mid_radius: radius,
-                    volume: (-e + 1.0) * (area * geometry.length),
-                    slope: [slope, slope],
-                })
-            }
-            (Base::Equilibrium, Some(equilibrium)) => {
-                let (p, at) = (pressure.value(), e.value());
-                let answer = lattice::answer(self.lattice.as_ref(), equilibrium, p, at)
-                    .map_err(|source| RowError::Solver { pressure: p, contraction: at, source })?;
-                let lanes = &pass.shape_lanes;
-                Ok(Carried {
-                    force: answer.force.carry(pressure, e, lanes),
-                    tension: answer.tension.carry(pressure, e, lanes),
-                    mid_radius: answer.mid_radius.carry(pressure, e, lanes),
-                    volume: answer.volume.carry(pressure, e, lanes),
-                    slope: [answer.force.by_contraction, answer.tension.by_contraction],
-                })
-            }
-            (Base::Equilibrium, None) => Err(RowError::NotFinite),
-        }
-    }
-
-    fn law_slope(&self, moment: &Moment, pressure: f64, e: f64) -> f64 {
-        let Base::Law { law, geometry } = &self.model.base else { return 0.0 };
-        let constant = |v: f64| Dual::<1>::from(v);
-        let point = LawPoint {
-            pressure: constant(pressure),
-            contraction: Dual::<1>::variable(e, 0),
-            direction: moment.direction,
-        };
-        let coefficients: Vec<_> =
-            self.theta[..law.coefficients.len()].iter().map(|v| constant(*v)).collect();
-        law.force(point, geometry, &coefficients).gradient()[0]
     }
 }
 

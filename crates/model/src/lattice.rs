@@ -1,6 +1,6 @@
 //! A lattice of solved equilibria between which many rows are interpolated.
 //!
-//! Shooting takes some 100 us; a file may have 10^6 rows. Equilibria are therefore solved on a fixed lattice in ln(p) and in a stretched
+//! Shooting takes some 10 to 500 us; a file may have 10^6 rows. Equilibria are therefore solved on a fixed lattice in ln(p) and in a stretched
 //! contraction s, only where rows need them, and interpolated by local Lagrange polynomials of degree 5 in both directions:
 //!
 //! ```text
@@ -12,8 +12,9 @@
 //! exactly those of the interpolated force, and those by pressure and contraction are taken from the same polynomials. Away from the
 //! kink of cloth that comes taut the error is below 1e-6 of the force (tests below); where a needed node has no equilibrium, the row is solved itself.
 
-use bulge_fibre::FibreError;
+use bulge_fibre::{FibreError, Start};
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 use crate::answer::{Answer, Graded, SHAPE};
 use crate::base::Equilibrium;
@@ -22,14 +23,21 @@ use crate::base::Equilibrium;
 const WIDTH: usize = 6;
 /// The same as an index.
 const SPAN: i64 = 6;
+/// Nodes that a lattice has at least: for fewer rows none is worth its while.
+pub(crate) const FEWEST_NODES: usize = WIDTH * WIDTH;
 /// Steps of ln(p) and s at refinement 1.
-const STEP: [f64; 2] = [0.25, 0.1];
+const STEP: [f64; 2] = [0.125, 0.1];
 /// Contraction below which the lattice is even, above which it is logarithmic.
 const BEND: f64 = 0.02;
 /// Numbers per node: four outputs, each with its shape derivatives.
 const NUMBERS: usize = 4 * (1 + SHAPE);
 
+/// Contraction at which the search for the nodes of one pressure begins.
+const PULLS: f64 = 0.02;
+
 type Node = Box<[f64; NUMBERS]>;
+/// Column of a node, its numbers, and where its search ended.
+type Solved = (usize, Node, Option<Start>);
 
 /// Solved equilibria at the nodes that were asked for.
 #[derive(Debug)]
@@ -41,6 +49,8 @@ pub(crate) struct Lattice {
     /// Lowest index and number of nodes, by direction.
     low: [i64; 2],
     count: [usize; 2],
+    /// Whether a row needs a node.
+    needed: Vec<bool>,
     nodes: Vec<Option<Node>>,
 }
 
@@ -52,12 +62,12 @@ struct Place {
 }
 
 impl Lattice {
-    /// Solves what the rows at these pressures and ranges of contraction need, in parallel.
-    pub(crate) fn around(
+    /// A lattice for rows at these pressures and ranges of contraction, not yet solved.
+    pub(crate) fn around<'a>(
         equilibrium: &Equilibrium,
         shapes: usize,
         refinement: f64,
-        rows: &[(f64, [f64; 2])],
+        rows: impl Iterator<Item = &'a (f64, [f64; 2])>,
     ) -> Self {
         let mut lattice = Self {
             singular: equilibrium.is_singular(),
@@ -66,9 +76,10 @@ impl Lattice {
             steps: STEP.map(|step| step / refinement),
             low: [0, 0],
             count: [0, 0],
+            needed: Vec::new(),
             nodes: Vec::new(),
         };
-        let spans: Vec<[[i64; 2]; 2]> = rows.iter().filter_map(|row| lattice.span(row)).collect();
+        let spans: Vec<[[i64; 2]; 2]> = rows.filter_map(|row| lattice.span(row)).collect();
         let Some(first) = spans.first() else { return lattice };
         let mut extent = *first;
         for span in &spans {
@@ -89,15 +100,72 @@ impl Lattice {
                 }
             }
         }
-        let columns = lattice.count[1].max(1);
-        lattice.nodes = needed
-            .par_iter()
-            .enumerate()
-            .map(|(place, needed)| {
-                needed.then(|| lattice.solve(equilibrium, place / columns, place % columns)).flatten()
-            })
-            .collect();
+        lattice.needed = needed;
         lattice
+    }
+
+    /// How many nodes there are to solve.
+    pub(crate) fn needed(&self) -> usize {
+        self.needed.iter().filter(|needed| **needed).count()
+    }
+
+    /// The same with its nodes solved, one pressure beside the other. Searches start at what `slots` holds of a node, else at its neighbour,
+    /// and leave where they end.
+    pub(crate) fn solved(mut self, equilibrium: &Equilibrium, slots: &mut HashMap<[i64; 2], Start>) -> Self {
+        let lines: Vec<Vec<Solved>> =
+            (0..self.count[0]).into_par_iter().map(|row| self.line(equilibrium, row, slots)).collect();
+        let columns = self.count[1];
+        let mut nodes: Vec<Option<Node>> = vec![None; self.needed.len()];
+        slots.clear();
+        for (row, line) in lines.into_iter().enumerate() {
+            for (column, node, start) in line {
+                if let Some(start) = start {
+                    slots.insert(self.key(row, column), start);
+                }
+                nodes[row * columns + column] = Some(node);
+            }
+        }
+        self.nodes = nodes;
+        self
+    }
+
+    /// Nodes of one pressure: outwards from the contraction where every muscle pulls. A direction ends where equilibria end: nothing far beyond is
+    /// searched for in vain.
+    fn line(&self, equilibrium: &Equilibrium, row: usize, slots: &HashMap<[i64; 2], Start>) -> Vec<Solved> {
+        let columns = self.count[1];
+        let needed: Vec<usize> = (0..columns).filter(|column| self.needed[row * columns + column]).collect();
+        let middle = needed.partition_point(|column| self.contraction(*column) < PULLS);
+        let (below, above) = needed.split_at(middle);
+        let mut found = Vec::with_capacity(needed.len());
+        let mut first = None;
+        let ways: [&mut dyn Iterator<Item = &usize>; 2] = [&mut above.iter(), &mut below.iter().rev()];
+        for way in ways {
+            let mut near: Option<Start> = first;
+            let mut any = false;
+            for &column in way {
+                let from = slots.get(&self.key(row, column)).or(near.as_ref());
+                let Some((node, start)) = self.solve(equilibrium, row, column, from) else {
+                    if any {
+                        break;
+                    }
+                    continue;
+                };
+                (any, near) = (true, start);
+                first = first.or(start);
+                found.push((column, node, start));
+            }
+        }
+        found
+    }
+
+    fn key(&self, row: usize, column: usize) -> [i64; 2] {
+        // Indices are below 1e6 (see `place`).
+        [self.low[0] + i64::try_from(row).unwrap_or(0), self.low[1] + i64::try_from(column).unwrap_or(0)]
+    }
+
+    fn contraction(&self, column: usize) -> f64 {
+        let s = (self.low[1] as f64 + column as f64) * self.steps[1];
+        if self.singular { s.exp() } else { BEND * s.sinh() }
     }
 
     /// First and last nodes that a row needs, by direction; none outside what a lattice can hold.
@@ -138,12 +206,16 @@ impl Lattice {
         Some(row * self.count[1] + column)
     }
 
-    fn solve(&self, equilibrium: &Equilibrium, row: usize, column: usize) -> Option<Node> {
-        let at = |axis: usize, i: usize| (self.low[axis] as f64 + i as f64) * self.steps[axis];
-        let pressure = if self.scale_free { 1e5 } else { at(0, row).exp() };
-        let s = at(1, column);
-        let contraction = if self.singular { s.exp() } else { BEND * s.sinh() };
-        let answer = equilibrium.answer(pressure, contraction).ok()?;
+    fn solve(
+        &self,
+        equilibrium: &Equilibrium,
+        row: usize,
+        column: usize,
+        from: Option<&Start>,
+    ) -> Option<(Node, Option<Start>)> {
+        let logarithm = (self.low[0] as f64 + row as f64) * self.steps[0];
+        let pressure = if self.scale_free { 1e5 } else { logarithm.exp() };
+        let (answer, start) = equilibrium.answer(pressure, self.contraction(column), from).ok()?;
         let mut node = Box::new([0.0; NUMBERS]);
         let outputs = [
             (&answer.force, pressure),
@@ -158,7 +230,7 @@ impl Lattice {
                 node[base + 1 + j] = output.by_shape[j] / unit;
             }
         }
-        Some(node)
+        Some((node, start))
     }
 
     /// The interpolated answer; none where the lattice has no node.
@@ -218,13 +290,15 @@ impl Lattice {
 pub(crate) fn answer(
     lattice: Option<&Lattice>,
     equilibrium: &Equilibrium,
-    pressure: f64,
-    contraction: f64,
+    [pressure, contraction]: [f64; 2],
+    slot: &mut Option<Start>,
 ) -> Result<Answer, FibreError> {
-    match lattice.and_then(|lattice| lattice.answer(pressure, contraction)) {
-        Some(answer) => Ok(answer),
-        None => equilibrium.answer(pressure, contraction),
+    if let Some(answer) = lattice.and_then(|lattice| lattice.answer(pressure, contraction)) {
+        return Ok(answer);
     }
+    let (answer, start) = equilibrium.answer(pressure, contraction, slot.as_ref())?;
+    *slot = start.or(*slot);
+    Ok(answer)
 }
 
 /// A single node that counts whole, and no slope.

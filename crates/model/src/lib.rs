@@ -18,6 +18,8 @@ mod lattice;
 mod model;
 mod parameter;
 mod record;
+mod row;
+mod warm;
 
 pub use error::ModelError;
 pub use evaluate::{Prediction, Wanted};
@@ -25,3 +27,4 @@ pub use extended::{Extended, ExtendedError};
 pub use model::{AtRest, Chosen, Model};
 pub use parameter::ModelParameter;
 pub use record::Record;
+pub use warm::Warm;

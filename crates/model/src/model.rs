@@ -10,6 +10,14 @@ use crate::base::{Equilibrium, ShapeVariable};
 use crate::error::ModelError;
 use crate::parameter::ModelParameter;
 
+/// Part of a parameter's usual size at which a number exists that doesn't at 0; derivatives change by about as much on the way.
+const BESIDE: f64 = 1e-7;
+/// The same for differences: the third power of it is left.
+const STEP: f64 = 2e-3;
+
+/// A parameter, and the numbers of the muscle that it moves with d(number)/d(parameter).
+type Moved = (usize, Vec<(Parameter, f64)>);
+
 /// An effect of a model.
 #[derive(Debug, Clone)]
 pub struct Chosen {
@@ -203,44 +211,54 @@ impl Model {
         theta: &[f64],
         wanted: &[usize],
     ) -> Result<(Muscle, Vec<(usize, ShapeVariable)>), ModelError> {
+        let (muscle, moves) = self.moves(theta, wanted)?;
+        let exists = |moved: &[(Parameter, f64)], muscle: &Muscle| {
+            let has = |p| muscle.is_stated(p) || muscle.get(p).is_some_and(|v| v != 0.0);
+            !moved.is_empty() && moved.iter().all(|(p, _)| has(*p))
+        };
+        let mut variables = Vec::with_capacity(moves.len());
+        for (index, moved) in moves {
+            if exists(&moved, &muscle) {
+                variables.push((index, ShapeVariable::Numbers(moved)));
+                continue;
+            }
+            let usual = self.parameters[index].typical_step();
+            let at = |step: f64| {
+                let mut nudged = theta.to_vec();
+                nudged[index] += step;
+                self.moves(&nudged, &[index])
+            };
+            let (beside, moves) = at(BESIDE * usual)?;
+            let moved =
+                moves.into_iter().find(|(i, _)| *i == index).map(|(_, moved)| moved).unwrap_or_default();
+            let variable = if exists(&moved, &beside) {
+                ShapeVariable::Beside { muscle: Box::new(beside), moved }
+            } else if beside == muscle {
+                ShapeVariable::Numbers(Vec::new())
+            } else {
+                let step = STEP * usual;
+                let [a, b, c] = [at(step)?.0, at(0.5 * step)?.0, at(0.25 * step)?.0];
+                ShapeVariable::Difference { muscles: Box::new([a, b, c]), step }
+            };
+            variables.push((index, variable));
+        }
+        Ok((muscle, variables))
+    }
+
+    /// The muscle to solve, and for each of the `wanted` parameters which of its numbers they move, as far as the effects say.
+    fn moves(&self, theta: &[f64], wanted: &[usize]) -> Result<(Muscle, Vec<Moved>), ModelError> {
         let mut muscle = self.muscle.clone();
-        let mut variables: Vec<(usize, ShapeVariable)> = Vec::new();
-        let shapes =
-            || self.effects.iter().enumerate().filter(|(_, c)| c.effect.card().stage == Stage::Shape);
-        for (_, chosen) in shapes() {
+        let mut moved = Vec::new();
+        for chosen in self.effects.iter().filter(|c| c.effect.card().stage == Stage::Shape) {
             let range = self.range(chosen, 0);
             let reshaped = chosen.effect.reshape(&muscle, &theta[range.clone()]).map_err(about(chosen))?;
             muscle = reshaped.muscle;
             for index in range.clone().filter(|index| wanted.contains(index)) {
-                let moves: Vec<(Parameter, f64)> = reshaped
-                    .moves
-                    .iter()
-                    .filter(|(i, _, _)| range.start + i == index)
-                    .map(|(_, parameter, factor)| (*parameter, *factor))
-                    .collect();
-                variables.push((index, ShapeVariable::Numbers(moves)));
+                let of_index = reshaped.moves.iter().filter(|(i, _, _)| range.start + i == index);
+                moved.push((index, of_index.map(|(_, parameter, factor)| (*parameter, *factor)).collect()));
             }
         }
-        // Where a number doesn't exist on the final muscle, or nothing is moved, a small change shows the derivative.
-        for (index, variable) in &mut variables {
-            let exists = |moved: &[(Parameter, f64)]| {
-                !moved.is_empty()
-                    && moved
-                        .iter()
-                        .all(|(p, _)| muscle.is_stated(*p) || muscle.get(*p).is_some_and(|v| v != 0.0))
-            };
-            if let ShapeVariable::Numbers(moved) = variable
-                && !exists(moved)
-            {
-                let number = &self.parameters[*index];
-                let step = 1e-4 * (number.typical_step());
-                let mut nudged = theta.to_vec();
-                nudged[*index] += step;
-                let (neighbour, _) = self.reshape(&nudged, &[])?;
-                *variable = ShapeVariable::Quotient { muscle: Box::new(neighbour), step };
-            }
-        }
-        Ok((muscle, variables))
+        Ok((muscle, moved))
     }
 
     /// Whether each row takes an integration of the equilibrium ODE.

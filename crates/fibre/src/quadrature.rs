@@ -1,0 +1,440 @@
+//! The meridian of inextensible fibres by quadrature: two first integrals instead of the equilibrium ODE.
+//!
+//! Fibres that don't stretch have sigma^2 = 1 - q^2 r^2, so that the stored energy w is a function W of the radius alone. Besides
+//! N cos(chi) = F + A(r) a second number is then the same all along the meridian, H = sigma N - W (the energy conjugate to S), and with
+//! y = r^2 and z = |y - y_mid|
+//!
+//! ```text
+//! G = H + W - sigma (F + A)        1 - cos(chi) = G/(H + W)        H + W = sigma N = G + sigma (F + A)
+//! S = integral dr/(sigma sin(chi))        d = integral (cos(alpha0) - sigma cos(chi)) dS        V = integral pi (r + depth)^2 sigma cos(chi) dS
+//! ```
+//!
+//! G vanishes at mid-length. In a long braid its slope there is exp(-50), so it is never taken as a difference:
+//!
+//! ```text
+//! G = z (g_1 + g_2 z)        g_1 = sigma k N/(2 r) at mid-length        g_2 = second divided difference of W - sigma (F + A) by y at (mid, mid, y)
+//! ```
+//!
+//! Divided differences of y^2, 1/y, 1/sigma^2, sigma and r are known without cancellation (for one, sigma[y, y_m] = -q^2/(sigma + sigma_m)), and
+//! a product fg has f_m g[m, m, y] + f[m, m] g[m, y] + f[m, m, y] g(y).
+//!
+//! z = (g_1/g_2) sinh^2(u) takes both the square root at mid-length and the long way along a saddle out of the integrands, which become smooth in
+//! u. A Gauss-Kronrod pair of 10 and 21 points (R. Piessens et al., *QUADPACK*, Springer 1983) places the points from the values; the
+//! integrals of numbers with derivatives are then sums over them.
+
+use bulge_numerics::Real;
+use std::f64::consts::PI;
+
+use crate::meridian::{Middle, NoTrajectory, State, Trajectory};
+use crate::net::{Cloth, Net};
+
+/// Kronrod's nodes between 0 and 1 with their weights, and Gauss' weights of the same nodes.
+const PAIR: [(f64, f64, f64); 11] = [
+    (0.0, 0.149_445_554_002_916_9, 0.0),
+    (0.148_874_338_981_631_21, 0.147_739_104_901_338_49, 0.295_524_224_714_752_87),
+    (0.294_392_862_701_460_2, 0.142_775_938_577_060_09, 0.0),
+    (0.433_395_394_129_247_2, 0.134_709_217_311_473_34, 0.269_266_719_309_996_35),
+    (0.562_757_134_668_604_7, 0.123_491_976_262_065_84, 0.0),
+    (0.679_409_568_299_024_4, 0.109_387_158_802_297_64, 0.219_086_362_515_982_04),
+    (0.780_817_726_586_416_9, 0.093_125_454_583_697_6, 0.0),
+    (0.865_063_366_688_984_5, 0.075_039_674_810_919_96, 0.149_451_349_150_580_6),
+    (0.930_157_491_355_708_2, 0.054_755_896_574_351_995, 0.0),
+    (0.973_906_528_517_171_7, 0.032_558_162_307_964_725, 0.066_671_344_308_688_14),
+    (0.995_657_163_025_808_1, 0.011_694_638_867_371_874, 0.0),
+];
+/// Difference of the two rules, relative, up to which the larger one is taken: its own error is about the power 1.5 of that.
+const DIFFERENCE: f64 = 1e-9;
+/// Part of the fibre length against which a shortening counts at least where the fibres run at an angle.
+const ANGLE: f64 = 1e-2;
+/// Length in u of the piece next to the fitting, where the integrands change most; each further one is twice as long.
+const PIECE: f64 = 1.5;
+/// Pieces after which an integral is given up.
+const MOST_PIECES: usize = 60;
+/// Least ratio of the span to g_1/g_2: from here on the map changes nothing.
+const LEAST_RATIO: f64 = 0.1;
+/// Largest 1 - cos(chi), as in the integration of the ODE.
+const MOST_TURNED: f64 = 1.999;
+
+/// Whether the meridians of a net are quadratures: fibres that don't stretch, and no lobes.
+pub(crate) fn suits<D: Real>(net: &Net<D>) -> bool {
+    net.compliance.value() == 0.0 && net.lobes.is_none()
+}
+
+/// All that the integrands need. The index m means mid-length.
+struct Law<D> {
+    /// +1: bulge, -1: waist.
+    side: f64,
+    /// z at the fitting.
+    span: D,
+    r_m: D,
+    y_m: D,
+    sigma_m: D,
+    q2: D,
+    /// F + A - u at mid-length, with u the cloth's energy.
+    pull: D,
+    /// g_1.
+    slope: D,
+    /// Coefficient of y^2 in W, and those of 1/y and 1/sigma^2 in the second divided difference of W.
+    wall: [D; 3],
+    /// Coefficients of y and r in A - u.
+    area: [D; 2],
+    /// 1/(2 r_m), 1/(2 sigma_m).
+    halves: [D; 2],
+    cloth: Option<Cloth<D>>,
+    depth: D,
+    cos_rest: D,
+    sin2_rest: D,
+}
+
+/// The meridian at one radius.
+struct Local<D> {
+    y: D,
+    r: D,
+    sigma: D,
+    /// g_1 + g_2 z = G/z.
+    g: D,
+    /// g_2.
+    curve: D,
+    /// sigma N.
+    whole: D,
+    /// 1 - cos(chi).
+    turned: D,
+}
+
+/// A point of the quadrature: z over its span, weight, and whether the cloth is slack there although it is taut at mid-length.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    part: f64,
+    weight: f64,
+    slack: bool,
+}
+
+impl<D: Real> Law<D> {
+    fn of(net: &Net<D>, middle: &Middle<D>) -> Self {
+        let one = D::from(1.0);
+        let r_m = net.end_radius + middle.bulge;
+        let net = net.acting_at(r_m.value());
+        let side = middle.bulge.value().signum();
+        let y_m = r_m * r_m;
+        let q2 = net.turn * net.turn;
+        let v_m = -(q2 * y_m) + 1.0;
+        let sigma_m = v_m.sqrt();
+        let force = net.local(r_m, middle.tension).force;
+        let halves = [one / (r_m * 2.0), one / (sigma_m * 2.0)];
+        let mut area = [net.area_factor * PI, net.area_factor * net.depth * (2.0 * PI)];
+        let mut pull = force;
+        if let Some(cloth) = &net.cloth {
+            // u = kappa (r - r_u)^2: A - u is a quadratic polynomial of r as A is.
+            let kappa = cloth.scale();
+            area = [area[0] - kappa, area[1] + kappa * cloth.radius * 2.0];
+            pull = pull - kappa * (r_m - cloth.radius).squared();
+        }
+        let zero = D::from(0.0);
+        let mut wall = [zero; 3];
+        if let Some(bladder) = &net.bladder {
+            // With l1^2 = sigma^2/c^2, l2^2 = y and sigma^2 = 1 - q^2 y:
+            // I1 = (1 - q^2/c^2) y + c^2/y + c^2 q^2/sigma^2 + const        I2 = c^2/sigma^2 + 1/y + (y - q^2 y^2)/c^2 + const
+            let c2 = net.cos_rest * net.cos_rest;
+            wall = [
+                -(bladder.c01 * q2 / c2),
+                (bladder.c10 * c2 + bladder.c01) / (y_m * y_m),
+                (bladder.c10 * q2 + bladder.c01) * c2 * q2 * q2 / (v_m * v_m),
+            ];
+        }
+        Self {
+            side,
+            span: middle.bulge * (r_m + net.end_radius) * side,
+            r_m,
+            y_m,
+            sigma_m,
+            q2,
+            pull,
+            slope: sigma_m * middle.curvature * force * halves[0] * side,
+            wall,
+            area,
+            halves,
+            cloth: net.cloth,
+            depth: net.depth,
+            cos_rest: net.cos_rest,
+            sin2_rest: net.sin2_rest,
+        }
+    }
+
+    #[inline]
+    fn at(&self, part: f64, slack: bool) -> Local<D> {
+        let z = self.span * part;
+        let y = self.y_m - z * self.side;
+        let r = y.sqrt();
+        let v = -(self.q2 * y) + 1.0;
+        let sigma = v.sqrt();
+        // First divided differences of r, sigma and A - u, and the second ones.
+        let r_1 = D::from(1.0) / (r + self.r_m);
+        let sigma_1 = -(self.q2 / (sigma + self.sigma_m));
+        let area_1 = self.area[0] + self.area[1] * r_1;
+        let area_2 = -(self.area[1] * r_1 * r_1 * self.halves[0]);
+        let sigma_2 = -(sigma_1 * sigma_1 * self.halves[1]);
+        let mut pull = self.pull - area_1 * z * self.side;
+        let product = self.sigma_m * area_2 - self.q2 * self.halves[1] * area_1 + sigma_2 * pull;
+        let curve = self.wall[0] + self.wall[1] / y + self.wall[2] / v - product;
+        let mut g = self.slope + curve * z;
+        if let Some(cloth) = &self.cloth {
+            let u = cloth.scale() * (r - cloth.radius).squared();
+            pull += u;
+            if slack {
+                g = g - sigma * u / z;
+            }
+        }
+        let rise = g * z;
+        let whole = rise + sigma * pull;
+        Local { y, r, sigma, g, curve, whole, turned: rise / whole }
+    }
+
+    /// dS, dd and dV over `dz/(2 sqrt(z span))`; none where the fibres can't be.
+    #[inline]
+    fn rates(&self, point: &Point) -> Option<[D; 3]> {
+        let at = self.at(point.part, point.slack);
+        let turned = at.turned.value();
+        // A comparison with NaN is false.
+        let exists = at.g.value() > 0.0 && at.whole.value() > 0.0 && turned < MOST_TURNED;
+        if !exists || turned.is_nan() {
+            return None;
+        }
+        let fibre = (self.span * at.whole / (at.g * (-at.turned + 2.0))).sqrt() / (at.r * at.sigma);
+        let angle = self.q2 * at.y - self.sin2_rest;
+        let shortening = angle / (self.cos_rest + at.sigma) + at.sigma * at.turned;
+        let section = (at.r + self.depth).squared() * at.sigma * (-at.turned + 1.0) * PI;
+        Some([fibre, fibre * shortening, fibre * section])
+    }
+}
+
+/// The points of the quadrature.
+struct Plan {
+    points: Vec<Point>,
+    evaluations: u32,
+}
+
+impl Plan {
+    fn of(law: &Law<f64>, end_radius: f64) -> Result<Self, NoTrajectory> {
+        let start = law.at(0.0, false);
+        let ratio = (law.span * start.curve / law.slope).max(LEAST_RATIO);
+        let end = ratio.sqrt().asinh();
+        if !(end.is_finite() && end > 0.0) {
+            return Err(NoTrajectory { evaluations: 1 });
+        }
+        // Between two pieces the cloth comes taut.
+        let kink = law.cloth.filter(|cloth| cloth.radius > end_radius).map(|cloth| {
+            let part = (law.y_m - cloth.radius * cloth.radius) / law.span;
+            (ratio * part).sqrt().asinh().min(end)
+        });
+        let mut pieces = Vec::with_capacity(8);
+        for (low, high, slack) in [(0.0, kink.unwrap_or(end), false), (kink.unwrap_or(end), end, true)] {
+            let (mut top, mut length) = (high, PIECE);
+            while top > low {
+                let bottom = if top - low < 1.3 * length { low } else { top - length };
+                pieces.push((bottom, top, slack));
+                (top, length) = (bottom, 2.0 * length);
+            }
+        }
+        let mut plan = Self { points: Vec::with_capacity(21 * pieces.len()), evaluations: 0 };
+        let mut count = pieces.len();
+        while let Some((low, high, slack)) = pieces.pop() {
+            let points = points(low, high, slack, ratio);
+            plan.evaluations += 21;
+            let agree = agree(law, &points).ok_or(NoTrajectory { evaluations: plan.evaluations })?;
+            if agree {
+                plan.points.extend(points);
+            } else if count >= MOST_PIECES {
+                return Err(NoTrajectory { evaluations: plan.evaluations });
+            } else {
+                let middle = 0.5 * (low + high);
+                pieces.extend([(low, middle, slack), (middle, high, slack)]);
+                count += 1;
+            }
+        }
+        Ok(plan)
+    }
+}
+
+/// Kronrod's points between two values of u, symmetric about the middle: the first one, then pairs.
+fn points(low: f64, high: f64, slack: bool, ratio: f64) -> [Point; 21] {
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let per_end = 1.0 / ratio.sqrt();
+    std::array::from_fn(|i| {
+        let (node, weight, _) = PAIR[i.div_ceil(2)];
+        let u = if i % 2 == 0 { middle - half * node } else { middle + half * node };
+        let growth = u.exp();
+        let (sinh, cosh) = if u < 1e-2 {
+            (u.sinh(), u.cosh())
+        } else {
+            (0.5 * (growth - 1.0 / growth), 0.5 * (growth + 1.0 / growth))
+        };
+        Point { part: (sinh * per_end).powi(2), weight: weight * half * cosh * per_end, slack }
+    })
+}
+
+/// Whether both rules agree on fibre length and shortening; none where the fibres can't be.
+fn agree(law: &Law<f64>, points: &[Point; 21]) -> Option<bool> {
+    let (mut difference, mut size) = ([0.0; 2], [0.0; 2]);
+    for (i, point) in points.iter().enumerate() {
+        let (_, kronrod, gauss) = PAIR[i.div_ceil(2)];
+        let rates = law.rates(point)?;
+        for k in 0..2 {
+            let term = rates[k] * point.weight;
+            difference[k] += term * (1.0 - gauss / kronrod);
+            size[k] += term.abs();
+        }
+    }
+    // An angle shortens or lengthens by itself: near the straight meridian the sum is a difference with rounding.
+    if law.q2 > 0.0 {
+        size[1] += ANGLE * size[0];
+    }
+    Some((0..2).all(|k| difference[k].abs() <= DIFFERENCE * size[k]))
+}
+
+/// The meridian from the middle to the fitting.
+pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Trajectory<D>, NoTrajectory> {
+    let law = Law::of(net, &middle);
+    let values = Middle {
+        bulge: middle.bulge.value(),
+        curvature: middle.curvature.value(),
+        tension: middle.tension.value(),
+    };
+    let plain = net.constant();
+    let plan = Plan::of(&Law::of(&plain, &values), plain.end_radius)?;
+    let evaluations = plan.evaluations;
+    let none = NoTrajectory { evaluations };
+    let mut sums = [D::from(0.0); 3];
+    for point in &plan.points {
+        let rates = law.rates(point).ok_or(none)?;
+        for (sum, rate) in sums.iter_mut().zip(rates) {
+            *sum = rate.scale_add(point.weight, *sum);
+        }
+    }
+    let mid_radius = net.end_radius + middle.bulge;
+    let at_middle = net.acting_at(mid_radius.value());
+    let mid_force = at_middle.local(mid_radius, middle.tension).force;
+    let force = mid_force - at_middle.area(mid_radius);
+    let end = end(net, &law, middle.bulge, sums);
+    let departure = (end.force * end.state[crate::meridian::COS] - net.area(net.end_radius) - force).value();
+    let first_integral = departure.abs() / mid_force.value().abs();
+    if !first_integral.is_finite() {
+        return Err(none);
+    }
+    Ok(Trajectory {
+        half_fibre: sums[0],
+        end: end.state,
+        force,
+        mid_tension: middle.tension,
+        steps: u32::try_from(plan.points.len() / 21).unwrap_or(u32::MAX),
+        evaluations,
+        first_integral,
+    })
+}
+
+struct End<D> {
+    state: State<D>,
+    /// Meridional force there.
+    force: D,
+}
+
+fn end<D: Real>(net: &Net<D>, law: &Law<D>, bulge: D, sums: [D; 3]) -> End<D> {
+    let radius = net.end_radius;
+    let net = net.acting_at(radius.value());
+    let at = law.at(1.0, law.cloth.is_some() && net.cloth.is_none());
+    let cos = -at.turned + 1.0;
+    let sin = (at.turned * (-at.turned + 2.0)).sqrt() * law.side;
+    let force = at.whole / at.sigma;
+    let tension = net.tension_of(radius, at.sigma, force);
+    let curvature = (net.area_r(radius) - net.local(radius, tension).hoop * cos) / force;
+    End { state: [bulge, sums[1], sin, cos, curvature, tension, sums[2]], force }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::meridian;
+    use crate::net::Bladder;
+    use crate::shooting::Unknowns;
+    use bulge_numerics::Dual;
+
+    fn braid() -> Net<f64> {
+        let (sin, cos) = 28.6_f64.to_radians().sin_cos();
+        Net { half_fibre: 15.0 / cos, cos_rest: cos, sin2_rest: sin * sin, turn: sin, ..Net::plain() }
+    }
+
+    fn nets() -> Vec<(&'static str, Net<f64>)> {
+        let bladder = Some(Bladder { c10: 0.5, c01: 0.2 });
+        let cloth = Some(Cloth { stiffness: 20.0, radius: 1.4 });
+        vec![
+            ("braid", braid()),
+            ("bladder", Net { bladder, depth: -0.1, ..braid() }),
+            ("fittings", Net { bladder, end_radius: 0.8, ..braid() }),
+            ("straight", Net { half_fibre: 3.0, area_factor: 0.98, depth: 0.1, ..Net::plain() }),
+            ("cloth", Net { half_fibre: 3.0, cloth, ..Net::plain() }),
+            ("all", Net { bladder, cloth, depth: 0.1, half_fibre: 5.0, ..braid() }),
+        ]
+    }
+
+    #[test]
+    fn the_pair_is_exact_to_its_degrees() {
+        let integral = |degree: i32, rule: fn(&(f64, f64, f64)) -> f64| -> f64 {
+            PAIR.iter().map(|p| rule(p) * p.0.powi(degree) * if p.0 > 0.0 { 2.0 } else { 1.0 }).sum()
+        };
+        for degree in (0..32).step_by(2) {
+            let exact = 2.0 / f64::from(degree + 1);
+            assert!((integral(degree, |p| p.1) - exact).abs() < 4e-16, "{degree}");
+            assert_eq!((integral(degree, |p| p.2) - exact).abs() < 4e-16, degree < 20, "{degree}");
+        }
+        assert!((integral(34, |p| p.1) - 2.0 / 35.0).abs() > 1e-14);
+    }
+
+    /// Bulges and waists, shallow and deep, near a saddle and far from it: as the ODE has them, with all derivatives.
+    #[test]
+    fn agrees_with_the_equilibrium_ode() {
+        let mut tried = 0;
+        for (name, net) in nets() {
+            for (side, ln_bulge) in [(1.0, -0.7), (1.0, -4.0), (-1.0, -2.0), (-1.0, -5.0)] {
+                for second in [-30.0, -8.0, -1.5, -0.5] {
+                    let lifted = net.map(Dual::<5>::from);
+                    let seeded = Net {
+                        turn: lifted.turn + Dual::variable(0.0, 2),
+                        end_radius: lifted.end_radius + Dual::variable(0.0, 3),
+                        bladder: lifted.bladder.map(|b| Bladder { c10: b.c10 + Dual::variable(0.0, 4), ..b }),
+                        ..lifted
+                    };
+                    let at = Unknowns { side, logs: [ln_bulge, second] };
+                    let Some(middle) = at.middle(&seeded, Dual::variable) else { continue };
+                    let ode = meridian::trajectory(&seeded, middle, 1e-13);
+                    let found = trajectory(&seeded, middle);
+                    let Ok(ode) = ode else { continue };
+                    let Ok(found) = found else { panic!("{name} {side} {ln_bulge} {second}") };
+                    let pairs = [
+                        (ode.half_fibre, found.half_fibre, 0.0),
+                        (ode.end[1], found.end[1], 1e-2 * ode.half_fibre.value()),
+                        (ode.end[2], found.end[2], 0.0),
+                        (ode.end[3], found.end[3], 1.0),
+                        (ode.end[4], found.end[4], ode.end[2].value().abs()),
+                        (ode.end[5], found.end[5], 0.0),
+                        (ode.end[6], found.end[6], 0.0),
+                        (ode.force, found.force, 1.0),
+                    ];
+                    for (i, (a, b, floor)) in pairs.iter().enumerate() {
+                        let size = a.value().abs() + floor;
+                        let error = (a.value() - b.value()).abs() / size;
+                        assert!(
+                            error < 2e-11,
+                            "{name} {side} {ln_bulge} {second} {i}: {error:e} {a:?} {b:?}"
+                        );
+                        let slopes = a.gradient().iter().zip(b.gradient());
+                        let largest = a.gradient().iter().fold(size, |m, v| m.max(v.abs()));
+                        let error = slopes.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max) / largest;
+                        assert!(error < 1e-9, "{name} {side} {ln_bulge} {second} {i}: {error:e} {a:?} {b:?}");
+                    }
+                    assert!(found.first_integral < 1e-12, "{name} {:e}", found.first_integral);
+                    tried += 1;
+                }
+            }
+        }
+        assert!(tried > 40, "{tried}");
+    }
+}

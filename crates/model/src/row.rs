@@ -1,0 +1,176 @@
+//! One row of a model: the input effects, the equilibrium behind them, the loads and the load cell.
+
+use bulge_effects::law::LawPoint;
+use bulge_effects::{Balance, Input, Jet, Moment, Place, Stage};
+use bulge_fibre::Start;
+use bulge_numerics::{Dual, Real};
+
+use crate::answer::Carried;
+use crate::evaluate::{Pass, RowError, Run};
+use crate::lattice;
+use crate::model::Base;
+
+/// Newton steps for a contraction that depends on the force.
+const MOST_GIVE_STEPS: usize = 50;
+/// Nodes and weights of the Gauss-Hermite rule of degree 5 for a standard normal number.
+pub(crate) const NORMAL: [(f64, f64); 3] =
+    [(0.0, 2.0 / 3.0), (1.732_050_807_568_877_2, 1.0 / 6.0), (-1.732_050_807_568_877_2, 1.0 / 6.0)];
+
+/// The force of one row at three stages.
+pub(crate) struct Row {
+    pub(crate) equilibrium: Jet,
+    pub(crate) force: Jet,
+    pub(crate) reading: Jet,
+}
+
+impl Run<'_> {
+    /// The force of one row. `slot` is where its search for the equilibrium starts and ends.
+    pub(crate) fn row(
+        &self,
+        moment: &Moment,
+        pass: &Pass,
+        memory: &mut [Vec<Jet>],
+        slot: &mut Option<Start>,
+    ) -> Result<Row, RowError> {
+        let input = self.input(moment, pass, memory);
+        let (found, contraction) = self.balance(moment, &input, pass, slot)?;
+        let balance = Balance {
+            pressure: input.pressure,
+            contraction,
+            force: found.force,
+            tension: found.tension,
+            mid_radius: found.mid_radius,
+            volume: found.volume,
+            slope: found.slope[0],
+        };
+        let setting = &self.setting;
+        let mut load = Jet::from(0.0);
+        self.act(moment, pass, memory, &[Stage::Load], |effect, theta, memory| {
+            effect.act(moment, setting, theta, memory, Place::Load(&balance, &mut load));
+        });
+        let force = found.force + load;
+        let mut reading = force;
+        self.act(moment, pass, memory, &[Stage::Output], |effect, theta, memory| {
+            effect.act(moment, setting, theta, memory, Place::Output(&balance, &mut reading));
+        });
+        let is_finite = reading.value().is_finite() && reading.gradient().iter().all(|g| g.is_finite());
+        if is_finite {
+            Ok(Row { equilibrium: found.force, force, reading })
+        } else {
+            Err(RowError::NotFinite)
+        }
+    }
+
+    /// The equilibrium behind an input, and the contraction at which it is.
+    ///
+    /// ```text
+    /// e = contraction + give_force F(e) + give_tension N(e)        Newton's method, then one step more that carries the derivatives
+    /// ```
+    fn balance(
+        &self,
+        moment: &Moment,
+        input: &Input,
+        pass: &Pass,
+        slot: &mut Option<Start>,
+    ) -> Result<(Carried, Jet), RowError> {
+        let pressure = input.pressure * input.area / input.wall;
+        let gives = [input.give_force, input.give_tension];
+        let rigid = gives.iter().all(|g| g.value() == 0.0 && g.gradient().iter().all(|d| *d == 0.0));
+        let mut e = input.contraction;
+        if !rigid {
+            let mut at = input.contraction.value();
+            for _ in 0..MOST_GIVE_STEPS {
+                let found = self.averaged(moment, [pressure, Jet::from(at)], input, pass, slot)?;
+                let gap =
+                    Jet::from(at) - input.contraction - gives[0] * found.force - gives[1] * found.tension;
+                let slope = 1.0 - gives[0].value() * found.slope[0] - gives[1].value() * found.slope[1];
+                // With derivatives: those of the gap at fixed e, over the slope.
+                e = Jet::from(at) - gap / slope;
+                let step = e.value() - at;
+                if step.abs() <= 1e-14 + 1e-13 * at.abs() {
+                    break;
+                }
+                at = e.value();
+            }
+        }
+        let found = self.averaged(moment, [pressure, e], input, pass, slot)?;
+        Ok((found, e))
+    }
+
+    /// Averaged over fibres of unequal length.
+    fn averaged(
+        &self,
+        moment: &Moment,
+        [pressure, e]: [Jet; 2],
+        input: &Input,
+        pass: &Pass,
+        slot: &mut Option<Start>,
+    ) -> Result<Carried, RowError> {
+        let stiffen = |found: Carried| found.stiffened(input.wall);
+        let spread = input.spread;
+        if spread.value() == 0.0 {
+            return self.base(moment, [pressure, e], pass, slot).map(stiffen);
+        }
+        let mut sum: Option<Carried> = None;
+        for (z, weight) in NORMAL {
+            let part = self.base(moment, [pressure, e + spread * z], pass, slot)?.scaled(weight);
+            sum = Some(sum.map_or(part, |sum| sum.plus(part)));
+        }
+        sum.map(stiffen).ok_or(RowError::NotFinite)
+    }
+
+    /// The base law.
+    fn base(
+        &self,
+        moment: &Moment,
+        [pressure, e]: [Jet; 2],
+        pass: &Pass,
+        slot: &mut Option<Start>,
+    ) -> Result<Carried, RowError> {
+        match (&self.model.base, &self.equilibrium) {
+            (Base::Law { law, geometry }, _) => {
+                let point = LawPoint { pressure, contraction: e, direction: moment.direction };
+                let count = law.coefficients.len();
+                let force = law.force(point, geometry, &pass.theta[..count]);
+                // Laws know no shape: a cylinder of the muscle's radius stands for it.
+                let radius = Jet::from(geometry.radius);
+                let area = std::f64::consts::PI * geometry.radius * geometry.radius;
+                let slope = self.law_slope(moment, pressure.value(), e.value());
+                Ok(Carried {
+                    force,
+                    tension: force + pressure * area,
+                    mid_radius: radius,
+                    volume: (-e + 1.0) * (area * geometry.length),
+                    slope: [slope, slope],
+                })
+            }
+            (Base::Equilibrium, Some(equilibrium)) => {
+                let (p, at) = (pressure.value(), e.value());
+                let answer = lattice::answer(self.lattice.as_ref(), equilibrium, [p, at], slot)
+                    .map_err(|source| RowError::Solver { pressure: p, contraction: at, source })?;
+                let lanes = &pass.shape_lanes;
+                Ok(Carried {
+                    force: answer.force.carry(pressure, e, lanes),
+                    tension: answer.tension.carry(pressure, e, lanes),
+                    mid_radius: answer.mid_radius.carry(pressure, e, lanes),
+                    volume: answer.volume.carry(pressure, e, lanes),
+                    slope: [answer.force.by_contraction, answer.tension.by_contraction],
+                })
+            }
+            (Base::Equilibrium, None) => Err(RowError::NotFinite),
+        }
+    }
+
+    fn law_slope(&self, moment: &Moment, pressure: f64, e: f64) -> f64 {
+        let Base::Law { law, geometry } = &self.model.base else { return 0.0 };
+        let constant = |v: f64| Dual::<1>::from(v);
+        let point = LawPoint {
+            pressure: constant(pressure),
+            contraction: Dual::<1>::variable(e, 0),
+            direction: moment.direction,
+        };
+        let coefficients: Vec<_> =
+            self.theta[..law.coefficients.len()].iter().map(|v| constant(*v)).collect();
+        law.force(point, geometry, &coefficients).gradient()[0]
+    }
+}

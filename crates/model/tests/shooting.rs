@@ -1,0 +1,233 @@
+//! Muscles whose every row is a search for an equilibrium: derivatives, warm starts, the lattice, and rows that don't count.
+
+#![expect(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    reason = "a test that cannot be set up fails; values are exact by construction"
+)]
+
+use bulge_effects::{Catalogue, Moment, Stage};
+use bulge_model::{Model, ModelError, Record, Wanted, Warm};
+use bulge_muscles::{Muscle, Parameter, preset};
+
+fn braid() -> Muscle {
+    let file = "name = \"b\"\nkind = \"braided\"\nlength = \"300 mm\"\nradius = \"10 mm\"\nwall = \"1.8 mm\"\n\
+                braid_angle = \"28.6 deg\"\nends = \"clamped\"\n";
+    bulge_muscles::from_toml(file, "braid").unwrap()
+}
+
+fn model(muscle: &Muscle, effects: &[&str]) -> Model {
+    let catalogue = Catalogue::builtin();
+    effects
+        .iter()
+        .fold(Model::new(muscle), |model, name| model.with(catalogue.find(name).unwrap(), None).unwrap())
+}
+
+/// A static map: every contraction at every pressure.
+fn map(pressures: &[f64], contractions: &[f64]) -> Record {
+    let at = |p: &f64| contractions.iter().map(|e| Moment::at_rest(*p, *e)).collect::<Vec<_>>();
+    let moments: Vec<Moment> = pressures.iter().flat_map(at).collect();
+    let rows = moments.len();
+    Record::from_moments(moments, vec![0.0; rows], std::iter::once(0..rows).collect()).unwrap()
+}
+
+fn force(model: &Model, record: &Record, theta: &[f64]) -> Vec<f64> {
+    model.evaluate(record, theta, &Wanted::default()).unwrap().force
+}
+
+/// dF/d(number j) by differences extrapolated to no step: central ones, or forward from an off value on a bound.
+fn difference(model: &Model, record: &Record, theta: &[f64], j: usize, h: f64, forward: bool) -> Vec<f64> {
+    let at = |step: f64| {
+        let mut moved = theta.to_vec();
+        moved[j] += step;
+        force(model, record, &moved)
+    };
+    let quotient = |h: f64| -> Vec<f64> {
+        let (up, down, width) = if forward { (at(h), at(0.0), h) } else { (at(h), at(-h), 2.0 * h) };
+        up.iter().zip(down).map(|(a, b)| (a - b) / width).collect()
+    };
+    let mut table: Vec<Vec<f64>> = (0..4).map(|i| quotient(h * 0.5_f64.powi(i))).collect();
+    for order in 1..4 {
+        let power = 2.0_f64.powi(if forward { order } else { 2 * order });
+        for i in (usize::try_from(order).unwrap()..4).rev() {
+            let coarse = table[i - 1].clone();
+            for (fine, coarse) in table[i].iter_mut().zip(coarse) {
+                *fine = (power * *fine - coarse) / (power - 1.0);
+            }
+        }
+    }
+    table.pop().unwrap()
+}
+
+#[test]
+fn derivatives_by_every_shape_agree_with_differences() {
+    let mut tried = 0;
+    for (muscle, beside, contractions) in [
+        (braid(), "bladder-elasticity", [0.01, 0.06, 0.12]),
+        (preset("ppam-2-r16").unwrap(), "limited-unfolding", [0.02, 0.1, 0.3]),
+    ] {
+        let record = map(&[2e5, 4e5], &contractions);
+        for effect in Catalogue::builtin().iter().filter(|e| e.card().stage == Stage::Shape) {
+            let name = effect.card().name;
+            let names: Vec<&str> = if name == beside { vec![name] } else { vec![beside, name] };
+            let base = Model::new(&muscle);
+            if base.with(effect, None).is_err() || effect.parameters().is_empty() {
+                continue;
+            }
+            let model = model(&muscle, &names);
+            for off in [false, true] {
+                let mut theta = model.start();
+                for (value, p) in theta.iter_mut().zip(model.parameters()).filter(|(_, p)| p.effect == name) {
+                    if off {
+                        *value = p.off;
+                    } else if (*value - p.off).abs() < 1e-3 * (p.high - p.low) {
+                        *value += 0.02 * (p.high - p.low);
+                    }
+                }
+                // Cloth of no circumference is no muscle beside one.
+                if off && name == "lobes" {
+                    continue;
+                }
+                let wanted = Wanted { parameters: (0..theta.len()).collect(), readings: false };
+                let found = model.evaluate(&record, &theta, &wanted).unwrap();
+                let k = theta.len();
+                for (j, p) in model.parameters().iter().enumerate().filter(|(_, p)| p.effect == name) {
+                    let usual =
+                        if p.value == p.off { 0.01 * (p.high - p.low) } else { (p.value - p.off).abs() };
+                    // Some are a number with a small uncertainty, such as a radius.
+                    let usual = usual.min(0.1 * (p.high - p.low));
+                    let h = if off { 0.02 } else { 0.01 } * usual;
+                    let expected = difference(&model, &record, &theta, j, h, off && theta[j] - h < p.low);
+                    let largest = expected.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+                    for (i, expected) in expected.iter().enumerate() {
+                        let error = (found.jacobian[i * k + j] - expected).abs();
+                        // The solver's answers are exact to some 1e-12; differences divide that by the step.
+                        let rounding = 3e-11 * found.force[i].abs().max(100.0) / h;
+                        assert!(
+                            error <= 1e-6 * largest + rounding,
+                            "{name} {} off {off} row {i}: {} against {expected}, rounding {rounding:e}",
+                            p.name,
+                            found.jacobian[i * k + j]
+                        );
+                    }
+                    // The even ones have none at 0.
+                    tried += usize::from(largest > 0.0);
+                }
+            }
+        }
+    }
+    assert!(tried > 20, "{tried}");
+}
+
+const EFFECTS: [&str; 4] = ["radius-error", "braid-angle-error", "bladder-elasticity", "length-zero-error"];
+const THETA: [f64; 4] = [0.0102, -0.02, 3.5e5, 1e-4];
+
+/// Steps as a fit takes them, large ones first.
+fn steps() -> impl Iterator<Item = Vec<f64>> {
+    [0.05, 0.0, 0.01, -0.02, 0.001, 0.0]
+        .into_iter()
+        .map(|s| THETA.iter().enumerate().map(|(i, v)| v * (1.0 + s * (1.0 + i as f64))).collect())
+}
+
+#[test]
+fn warm_answers_are_cold_ones_on_any_number_of_threads() {
+    let model = model(&braid(), &EFFECTS);
+    let wanted = Wanted { parameters: vec![0, 1, 2, 3], readings: true };
+    let many: Vec<f64> = (0..60).map(|i| 0.004 + 0.002 * f64::from(i)).collect();
+    for record in [
+        map(&[1.5e5, 3e5, 6e5], &[-0.01, 0.0, 0.01, 0.05, 0.1]),
+        map(&[2e5, 2.05e5, 2.1e5, 2.15e5, 2.2e5, 2.25e5], &many),
+    ] {
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let warm = Warm::new();
+            let evaluate = || {
+                steps()
+                    .map(|theta| model.evaluate_warm(&record, &theta, &wanted, &warm).unwrap())
+                    .collect::<Vec<_>>()
+            };
+            pool.install(evaluate)
+        };
+        let found = run(1);
+        assert_eq!(found, run(3));
+        for (theta, warm) in steps().zip(found) {
+            let cold = model.evaluate(&record, &theta, &wanted).unwrap();
+            for (warm, cold) in warm.force.iter().zip(&cold.force) {
+                assert!((warm - cold).abs() < 1e-9 * cold.abs() + 1e-8, "{warm} {cold}");
+            }
+            for (i, (warm, cold)) in warm.jacobian.iter().zip(&cold.jacobian).enumerate() {
+                let size = cold.abs() + 1000.0 / THETA[i % 4].abs();
+                assert!((warm - cold).abs() < 1e-7 * size, "{warm} {cold}");
+            }
+        }
+    }
+}
+
+/// At low pressure a stiff bladder leaves the fibres nothing to carry: no equilibrium.
+#[test]
+fn rows_that_do_not_count_need_no_equilibrium() {
+    let model = model(&braid(), &EFFECTS);
+    let theta = [0.01, 0.0, 1.2e6, 0.0];
+    let record = map(&[4e5, 3e4], &[0.01, 0.05]);
+    let wanted = Wanted::default();
+    let counts = [true, true, false, false];
+    let found = model.evaluate_warm(&record, &theta, &wanted, &Warm::of_rows(&counts)).unwrap();
+    let alone = force(&model, &map(&[4e5], &[0.01, 0.05]), &theta);
+    assert_eq!(found.force, [alone[0], alone[1], 0.0, 0.0]);
+    let error = model.evaluate(&record, &theta, &wanted).unwrap_err();
+    assert!(matches!(&error, ModelError::NoEquilibrium { rows, .. } if *rows == [2, 3]), "{error}");
+    let error = model.evaluate_warm(&record, &theta, &wanted, &Warm::new()).unwrap_err();
+    assert!(matches!(&error, ModelError::NoEquilibrium { rows, .. } if *rows == [2]), "{error}");
+}
+
+/// Rows between the nodes against the same rows alone, which are solved themselves.
+#[test]
+fn the_lattice_is_exact_to_a_millionth_of_full_scale() {
+    let model = model(&braid(), &EFFECTS);
+    let wanted = Wanted { parameters: vec![0, 1, 2], readings: false };
+    let contractions: Vec<f64> = (0..300).map(|i| 0.003 + 0.000_4 * f64::from(i)).collect();
+    let pressures: Vec<f64> = (0..12).map(|i| 2e5 * 1.09_f64.powi(i)).collect();
+    let found = model.evaluate(&map(&pressures, &contractions), &THETA, &wanted).unwrap();
+    let full = found.force.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let mut between = 0;
+    for (i, p) in pressures.iter().enumerate() {
+        for (j, e) in contractions.iter().enumerate().skip(7 * i).step_by(61) {
+            let alone = model.evaluate(&map(&[*p], &[*e]), &THETA, &wanted).unwrap();
+            let row = i * contractions.len() + j;
+            let error = (found.force[row] - alone.force[0]).abs();
+            assert!(error < 1e-6 * full, "{p} {e}: {error:e} of {full}");
+            between += usize::from(error > 0.0);
+            for (k, usual) in [1e-4, 1e-2, 1e5].into_iter().enumerate() {
+                let error = (found.jacobian[3 * row + k] - alone.jacobian[k]).abs() * usual;
+                assert!(error < 1e-6 * full, "{p} {e} by {k}: {error:e}");
+            }
+        }
+    }
+    assert!(between > 40, "{between}");
+}
+
+/// Rubber that an effect brings counts for later effects as that of the muscle itself does.
+#[test]
+fn effects_see_the_bladder_of_the_reshaped_muscle() {
+    let own = braid().with(Parameter::C10, 3e5).unwrap();
+    let mut record = map(&[3e5], &[0.02, 0.08]).moments().to_vec();
+    for moment in &mut record {
+        moment.temperature = 20.0;
+    }
+    let record = Record::from_moments(record, vec![0.0; 2], std::iter::once(0..2).collect()).unwrap();
+    for name in ["temperature", "stress-softening"] {
+        let stated = model(&own, &[name]);
+        let mut theta = stated.start();
+        for (value, p) in theta.iter_mut().zip(stated.parameters()) {
+            *value = if *value == p.off { 0.5 * (p.low + p.high) } else { *value };
+        }
+        let expected = force(&stated, &record, &theta);
+        let without = force(&model(&own, &[]), &record, &[]);
+        theta.insert(0, 3e5);
+        let found = force(&model(&braid(), &["bladder-elasticity", name]), &record, &theta);
+        for ((found, expected), without) in found.iter().zip(&expected).zip(without) {
+            assert!((found - expected).abs() < 1e-9 * expected.abs(), "{name} {found} {expected}");
+            assert!((expected - without).abs() > 1e-3, "{name} does nothing");
+        }
+    }
+}
