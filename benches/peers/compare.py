@@ -26,13 +26,13 @@ RIVALS = {
 TOLERANCE = 1e-9
 
 
-def build_own():
-    """The Bulge program; it must build."""
-    build = ["cargo", "build", "--release", "-p", "bulge-benches", "--bin", "pleated"]
+def build_own(program):
+    """A program of Bulge's benches; it must build."""
+    build = ["cargo", "build", "--release", "-p", "bulge-benches", "--bin", program]
     messages = [*build, "--message-format", "json-render-diagnostics"]
     done = subprocess.run(messages, cwd=HERE.parent.parent, check=True, stdout=subprocess.PIPE, text=True)
     programs = [json.loads(line).get("executable") for line in done.stdout.splitlines()]
-    return [next(program for program in programs if program)]
+    return [next(path for path in programs if path and Path(path).stem == program)]
 
 
 def build_boost(folder, flags):
@@ -56,17 +56,17 @@ def find_scipy():
 
 
 def run(command):
-    """Rows name -> (microseconds, sum)."""
+    """Rows name -> numbers: microseconds and sum, or what else the program prints."""
     text = subprocess.run(command, cwd=HERE, check=True, capture_output=True, text=True).stdout
     rows = (line.split("\t") for line in text.splitlines())
-    return {name: (float(time), float(total)) for name, time, total in rows}
+    return {name: tuple(map(float, numbers)) for name, *numbers in rows}
 
 
 def main():
     rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 3
     times, sums = {}, {}
     with tempfile.TemporaryDirectory() as folder:
-        programs = [build_own()]
+        programs = [build_own("pleated")]
         in_double = ["-DBOOST_MATH_PROMOTE_DOUBLE_POLICY=false"]
         peers = [
             ("Boost.Math", build_boost(folder, [])),

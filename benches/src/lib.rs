@@ -7,6 +7,11 @@ use bulge_muscles::{
 use std::error::Error;
 use std::time::Instant;
 
+pub mod measured;
+mod parquet;
+
+pub use parquet::parquet;
+
 /// Whatever stops a benchmark.
 pub type Failure = Box<dyn Error>;
 

@@ -3,7 +3,7 @@
 use bulge_effects::law::Law;
 use bulge_effects::{Catalogue, Effect, Needs};
 use bulge_measurements::{Data, QualityOptions};
-use bulge_model::{Model, ModelError, Record, Wanted};
+use bulge_model::{Model, ModelError, Record, Wanted, Warm};
 use bulge_muscles::{Muscle, Quantity};
 use std::sync::Arc;
 
@@ -217,7 +217,8 @@ impl<'a> Analysis<'a> {
             theta.clone_from(&fitted.theta);
             found = Some(fitted);
         }
-        let prediction = prepared.model.evaluate(&self.record, &theta, &Wanted::default());
+        let counting = Warm::of_rows(&self.used.mask);
+        let prediction = prepared.model.evaluate_warm(&self.record, &theta, &Wanted::default(), &counting);
         let force = prediction.map_err(|error| self.about(error))?.force;
         Ok(Climbed { prepared, theta, fit: found, force })
     }
@@ -322,6 +323,7 @@ impl<'a> Analysis<'a> {
         let Some(folds) = &self.folds else { return Ok(None) };
         let (thin, kept) = self.record.thinned(FEWER_ROWS);
         let numbers = free(&climbed.prepared.model).len();
+        let counting: Vec<bool> = kept.iter().map(|row| self.used.mask[*row]).collect();
         let mut square = 0.0;
         let mut count = 0_usize;
         for fold in 0..folds.count {
@@ -336,7 +338,8 @@ impl<'a> Analysis<'a> {
             } else {
                 climbed.theta.clone()
             };
-            let prediction = climbed.prepared.model.evaluate(&thin, &theta, &Wanted::default());
+            let warm = Warm::of_rows(&counting);
+            let prediction = climbed.prepared.model.evaluate_warm(&thin, &theta, &Wanted::default(), &warm);
             let force = prediction.map_err(|error| self.about(error))?.force;
             for (i, row) in kept.iter().enumerate() {
                 if self.used.mask[*row] && in_fold(row) {

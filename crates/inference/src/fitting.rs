@@ -1,6 +1,6 @@
 //! The fit: many starts on a thinned record, the best ones polished on all rows, and what is to be said about the result.
 
-use bulge_model::{Model, ModelError, Record, Wanted};
+use bulge_model::{Model, ModelError, Record, Wanted, Warm};
 use bulge_numerics::least_squares::{
     Bounds, LeastSquaresError, Minimum, Options, Reason, Side, minimise, starts_in_box,
 };
@@ -13,8 +13,8 @@ use crate::weights::{Noise, effective_rows};
 
 /// Rows on which starts are tried.
 const FEW_ROWS: usize = 400;
-/// Starting points, and where every answer takes an integration.
-const STARTS: [usize; 2] = [8, 3];
+/// Starting points.
+const STARTS: usize = 8;
 /// Part of the plausible box at either end in which no start lies.
 const EDGE: f64 = 0.1;
 /// Minima of the thinned record that are polished on all rows.
@@ -94,16 +94,11 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
     let mut tried = 0;
     let mut first_error = None;
-    let costly = model.is_costly(start)?;
-    let options = Options {
-        check_curvature: false,
-        tolerance: 1e-4,
-        max_evaluations: if costly { 20 } else { 60 },
-        ..Options::default()
-    };
+    let options =
+        Options { check_curvature: false, tolerance: 1e-4, max_evaluations: 60, ..Options::default() };
     let mut starts = vec![clamped(problem.coordinates(start), &bounds.lower, &bounds.upper)];
     starts.push(clamped(problem.coordinates(&nearly_off(model, start)), &bounds.lower, &bounds.upper));
-    starts.extend(scattered(prepared, &problem, start, STARTS[usize::from(costly)] - 2));
+    starts.extend(scattered(prepared, &problem, start, STARTS - 2));
     for coordinates in starts {
         tried += 1;
         match minimise(&problem, &coordinates, &bounds, &options) {
@@ -172,7 +167,7 @@ fn weights(model: &Model, theta: &[f64], task: &Task<'_>) -> Result<Vec<f64>, Mo
     let readings = task.noise.pressure_pa > 0.0 || task.noise.contraction > 0.0;
     let wanted = Wanted { parameters: Vec::new(), readings };
     let prediction = if readings {
-        model.evaluate(task.record, theta, &wanted)?
+        model.evaluate_warm(task.record, theta, &wanted, &Warm::of_rows(task.used))?
     } else {
         bulge_model::Prediction {
             force: Vec::new(),

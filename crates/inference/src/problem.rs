@@ -1,6 +1,6 @@
 //! A fit as a problem of least squares: weighted residuals of the used rows, then one row for each prior.
 
-use bulge_model::{Model, ModelError, ModelParameter, Record, Wanted};
+use bulge_model::{Model, ModelError, ModelParameter, Record, Wanted, Warm};
 use bulge_numerics::least_squares::{Bounds, Residuals};
 use std::ops::Range;
 
@@ -19,6 +19,8 @@ pub(crate) struct FitProblem<'a> {
     /// (place among the free, mean, standard deviation), in the coordinates of the search.
     priors: Vec<(usize, f64, f64)>,
     logarithmic: Vec<bool>,
+    /// Equilibria of the evaluation before, from which the next one starts.
+    warm: Warm,
 }
 
 impl<'a> FitProblem<'a> {
@@ -40,7 +42,7 @@ impl<'a> FitProblem<'a> {
         };
         let priors = free.iter().enumerate().filter_map(of_free).collect();
         let rows = (0..record.len()).filter(|row| used[*row]).collect();
-        Self { model, record, rows, sd, free, base, priors, logarithmic }
+        Self { model, record, rows, sd, free, base, priors, logarithmic, warm: Warm::of_rows(used) }
     }
 
     /// All numbers of the model, from the coordinates of the search.
@@ -116,7 +118,7 @@ impl Residuals for FitProblem<'_> {
         let theta = self.theta(coordinates);
         let parameters = if jacobian.is_some() { self.free.clone() } else { Vec::new() };
         let wanted = Wanted { parameters, readings: false };
-        let prediction = self.model.evaluate(self.record, &theta, &wanted)?;
+        let prediction = self.model.evaluate_warm(self.record, &theta, &wanted, &self.warm)?;
         let measured = self.record.force();
         for (residual, row) in residuals.iter_mut().zip(&self.rows) {
             *residual = (measured[*row] - prediction.force[*row]) / self.sd[*row];

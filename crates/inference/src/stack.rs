@@ -1,6 +1,6 @@
 //! What each effect contributes to the force, with the numbers of the last fit.
 
-use bulge_model::Wanted;
+use bulge_model::{Wanted, Warm};
 
 use crate::compare::{Analysis, Climbed, FEWER_ROWS, carry_over};
 use crate::comparison::{Part, Stack};
@@ -17,6 +17,8 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
         return Ok(Vec::new());
     }
     let (thin, kept) = analysis.record.thinned(FEWER_ROWS);
+    let counting: Vec<bool> = kept.iter().map(|row| analysis.used.mask[*row]).collect();
+    let counting = Warm::of_rows(&counting);
     let mut forces: Vec<Vec<f64>> = Vec::new();
     for count in 0..=effects.len() {
         let prepared = analysis.model(count)?;
@@ -30,7 +32,7 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
                 *value = final_values[i];
             }
         }
-        let prediction = prepared.model.evaluate(&thin, &theta, &Wanted::default());
+        let prediction = prepared.model.evaluate_warm(&thin, &theta, &Wanted::default(), &counting);
         forces.push(prediction.map_err(|error| analysis.about(error))?.force);
     }
     let mut names: Vec<String> = effects.iter().map(|effect| effect.card().name.to_owned()).collect();

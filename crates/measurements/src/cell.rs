@@ -67,21 +67,54 @@ fn no_number(text: &str) -> CellError {
     if text.is_empty() {
         return CellError::Empty;
     }
-    // The longest beginning that is a number; numbers are short.
-    let end = text.char_indices().map(|(at, c)| at + c.len_utf8()).take(40);
-    let starts = end.filter(|end| text[..*end].trim_end().parse::<f64>().is_ok_and(f64::is_finite)).last();
     let fixed = text.replacen(',', ".", 1);
     if text.matches(',').count() == 1 && fixed.parse::<f64>().is_ok() {
         return CellError::DecimalComma { text: quoted(text), fixed: quoted(&fixed) };
     }
-    match starts {
-        Some(end)
-            if text[end..].trim_start().starts_with(|c: char| c.is_alphabetic() || "%\u{b0}".contains(c)) =>
-        {
-            CellError::UnitInside { text: quoted(text), number: text[..end].trim_end().to_owned() }
-        }
-        _ => CellError::NotANumber { text: quoted(text) },
+    if let Some(fixed) = respelt(text) {
+        CellError::Spelling { text: quoted(text), fixed: quoted(&fixed) }
+    } else if text.split_once('#').is_some_and(|(before, _)| before.trim_end().parse::<f64>().is_ok()) {
+        CellError::Comment { text: quoted(text) }
+    } else if with_unit(text).is_some() {
+        CellError::UnitInside { text: quoted(text), fixed: None }
+    } else if text.contains(':')
+        && text.bytes().all(|byte| byte.is_ascii_digit() || b":. -/TZ".contains(&byte))
+    {
+        CellError::Clock { text: quoted(text) }
+    } else {
+        CellError::NotANumber { text: quoted(text) }
     }
+}
+
+/// The number and the unit of a field that has both.
+pub(crate) fn with_unit(text: &str) -> Option<(f64, &str)> {
+    // The longest beginning that is a number; numbers are short.
+    let ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).take(40);
+    let number = |end: usize| text[..end].trim_end().parse::<f64>().ok().filter(|number| number.is_finite());
+    let (end, number) = ends.filter_map(|end| Some((end, number(end)?))).last()?;
+    let unit = text[end..].trim_start();
+    // 0x1F is no unit of x.
+    let is_unit = unit.starts_with(|c: char| (c.is_alphabetic() && c != 'x') || "%\u{b0}".contains(c));
+    is_unit.then_some((number, unit))
+}
+
+/// The same number without separators between thousands, with a decimal point, a plain minus and an `e`.
+fn respelt(text: &str) -> Option<String> {
+    let separators = [' ', '\'', '\u{a0}', '\u{2009}', '\u{2019}', '\u{202f}', ',', '.'];
+    let text = text.replace(['\u{2212}', '\u{2013}'], "-").replace(['D', 'd'], "e");
+    // The last point or comma is the decimal one, unless there are two of its kind.
+    let decimal = text.rfind(['.', ',']).filter(|at| text.matches(&text[*at..=*at]).count() == 1);
+    let (whole, rest) = text.split_at(decimal.unwrap_or(text.len()));
+    let mut groups = whole.split(separators);
+    let mut fixed = groups.next()?.to_owned();
+    for group in groups {
+        if group.len() != 3 || !group.bytes().all(|byte| byte.is_ascii_digit()) {
+            return None;
+        }
+        fixed.push_str(group);
+    }
+    fixed.push_str(&rest.replacen(',', ".", 1));
+    fixed.parse::<f64>().is_ok_and(f64::is_finite).then_some(fixed)
 }
 
 #[cfg(test)]
@@ -108,11 +141,23 @@ mod tests {
             ("1e999", "finite"),
             ("1,5", "write `1.5`"),
             ("-0,25", "write `-0.25`"),
-            ("2 bar", "write `2` and put the unit"),
-            ("20%", "write `20`"),
-            ("1.5e1N", "write `1.5e1`"),
+            ("1,234", "write `1.234`, with a point, in all number columns (or `1234` if"),
+            ("2 bar", "`2 bar` has a unit in the field: write the number alone"),
+            ("20%", "unit in the field"),
+            ("1.5e1N", "unit in the field"),
+            ("1 000", "write `1000`"),
+            ("1,234.5", "write `1234.5`"),
+            ("1.234,5", "write `1234.5`"),
+            ("1'234'567,5", "write `1234567.5`"),
+            ("1,234,567", "write `1234567`"),
+            ("\u{2212}5", "write `-5`"),
+            ("1.5D3", "write `1.5e3`"),
+            ("10 # slip", "line of its own"),
+            ("12:00:01.5", "seconds since the start"),
+            ("2026-03-01 12:00", "time of day"),
+            ("0x1F", "`0x1F` is not a number"),
+            ("1 2", "not a number"),
             ("abc", "`abc` is not a number"),
-            ("1 000", "not a number"),
             ("1.2.3", "not a number"),
             ("\u{1f600}", "not a number"),
         ] {

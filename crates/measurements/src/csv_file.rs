@@ -6,13 +6,14 @@
 use crate::columns::Columns;
 use crate::error::MeasurementError;
 use crate::heading;
+use crate::quote::quoted;
 use crate::slot::{Slot, columns};
 use std::borrow::Cow;
 
 /// Most bytes of a line.
 pub(crate) const MOST_BYTES_PER_LINE: usize = 1_000_000;
 /// Most rows of a file.
-pub(crate) const MOST_ROWS: usize = 100_000_000;
+pub(crate) const MOST_ROWS: usize = 20_000_000;
 /// What may stand between fields; where a header has several kinds, the one it has most of.
 const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
 
@@ -29,7 +30,13 @@ pub(crate) fn read(file: &str, bytes: &[u8]) -> Result<Table, MeasurementError> 
     // A file without any line feed may have the carriage returns of old.
     let is_old = !text.contains('\n') && text.contains('\r');
     let mut lines = text.split(if is_old { '\r' } else { '\n' }).enumerate();
-    let is_content = |line: &str| !line.is_empty() && !line.starts_with('#');
+    // Spreadsheets write their separator on a line of its own.
+    let is_content = |line: &str| {
+        let is_hint =
+            line.len() == 5 && line.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("sep="));
+        let is_empty = line.bytes().all(|byte| SEPARATORS.contains(&byte));
+        !(is_empty || line.starts_with('#') || is_hint)
+    };
     let header = lines.by_ref().map(|(i, line)| (i + 1, line.trim())).find(|(_, line)| is_content(line));
     let Some((header_line, header)) = header else {
         return Err(MeasurementError::Empty { file: file.to_owned() });
@@ -39,6 +46,18 @@ pub(crate) fn read(file: &str, bytes: &[u8]) -> Result<Table, MeasurementError> 
     let mut fields = Vec::new();
     split(header, separator, &mut fields)
         .ok_or_else(|| MeasurementError::OpenQuote { file: file.to_owned(), line: header_line })?;
+    unpad(&mut fields, 1);
+    if let [field] = fields.as_slice()
+        && field.parse::<f64>().is_err()
+    {
+        let text = quoted(field);
+        return Err(MeasurementError::OneField {
+            file: file.to_owned(),
+            line: header_line,
+            text,
+            known: heading::known(),
+        });
+    }
     let names: Vec<&str> = fields.iter().map(AsRef::as_ref).collect();
     let headings = heading::read(file, header_line, &names)?;
     // A guess from the header's length; too small costs a few copies, too large only address space.
@@ -47,7 +66,7 @@ pub(crate) fn read(file: &str, bytes: &[u8]) -> Result<Table, MeasurementError> 
     let mut numbers = Vec::new();
     for (i, line) in lines {
         let content = without_line_end(line);
-        if !is_content(content.trim_ascii_start()) {
+        if is_blank(content, separator) {
             continue;
         }
         if numbers.len() >= MOST_ROWS {
@@ -78,6 +97,7 @@ fn read_row<'a>(
 ) -> Result<(), MeasurementError> {
     split(content, separator, fields)
         .ok_or_else(|| MeasurementError::OpenQuote { file: file.to_owned(), line })?;
+    unpad(fields, slots.len());
     if fields.len() != slots.len() {
         let (found, expected) = (fields.len(), slots.len());
         return Err(MeasurementError::Ragged { file: file.to_owned(), line, found, expected });
@@ -122,6 +142,19 @@ fn checked_length(file: &str, line: usize, content: &str) -> Result<(), Measurem
 /// Without the carriage return of CRLF. Tabs stay: at the end of a row they separate an empty field.
 fn without_line_end(line: &str) -> &str {
     line.strip_suffix('\r').unwrap_or(line)
+}
+
+/// Whether a line has nothing but a comment, or separators: an empty row of a spreadsheet.
+fn is_blank(content: &str, separator: u8) -> bool {
+    let start = content.trim_ascii_start();
+    start.starts_with('#') || start.bytes().all(|byte| byte == separator || byte.is_ascii_whitespace())
+}
+
+/// Without empty fields beyond `width`: spreadsheets pad all rows to the longest.
+fn unpad(fields: &mut Vec<Cow<'_, str>>, width: usize) {
+    while fields.len() > width && fields.last().is_some_and(|field| field.is_empty()) {
+        fields.pop();
+    }
 }
 
 fn separator(header: &str) -> u8 {
@@ -207,6 +240,8 @@ mod tests {
             "\"pressure [bar]\",\"length [mm]\",force [N]\n\"1\", \"300\" ,10\n 2 , 290 ,\"20\"\n",
             "force [N],length [m],pressure [kPa]\n10,0.3,100\n20,0.29,200\n",
             "pressure [bar],length [mm],force [N]\r1,300,10\r2,290,20\r",
+            "sep=;\r\n;;;\r\npressure [bar];length [mm];force [N];;\r\n1;300;10;;\r\n;;;;\r\n2;290;20\r\n",
+            "pressure [bar]\tlength [mm]\tforce [N]\t\n1\t300\t10\t\n\t\t\t\n2\t290\t20\n",
             "  # indented \"comment, with quote\n\n pressure [bar] , length [mm] , force [N] \n  #x\n1,300,10\n2,290,20\n",
         ] {
             assert_eq!(reads(text).columns, expected, "{text}");
@@ -244,6 +279,17 @@ mod tests {
         refuses(&with("1e308,300,3"), Some(3), &["`1e308`", "finite"]);
         refuses(&with("1,1e40,3"), Some(3), &["`1e40` is larger"]);
         refuses(&with("1,2"), Some(3), &["2 fields", "3"]);
+        refuses(&with("end of test"), Some(3), &["has 1 field, the header has 3"]);
+        refuses(&with("1 kPa,2,3"), Some(3), &["`1 kPa`", "write `0.01`, the number alone"]);
+        refuses(&with("1 N,2,3"), Some(3), &["`1 N`", "write the number alone, in the unit of the header"]);
+        refuses(&with("1,2,3,,4"), Some(3), &["5 fields"]);
+        refuses(
+            b"Test of 3 March\n1,2,3\n",
+            Some(1),
+            &["`Test of 3 March`", "single field", "begin comments with `#`", "force [N]"],
+        );
+        refuses(b"pressure [bar]|length [mm]\n", Some(1), &["single field", "commas, semicolons or tabs"]);
+        refuses(b"1,5;300;10\n", Some(1), &["`1,5` is a number", "header"]);
         refuses(&with("1,2,3,4"), Some(3), &["4 fields", "surplus"]);
         refuses(&with("1,5,290,0,20,5"), Some(3), &["6 fields", "decimal points"]);
         refuses(&with("1,\"2,3"), Some(3), &["not closed"]);

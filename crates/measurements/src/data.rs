@@ -65,7 +65,7 @@ pub(crate) struct Structure {
 }
 
 impl Data {
-    /// Reads files of CSV or Parquet: by their extension, else by their first bytes. Several files are one analysis; they need the same columns,
+    /// Reads files of CSV or Parquet, which their first bytes tell apart. Several files are one analysis; they need the same columns,
     /// and their sweeps are distinct. Without a column `specimen` all is about specimen "1".
     ///
     /// # Errors

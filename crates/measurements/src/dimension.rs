@@ -72,6 +72,11 @@ impl Scale {
         Ok(Self { zero: if is_celsius { CELSIUS_ZERO } else { 0.0 }, ..scale })
     }
 
+    /// The number in this unit that is `si` in SI.
+    pub(crate) fn number(self, si: f64) -> f64 {
+        self.divisor.map_or_else(|| (si - self.zero) / self.factor, |divisor| (si - self.zero) * divisor)
+    }
+
     /// A number in SI.
     pub(crate) fn si(self, number: f64) -> f64 {
         self.divisor.map_or_else(|| number * self.factor, |divisor| number / divisor) + self.zero
@@ -92,6 +97,15 @@ mod tests {
         assert_eq!(of_time("h", 0.5), Ok(1800.0));
         let kelvin = |unit, number| Scale::of_temperature(unit).map(|scale| scale.si(number));
         assert_eq!(kelvin("K", 293.0), Ok(293.0));
+        let back = |unit, si| Scale::of_temperature(unit).map(|scale| scale.number(si));
+        assert_eq!([back("K", 293.0), back("degC", 273.15)], [Ok(293.0), Ok(0.0)]);
+        assert_eq!(
+            [
+                Scale::of::<Time>("ms").map(|s| s.number(2.5)),
+                Scale::of::<Time>("h").map(|s| s.number(1800.0))
+            ],
+            [Ok(2500.0), Ok(0.5)]
+        );
         for unit in ["C", "degC", "\u{b0}C", " degC "] {
             assert_eq!(kelvin(unit, 20.0), Ok(293.15), "{unit}");
         }

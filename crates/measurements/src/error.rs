@@ -66,11 +66,23 @@ pub enum MeasurementError {
         /// The first byte that isn't.
         byte: u8,
     },
-    /// Text with two bytes per character.
-    #[error("{file}:1: the text is in UTF-16: save the file as UTF-8 (a spreadsheet calls it \"CSV UTF-8\")")]
+    /// Text with two or four bytes per character.
+    #[error(
+        "{file}:1: the text is in UTF-16 or UTF-32: save the file as UTF-8 (a spreadsheet calls it \"CSV UTF-8\")"
+    )]
     Utf16 {
         /// The file.
         file: String,
+    },
+    /// A file of another kind.
+    #[error("{file}: is {what}: {instead}")]
+    OtherFormat {
+        /// The file.
+        file: String,
+        /// What it is.
+        what: &'static str,
+        /// What to do.
+        instead: &'static str,
     },
     /// A zero byte.
     #[error("{file}:{line}: holds a NUL byte: it is damaged or no text; export it again as CSV in UTF-8")]
@@ -114,6 +126,34 @@ pub enum MeasurementError {
         /// The number.
         text: String,
     },
+    /// A header without separators.
+    #[error(
+        "{file}:{line}: the header `{text}` is a single field: separate the names of the columns with commas, semicolons or tabs, and begin comments with `#` (known are {known})"
+    )]
+    OneField {
+        /// The file.
+        file: String,
+        /// The line.
+        line: usize,
+        /// What is written.
+        text: String,
+        /// All headings.
+        known: String,
+    },
+    /// A column without a name, such as the row numbers of a data frame.
+    #[error(
+        "{file}:{line}: column {place} has no name: name it, or leave it out (a data frame's row numbers by `index=False`); known are {known}"
+    )]
+    NoName {
+        /// The file.
+        file: String,
+        /// The line of the header.
+        line: usize,
+        /// Which column, counted from 1.
+        place: usize,
+        /// All headings.
+        known: String,
+    },
     /// A name that isn't known.
     #[error("{file}:{line}: column {place} is called `{name}`, which is not known: {}known are {known}", meant(nearest.as_ref()))]
     UnknownColumn {
@@ -132,7 +172,8 @@ pub enum MeasurementError {
     },
     /// A unit that is missing, unknown or of another dimension.
     #[error(
-        "{file}:{line}: column `{column}`: {problem}; write the unit in brackets behind the name, such as `{example}`"
+        "{file}:{line}: column `{column}` {}; write the unit in brackets behind the name, such as `{example}`",
+        of_unit(problem)
     )]
     Unit {
         /// The file.
@@ -197,7 +238,7 @@ pub enum MeasurementError {
         found: String,
     },
     /// A row with more or fewer fields than the header.
-    #[error("{file}:{line}: the row has {found} fields, the header has {expected}: {}", ragged_cure(*found, *expected))]
+    #[error("{file}:{line}: the row has {found} field{}, the header has {expected}: {}", if *found == 1 { "" } else { "s" }, ragged_cure(*found, *expected))]
     Ragged {
         /// The file.
         file: String,
@@ -221,14 +262,14 @@ pub enum MeasurementError {
         problem: CellError,
     },
     /// A file that claims to be Parquet and can't be read as such.
-    #[error(
-        "{file}: can't be read as Parquet ({why}): write it with Snappy compression or none, or export CSV"
-    )]
+    #[error("{file}: can't be read as Parquet ({why}): {instead}")]
     Parquet {
         /// The file.
         file: String,
         /// What the reader says.
         why: String,
+        /// What to do.
+        instead: &'static str,
     },
     /// A Parquet column of a type that is no number and no text.
     #[error(
@@ -285,6 +326,8 @@ impl MeasurementError {
             | Self::NulByte { line, .. }
             | Self::OpenQuote { line, .. }
             | Self::NoHeader { line, .. }
+            | Self::OneField { line, .. }
+            | Self::NoName { line, .. }
             | Self::UnknownColumn { line, .. }
             | Self::Unit { line, .. }
             | Self::NeedlessUnit { line, .. }
@@ -306,23 +349,47 @@ pub enum CellError {
     #[error("the field is empty: write the value, or leave out the row (or the column, if it is optional)")]
     Empty,
     /// A comma within the number.
-    #[error("`{text}` has a decimal comma: write `{fixed}`, with a point, in all number columns")]
+    #[error(
+        "`{text}` has a decimal comma: write `{fixed}`, with a point, in all number columns{}",
+        or_thousands(fixed)
+    )]
     DecimalComma {
         /// What is written.
         text: String,
         /// The same with a point.
         fixed: String,
     },
+    /// Separators between thousands, a typographic minus, the D of Fortran.
+    #[error("`{text}` is not spelt as numbers are read: write `{fixed}`")]
+    Spelling {
+        /// What is written.
+        text: String,
+        /// The same as it is read.
+        fixed: String,
+    },
     /// A number and a unit.
-    #[error(
-        "`{text}` has a unit in the field: write `{number}` and put the unit into the header, such as `force [N]`"
-    )]
+    #[error("`{text}` has a unit in the field: write {}, in the unit of the header", alone(fixed.as_ref()))]
     UnitInside {
         /// What is written.
         text: String,
-        /// The number in it.
-        number: String,
+        /// The number in the unit of the header, if the unit is known.
+        fixed: Option<String>,
     },
+    /// A time of day.
+    #[error("`{text}` is a time of day: write seconds since the start of the test, such as `12.5`")]
+    Clock {
+        /// What is written.
+        text: String,
+    },
+    /// A comment behind a field.
+    #[error("`{text}` has a comment behind it: put the comment on a line of its own that begins with `#`")]
+    Comment {
+        /// What is written.
+        text: String,
+    },
+    /// Bytes that are no text.
+    #[error("the text is not UTF-8: store it as UTF-8")]
+    NotUtf8,
     /// Text.
     #[error("`{text}` is not a number: write one such as `12.5` or `1.25e1`, or leave out the row")]
     NotANumber {
@@ -361,6 +428,41 @@ pub enum CellError {
 
 fn meant(nearest: Option<&String>) -> String {
     nearest.map_or_else(String::new, |heading| format!("write `{heading}` if that is meant; "))
+}
+
+/// What is wrong with the unit of a heading, after "column `..`".
+fn of_unit(problem: &UnitError) -> String {
+    let symbols = |units: &[(&'static str, f64)]| {
+        let named: Vec<_> =
+            units.iter().map(|(symbol, _)| *symbol).filter(|symbol| !symbol.is_empty()).collect();
+        named.join(", ")
+    };
+    match problem {
+        UnitError::NoUnit { known, .. } => format!("has no unit (known: {})", symbols(known)),
+        UnitError::UnknownUnit { unit, suggestion, known, .. } => {
+            let question =
+                suggestion.map_or_else(String::new, |symbol| format!(": did you mean `{symbol}`?"));
+            format!("has the unknown unit `{unit}`{question} (known: {})", symbols(known))
+        }
+        UnitError::OtherDimension { found, quantity, .. } => {
+            format!("has a unit of {found} where one of {quantity} is needed")
+        }
+        other => format!("has a unit that can't be read ({other})"),
+    }
+}
+
+/// "1,234" may be either.
+fn or_thousands(fixed: &str) -> String {
+    let decimals = fixed.split_once('.').map_or("", |(_, decimals)| decimals);
+    if decimals.len() == 3 && decimals.bytes().all(|byte| byte.is_ascii_digit()) {
+        format!(" (or `{}` if it separates thousands)", fixed.replace('.', ""))
+    } else {
+        String::new()
+    }
+}
+
+fn alone(fixed: Option<&String>) -> String {
+    fixed.map_or_else(|| "the number alone".to_owned(), |fixed| format!("`{fixed}`, the number alone"))
 }
 
 fn ragged_cure(found: usize, expected: usize) -> &'static str {

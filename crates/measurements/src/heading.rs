@@ -1,7 +1,8 @@
 //! The columns that measurements have: names, dimensions, and how a heading such as `length [mm]` is read.
 
+use crate::cell;
 use crate::dimension::{Scale, Time};
-use crate::error::MeasurementError;
+use crate::error::{CellError, MeasurementError};
 use crate::quote::quoted;
 use bulge_muscles::units::UnitError;
 use bulge_muscles::{Force, Length, Pressure, Ratio, Volume};
@@ -89,9 +90,27 @@ pub(crate) struct Heading {
     pub(crate) text: String,
 }
 
+impl Heading {
+    /// A field with a unit gets its number in the unit of the heading.
+    pub(crate) fn with_cure(&self, text: &str, problem: CellError) -> CellError {
+        let CellError::UnitInside { text: shown, .. } = problem else { return problem };
+        let in_si = |(number, unit)| Some(self.field.scale(unit)?.ok()?.si(number));
+        let number = cell::with_unit(text).and_then(in_si).map(|si| self.scale.number(si));
+        // Seven digits are enough for a cure, and hide the rounding of the factors.
+        let rounded = number.and_then(|number| format!("{number:.6e}").parse::<f64>().ok());
+        CellError::UnitInside { text: shown, fixed: rounded.map(|number| number.to_string()) }
+    }
+}
+
+/// All headings, for messages.
+pub(crate) fn known() -> String {
+    Field::ALL.map(Field::example).join(", ")
+}
+
 /// Reads all headings of a file and checks that they make a data set. `line` is that of the header.
 pub(crate) fn read(file: &str, line: usize, names: &[&str]) -> Result<Vec<Heading>, MeasurementError> {
-    if let Some(number) = names.first().filter(|name| name.trim().parse::<f64>().is_ok()) {
+    let is_number = |name: &&&str| name.trim().replacen(',', ".", 1).parse::<f64>().is_ok();
+    if let Some(number) = names.first().filter(is_number) {
         return Err(MeasurementError::NoHeader { file: file.to_owned(), line, text: quoted(number) });
     }
     let mut headings: Vec<Heading> = Vec::with_capacity(names.len());
@@ -134,20 +153,24 @@ pub(crate) fn read(file: &str, line: usize, names: &[&str]) -> Result<Vec<Headin
 
 fn read_one(file: &str, line: usize, place: usize, text: &str) -> Result<Heading, MeasurementError> {
     let text = text.trim();
+    // What data frames call the column of their row numbers.
+    if ["", "__index_level_0__", "Unnamed: 0"].contains(&text) {
+        return Err(MeasurementError::NoName { file: file.to_owned(), line, place, known: known() });
+    }
     let (name, unit) = match text.split_once('[') {
         Some((name, rest)) => (name.trim(), rest.strip_suffix(']').map(str::trim)),
         None => (text, Some("")),
     };
     let plain = name.to_lowercase().replace([' ', '-'], "_");
-    let known = Field::ALL.into_iter().find(|field| field.name() == plain);
-    let (Some(field), Some(unit)) = (known, unit) else {
+    let field = Field::ALL.into_iter().find(|field| field.name() == plain);
+    let (Some(field), Some(unit)) = (field, unit.filter(|unit| !unit.contains(['[', ']']))) else {
         return Err(MeasurementError::UnknownColumn {
             file: file.to_owned(),
             line,
             place,
             name: quoted(text),
             nearest: nearest(text),
-            known: Field::ALL.map(Field::example).join(", "),
+            known: known(),
         });
     };
     let scale = match field.scale(unit) {
@@ -188,11 +211,23 @@ fn nearest(text: &str) -> Option<String> {
     let lower: String = text.to_lowercase().chars().take(100).collect();
     let word: String = lower.chars().take_while(|c| c.is_alphabetic() || *c == '_').collect();
     let close = |name: &str| strsim::damerau_levenshtein(name, &word);
+    let symbol = match word.as_str() {
+        "p" => Some(Field::Pressure),
+        "l" | "x" => Some(Field::Length),
+        "f" => Some(Field::Force),
+        "t" => Some(Field::Time),
+        "e" | "eps" | "epsilon" => Some(Field::Contraction),
+        _ => None,
+    };
     let slip = Field::ALL.into_iter().min_by_key(|field| close(field.name()));
     let slip = slip.filter(|field| close(field.name()) * 3 <= word.chars().count());
     let inside = || Field::ALL.into_iter().rev().find(|field| lower.contains(field.name()));
     let synonym = || WORDS.iter().find(|(name, _)| lower.contains(name)).map(|(_, field)| *field);
-    slip.or_else(inside).or_else(synonym).map(|field| field.example().to_owned())
+    // An absolute pressure is not made right by another name.
+    if lower.contains("abs") {
+        return None;
+    }
+    symbol.or(slip).or_else(inside).or_else(synonym).map(|field| field.example().to_owned())
 }
 
 #[cfg(test)]
@@ -233,10 +268,24 @@ mod tests {
         refuses(&with("pressure (bar)"), &["write `pressure [bar]`"]);
         refuses(&with("pressure_bar"), &["write `pressure [bar]`"]);
         refuses(&with("pressure [bar"), &["write `pressure [bar]`"]);
+        let absolute = read("d.csv", 3, &with("absolute pressure [bar]")).unwrap_err().to_string();
+        assert!(!absolute.contains("if that is meant"), "{absolute}");
         refuses(&with("qqq"), &["`qqq`", "known are pressure [bar]"]);
-        refuses(&with(""), &["known are"]);
-        refuses(&with("pressure"), &["no unit", "`pressure [bar]`", "kPa"]);
-        refuses(&with("pressure [mm]"), &["length", "pressure", "`pressure [bar]`"]);
+        for nameless in ["", " ", "__index_level_0__", "Unnamed: 0"] {
+            refuses(&with(nameless), &["column 1 has no name", "`index=False`", "known are pressure [bar]"]);
+        }
+        refuses(&with("p [bar]"), &["column 1", "`p [bar]`", "write `pressure [bar]`"]);
+        refuses(
+            &with("pressure [bar] [bar]"),
+            &["`pressure [bar] [bar]`, which is not known", "write `pressure [bar]`"],
+        );
+        refuses(&with("pressure [bar g]"), &["unknown unit", "did you mean `bar`?", "(known: Pa,"]);
+        refuses(&with("1,5"), &["`1,5` is a number", "header"]);
+        refuses(&with("pressure"), &["`pressure` has no unit (known: ", "`pressure [bar]`", "kPa"]);
+        refuses(
+            &with("pressure [mm]"),
+            &["a unit of length where one of pressure is needed", "`pressure [bar]`"],
+        );
         refuses(&with("pressure [Bar]"), &["did you mean `bar`"]);
         refuses(&with("sweep [s]"), &["no unit", "write `sweep`"]);
         refuses(&with("0.5"), &["`0.5` is a number", "header"]);

@@ -19,10 +19,7 @@ const BATCH: usize = 1 << 14;
 
 /// Reads Parquet. `file` is its name, for messages.
 pub(crate) fn read<R: ChunkReader + 'static>(file: &str, source: R) -> Result<Table, MeasurementError> {
-    let refused = |error: &ParquetError| MeasurementError::Parquet {
-        file: file.to_owned(),
-        why: quoted(&error.to_string()),
-    };
+    let refused = |error: &ParquetError| refused(file, error);
     let reader = SerializedFileReader::new(source).map_err(|error| refused(&error))?;
     let schema = reader.metadata().file_metadata().schema_descr();
     let names: Vec<String> = schema.columns().iter().map(|column| column.path().string()).collect();
@@ -42,13 +39,43 @@ pub(crate) fn read<R: ChunkReader + 'static>(file: &str, source: R) -> Result<Ta
     let expected = rows.first().copied().unwrap_or(0);
     if let Some(found) = rows.iter().find(|rows| **rows != expected) {
         let why = format!("its columns have {expected} and {found} rows");
-        return Err(MeasurementError::Parquet { file: file.to_owned(), why });
+        return Err(MeasurementError::Parquet { file: file.to_owned(), why, instead: AGAIN });
     }
     if expected == 0 {
         return Err(MeasurementError::NoRows { file: file.to_owned() });
     }
     let last = u32::try_from(expected).unwrap_or(u32::MAX);
     Ok(Table { columns: columns(slots), lines: (1..=last).collect() })
+}
+
+/// What to do with a damaged file.
+const AGAIN: &str = "write it again, or export CSV";
+
+/// What the reader of the file says, with its cure.
+fn refused(file: &str, error: &ParquetError) -> MeasurementError {
+    let says = error.to_string();
+    let says = says.strip_prefix("Parquet error: ").unwrap_or(&says);
+    let (why, instead) = if let Some(codec) = says.strip_prefix("Disabled feature at compile time: ") {
+        // The name of the reader's own feature.
+        let codec = if codec == "flate2" { "gzip" } else { codec };
+        (format!("it is compressed with {codec}"), "write it with Snappy compression or none, or export CSV")
+    } else if says.contains("Corrupt footer") || says.starts_with("EOF") {
+        ("it is cut off or damaged".to_owned(), AGAIN)
+    } else if says.contains("encoding") {
+        (says.to_owned(), "write it with plain or dictionary encoding, or export CSV")
+    } else {
+        (says.to_owned(), AGAIN)
+    };
+    MeasurementError::Parquet { file: file.to_owned(), why: quoted(&why), instead }
+}
+
+/// Whether integers are without sign.
+fn is_unsigned(column: &ColumnDescriptor) -> bool {
+    match column.logical_type_ref() {
+        Some(LogicalType::Integer(integer)) => !integer.is_signed,
+        Some(_) => false,
+        None => matches!(column.converted_type(), ConvertedType::UINT_32 | ConvertedType::UINT_64),
+    }
 }
 
 /// The rows of one column in one group.
@@ -66,6 +93,14 @@ fn read_chunk(
     let pages = group.get_column_page_reader(column).map_err(Problem::Reader)?;
     let pages = CheckedPages::new(pages, Arc::clone(&description));
     match description.physical_type() {
+        Type::INT32 if is_unsigned(&description) => {
+            numbers(chunk::<Int32Type>(description, pages), rows, slot, |value| {
+                f64::from(value.cast_unsigned())
+            })
+        }
+        Type::INT64 if is_unsigned(&description) => {
+            numbers(chunk::<Int64Type>(description, pages), rows, slot, |value| value.cast_unsigned() as f64)
+        }
         Type::INT32 => numbers(chunk::<Int32Type>(description, pages), rows, slot, |value| f64::from(*value)),
         Type::INT64 => numbers(chunk::<Int64Type>(description, pages), rows, slot, |value| *value as f64),
         Type::FLOAT => numbers(chunk::<FloatType>(description, pages), rows, slot, |value| f64::from(*value)),
@@ -91,10 +126,10 @@ fn checked_type(file: &str, column: &ColumnDescriptor, heading: &str) -> Result<
                 | ConvertedType::INT_64
                 | ConvertedType::UINT_8
                 | ConvertedType::UINT_16
+                | ConvertedType::UINT_32
+                | ConvertedType::UINT_64
         ),
-        Some(LogicalType::String | LogicalType::Enum) => true,
-        // Large unsigned numbers would be read as negative ones.
-        Some(LogicalType::Integer(integer)) => integer.is_signed || integer.bit_width < 32,
+        Some(LogicalType::String | LogicalType::Enum | LogicalType::Integer(_)) => true,
         Some(_) => false,
     };
     let physical = column.physical_type();
@@ -105,7 +140,12 @@ fn checked_type(file: &str, column: &ColumnDescriptor, heading: &str) -> Result<
     }
     let found = match logical {
         _ if column.max_rep_level() > 0 => format!("list of {physical}"),
-        Some(logical) => format!("{physical} as {logical:?}"),
+        // The name of the type without what it is made of.
+        Some(logical) => {
+            let shown = format!("{logical:?}");
+            format!("{physical} as {}", shown.split(['(', ' ']).next().unwrap_or_default())
+        }
+        None if column.converted_type() == ConvertedType::NONE => physical.to_string(),
         None => format!("{physical} as {}", column.converted_type()),
     };
     Err(MeasurementError::ParquetType {
@@ -129,7 +169,7 @@ impl Problem {
             Self::Cell(problem) => {
                 MeasurementError::Cell { file, line, column: slot.heading.text.clone(), problem }
             }
-            Self::Reader(error) => MeasurementError::Parquet { file, why: quoted(&error.to_string()) },
+            Self::Reader(error) => refused(&file, &error),
             Self::TooMany => MeasurementError::TooManyRows { file, line, limit: MOST_ROWS },
         }
     }
@@ -146,8 +186,7 @@ fn numbers<T: DataType>(
 
 fn texts(column: ColumnReaderImpl<ByteArrayType>, rows: &mut usize, slot: &mut Slot) -> Result<(), Problem> {
     each(column, rows, |value| {
-        let text = std::str::from_utf8(value.data())
-            .map_err(|_| CellError::NotANumber { text: "text that is not UTF-8".to_owned() })?;
+        let text = std::str::from_utf8(value.data()).map_err(|_| CellError::NotUtf8)?;
         slot.push_text(text.trim())
     })
 }

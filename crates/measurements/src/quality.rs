@@ -3,6 +3,7 @@
 mod clipping;
 mod design;
 mod drift;
+mod frozen;
 mod labels;
 mod quantisation;
 mod slack;
@@ -97,6 +98,8 @@ pub enum FindingKind {
     Quantised,
     /// A reading stays at its extreme while others move.
     Clipped,
+    /// All readings stay the same although they are noisy.
+    Frozen,
     /// A reading far from its neighbours in time.
     Spike,
     /// Near zero force at positive pressure.
@@ -144,6 +147,7 @@ impl Data {
             labels::find,
             quantisation::find,
             clipping::find,
+            frozen::find,
             spikes::find,
             slack::find,
             drift::find,

@@ -4,6 +4,7 @@ use crate::cell;
 use crate::columns::{Columns, Labels, Trace};
 use crate::error::CellError;
 use crate::heading::{Field, Heading};
+use crate::quote::quoted;
 
 /// What a column holds.
 #[derive(Debug)]
@@ -37,8 +38,8 @@ impl Slot {
     pub(crate) fn push_text(&mut self, text: &str) -> Result<(), CellError> {
         match &mut self.values {
             Values::Numbers(values) => {
-                let value = self.heading.scale.si(cell::number(text)?);
-                values.push(cell::measurable(value, || text.to_owned())?);
+                let number = cell::number(text).map_err(|problem| self.heading.with_cure(text, problem))?;
+                values.push(cell::measurable(self.heading.scale.si(number), || quoted(text))?);
             }
             Values::Counts(values) => values.push(cell::whole(text)?),
             Values::Directions(values) => values.push(cell::direction(text)?),

@@ -16,6 +16,22 @@ const MOST_BYTES: u64 = 2 << 30;
 /// The first bytes of every Parquet file.
 const PARQUET_MAGIC: &[u8] = b"PAR1";
 
+/// The first bytes of other files in which people keep measurements, what they are, and what to do.
+const FOREIGN: [(&[u8], &str, &str); 8] = [
+    (
+        b"PK\x03\x04",
+        "a spreadsheet or a ZIP archive",
+        "export the sheet as \"CSV UTF-8\", or unpack the archive",
+    ),
+    (b"\xd0\xcf\x11\xe0", "a spreadsheet of an old kind", "export the sheet as \"CSV UTF-8\""),
+    (b"\x1f\x8b", "compressed by gzip", "unpack it first"),
+    (b"\x28\xb5\x2f\xfd", "compressed by Zstandard", "unpack it first"),
+    (b"MATLAB 5.0", "a MATLAB file", "write CSV with `writetable` or Parquet with `parquetwrite`"),
+    (b"\x89HDF", "an HDF5 file, perhaps of MATLAB", "write CSV or Parquet"),
+    (b"ARROW1", "an Arrow (Feather) file", "write Parquet or CSV"),
+    (b"TDSm", "a TDMS file of LabVIEW", "export CSV"),
+];
+
 /// A file of measurements.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct SourceFile {
@@ -34,7 +50,7 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// Reads a file: Parquet if the extension says so, or where the extension says nothing, its first bytes; else CSV.
+    /// Reads a file: Parquet if its first bytes or its extension say so, else CSV.
     pub(crate) fn read(path: &Path) -> Result<Self, MeasurementError> {
         let name = path.display().to_string();
         let unreadable =
@@ -56,13 +72,13 @@ impl Source {
             return Err(too_large(bytes.len() as u64));
         }
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        let is_parquet = match extension.as_str() {
-            "parquet" | "pq" => true,
-            "csv" | "tsv" | "txt" => false,
-            _ => bytes.starts_with(PARQUET_MAGIC),
-        };
-        if !is_parquet {
-            return Self::csv(&name, &bytes);
+        if !bytes.starts_with(PARQUET_MAGIC) {
+            if !["parquet", "pq"].contains(&extension.as_str()) {
+                return Self::csv(&name, &bytes);
+            }
+            let why = "it does not begin as Parquet does".to_owned();
+            let instead = "if it is CSV, name it `.csv`; else write it again";
+            return Err(MeasurementError::Parquet { file: name, why, instead });
         }
         let sha256 = fingerprint(&bytes);
         drop(bytes);
@@ -71,6 +87,9 @@ impl Source {
 
     /// Reads CSV.
     pub(crate) fn csv(name: &str, bytes: &[u8]) -> Result<Self, MeasurementError> {
+        if let Some((_, what, instead)) = FOREIGN.iter().find(|(start, _, _)| bytes.starts_with(start)) {
+            return Err(MeasurementError::OtherFormat { file: name.to_owned(), what, instead });
+        }
         Ok(Self::new(name, fingerprint(bytes), csv_file::read(name, bytes)?))
     }
 

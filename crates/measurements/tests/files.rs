@@ -8,7 +8,9 @@
 )]
 
 use bulge_measurements::{Data, MeasurementError, Motion, SweepKind};
-use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type};
+use parquet::data_type::{
+    BoolType, ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type,
+};
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::parser::parse_message_type;
@@ -94,10 +96,12 @@ fn parquet_reads_like_csv() {
     assert_eq!((found.time(), found.cycle()), (csv.time(), csv.cycle()));
     assert_eq!((found.specimen(), found.specimens()), (csv.specimen(), csv.specimens()));
     assert_eq!((found.line(2), csv.line(2)), ((0, 3), (0, 4)));
-    // Without an extension the first bytes tell.
-    let bare = folder.path().join("data");
-    std::fs::copy(&path, &bare).unwrap();
-    assert_eq!(Data::read(&[&bare]).unwrap().force(), csv.force());
+    // The first bytes tell, whatever the name.
+    for name in ["data", "data.csv", "data.dat"] {
+        let other = folder.path().join(name);
+        std::fs::copy(&path, &other).unwrap();
+        assert_eq!(Data::read(&[&other]).unwrap().force(), csv.force());
+    }
     let bare = written(folder.path(), "rows.dat", CSV);
     assert_eq!(Data::read(&[&bare]).unwrap().len(), 3);
 }
@@ -134,7 +138,13 @@ fn parquet_defects_name_column_and_row() {
     // Dates and decimals are integers in disguise.
     let date = fill(&|group| column::<Int32Type>(group, &[5, 6], None));
     parquet(&path, &schema("required int32 force[N] (DATE);"), &[&date]);
-    says(&["`force[N]`", "INT32 as", "int64"]);
+    says(&["`force[N]`", "INT32 as Date:", "int64"]);
+    let flag = fill(&|group| column::<BoolType>(group, &[true, false], None));
+    parquet(&path, &schema("required boolean force[N];"), &[&flag]);
+    says(&["`force[N]`", "the Parquet type BOOLEAN:"]);
+    let bytes = fill(&|group| column::<ByteArrayType>(group, &[vec![0xff_u8].into(), "5".into()], None));
+    parquet(&path, &schema("required binary force[N];"), &[&bytes]);
+    says(&[":1:", "`force[N]`", "not UTF-8"]);
     parquet(
         &path,
         &schema("required double weight[N];"),
@@ -146,7 +156,9 @@ fn parquet_defects_name_column_and_row() {
     parquet(&path, &schema("required double force[N];"), &[]);
     says(&["no row"]);
     std::fs::write(&path, "pressure [bar]\n").unwrap();
-    says(&["can't be read as Parquet"]);
+    says(&["can't be read as Parquet", "name it `.csv`"]);
+    std::fs::write(&path, b"PAR1 and no end").unwrap();
+    says(&["cut off or damaged", "write it again"]);
 }
 
 #[test]
@@ -179,6 +191,39 @@ fn several_files_are_one_analysis() {
 }
 
 #[test]
+fn unsigned_integers_of_parquet() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("data.parquet");
+    let schema = "message schema { required double pressure[bar]; required double length[mm];
+        required int32 force[N] (UINT_32); required int64 cycle (INTEGER(64,false)); }";
+    let fill = |group: &mut SerializedRowGroupWriter<'_, File>| {
+        column::<DoubleType>(group, &[1.0, 2.0], None);
+        column::<DoubleType>(group, &[300.0, 290.0], None);
+        column::<Int32Type>(group, &[5, -1], None);
+        column::<Int64Type>(group, &[1, 7], None);
+    };
+    parquet(&path, schema, &[&fill]);
+    let data = Data::read(&[&path]).unwrap();
+    assert_eq!((data.force(), data.cycle()), (&[5.0, f64::from(u32::MAX)][..], Some(&[1, 7][..])));
+}
+
+#[test]
+fn files_of_other_kinds() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes, parts) in [
+        ("data.xlsx", &b"PK\x03\x04\x14\0\x06\0"[..], ["spreadsheet", "CSV UTF-8"]),
+        ("data.csv.gz", b"\x1f\x8b\x08\0", ["gzip", "unpack"]),
+        ("data.mat", b"MATLAB 5.0 MAT-file", ["MATLAB", "writetable"]),
+        ("data.feather", b"ARROW1\0\0", ["Feather", "Parquet"]),
+    ] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        let message = Data::read(&[&path]).unwrap_err().to_string();
+        assert!(parts.iter().chain(&[name]).all(|part| message.contains(part)), "{message}");
+    }
+}
+
+#[test]
 fn files_that_can_not_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let none: [&Path; 0] = [];
@@ -194,18 +239,19 @@ fn files_that_can_not_be_read() {
     assert!(message.contains("2147483649 bytes") && message.contains("2147483648"), "{message}");
 }
 
-/// M. Martens, I. Boblan: Modeling the Static Force of a Festo Pneumatic Muscle Actuator, Actuators 6 (2017) 33, table A1.
-/// The table isn't part of this project: the path is that in BULGE_DMSP_20_300, and without it there is nothing to test.
+/// M. Martens, I. Boblan: Modeling the Static Force of a Festo Pneumatic Muscle Actuator: A New Approach and a Comparison to Existing
+/// Models, Actuators 6 (2017) 33, table A1 (CC BY 4.0).
 #[test]
 fn martens_boblan_2017_table_a1() {
-    let Some(path) = std::env::var_os("BULGE_DMSP_20_300").map(PathBuf::from).filter(|path| path.is_file())
-    else {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/dmsp-20-300/data.csv");
+    if !std::path::Path::new(path).is_file() {
+        println!("not tried: the measured force map is not beside the project");
         return;
-    };
+    }
     let data = Data::read(&[path]).unwrap();
-    assert_eq!((data.len(), data.sweeps().len(), data.sweeps()[0].kind), (67, 1, SweepKind::Static));
+    assert_eq!((data.len(), data.sweeps().len(), data.sweeps()[0].kind), (66, 1, SweepKind::Static));
     assert_eq!((data.pressure()[0], data.force()[20], data.line(0)), (35e3, 1653.5, (0, 5)));
-    assert!(matches!(data.motion(), Motion::Length(lengths) if lengths[66] == 0.222));
+    assert!(matches!(data.motion(), Motion::Length(lengths) if lengths[65] == 0.222));
     let options = bulge_measurements::QualityOptions { l0_m: Some(0.3), radius_m: Some(0.01) };
     let quality = data.quality(&options);
     // Free contractions only.

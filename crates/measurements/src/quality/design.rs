@@ -37,7 +37,11 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     }
     let varies = gate.pressure.range > LEVEL * gate.largest_pressure;
     if !varies && rows > 1 {
-        let says = format!("all pressures lie within {:.3} bar", 1e-5 * gate.pressure.range);
+        let says = if gate.pressure.range > 0.0 {
+            format!("all pressures lie within {:.3} bar", 1e-5 * gate.pressure.range)
+        } else {
+            "all rows have the same pressure".to_owned()
+        };
         let instead = "measure at least three pressures: what acts on the pressure can't be seen at one";
         found.push(whole(FindingKind::OnePressureLevel, Severity::Note, says, instead));
     }

@@ -38,7 +38,7 @@ fn directions(gate: &Gate) -> Option<Finding> {
         Severity::Warning,
         &wrong,
         |count| {
-            format!("{} of {moving} that move have a direction against their motion", rows_in_words(count))
+            format!("{}, of {moving} that move, with a direction against the motion", rows_in_words(count))
         },
         all,
     )
@@ -60,14 +60,14 @@ fn interrupted(gate: &Gate) -> Option<Finding> {
         &rows,
         |count| {
             format!(
-                "a sweep label returns after others {count} times: each part is taken as a run of its own"
+                "a sweep label returns after others (times: {count}): each part is taken as a run of its own"
             )
         },
         "keep the rows of a run together and in the order in which they were measured",
     )
 }
 
-/// Rows that say the same as an earlier one in every column. Along a path without times that is no copy: a muscle at rest reads the same again.
+/// Rows that say the same as an earlier one in every column. Where a static map repeats its states, some repeats are equal to the last digit. Along a path without times that is no copy: a muscle at rest reads the same again.
 fn duplicates(gate: &Gate) -> Option<Finding> {
     let data = gate.data;
     if data.is_path() && data.time().is_none() {
@@ -93,11 +93,21 @@ fn duplicates(gate: &Gate) -> Option<Finding> {
     let equal = prints.chunk_by(|a, b| a.0 == b.0 && is_same(a.1, b.1));
     let mut rows: Vec<usize> = equal.flat_map(|same| same[1..].iter().map(|(_, row)| *row)).collect();
     rows.sort_unstable();
-    gate.finding_if_any(
-        FindingKind::DuplicateRow,
-        Severity::Warning,
-        &rows,
-        |count| format!("{} say the same as an earlier row in every column", rows_in_words(count)),
-        "remove copies: they make the data look more certain than they are",
-    )
+    if rows.is_empty() {
+        return None;
+    }
+    let equals = |count| format!("{} equal to an earlier one in every column", rows_in_words(count));
+    if !data.is_path() {
+        // Rows of an earlier state, whatever their force.
+        let mut states = HashSet::new();
+        let state = |row: usize| (data.pressure()[row].to_bits(), gate.motion[row].to_bits(), marks(row));
+        let again = (0..data.len()).filter(|row| !states.insert(state(*row))).count();
+        if 2 * again >= 3 * rows.len() {
+            let instead =
+                "nothing, if they were measured: the sensor can't tell these repeats apart; remove copies";
+            return gate.finding_if_any(FindingKind::DuplicateRow, Severity::Note, &rows, equals, instead);
+        }
+    }
+    let instead = "remove copies: they make the data look more certain than they are";
+    gate.finding_if_any(FindingKind::DuplicateRow, Severity::Warning, &rows, equals, instead)
 }

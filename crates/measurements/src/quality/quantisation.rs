@@ -1,7 +1,7 @@
-//! Coarse sensors: few levels between the smallest and the largest reading.
+//! Coarse sensors: few levels over the range of the readings, or up to the largest where that range is small.
 
 use super::{Finding, FindingKind, Gate, Severity};
-use crate::resolution::Resolution;
+use crate::resolution::{Resolution, bounds};
 
 /// Fewer levels are worth a note, much fewer a warning.
 const NOTE: f64 = 1000.0;
@@ -10,6 +10,10 @@ const WARNING: f64 = 50.0;
 const ROWS: usize = 20;
 /// A column that changes in a smaller share of the rows is a list of set points.
 const CHANGES: f64 = 0.05;
+/// A range below this share of the largest reading is that of a quantity that was held: a regulated pressure, a weight.
+const HELD: f64 = 0.5;
+/// A motion over a smaller share of the muscle was held too; its zero is arbitrary, so that there is no largest to compare with.
+const TRAVEL: f64 = 2e-3;
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     let data = gate.data;
@@ -19,7 +23,18 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
         ("pressure", data.pressure(), &gate.pressure, "Pa"),
     ];
     let of_column = |(name, values, resolution, unit): (&str, &[f64], &Resolution, &str)| {
-        let levels = resolution.levels().filter(|levels| *levels < NOTE)?;
+        let is_motion = name == gate.motion_name();
+        if is_motion && resolution.range <= TRAVEL * data.structure.scale {
+            return None;
+        }
+        let largest = bounds(values).1.abs().max(bounds(values).0.abs());
+        let is_held = !is_motion && resolution.range < HELD * largest;
+        let over_range = resolution.levels()?;
+        let levels = if is_held { (largest / resolution.step).round() + 1.0 } else { over_range };
+        let span = if is_held { ("up to", largest) } else { ("over its range of", resolution.range) };
+        if levels >= NOTE {
+            return None;
+        }
         // Set points of a static map, or of each sweep, aren't readings.
         let is_reading = name == "force" || (data.is_path() && share_of_changes(gate, values) > CHANGES);
         if data.len() < ROWS || !is_reading {
@@ -27,8 +42,8 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
         }
         let severity = if levels < WARNING { Severity::Warning } else { Severity::Note };
         let says = format!(
-            "the {name} is read in steps of {:.4e} {unit}: {levels} levels over its range of {:.4e}",
-            resolution.step, resolution.range
+            "the {name} is read in steps of {:.4e} {unit}: {levels} levels {} {:.4e}",
+            resolution.step, span.0, span.1
         );
         let instead =
             "use a finer range of the sensor or write more digits; differences below one step mean nothing";

@@ -16,8 +16,31 @@ const STEPS: f64 = 5.0;
 const NEGATIVE: f64 = 0.01;
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
-    let data = gate.data;
     let level = (4.0 * gate.force.noise).max(gate.force.step).max(NEAR_ZERO * gate.largest_force);
+    let (slack, free) = near_zero(gate, level);
+    let within = format!("zero force (within {level:.3} N)");
+    let hung = gate.finding_if_any(
+        FindingKind::Slack,
+        Severity::Warning,
+        &slack,
+        |count| format!("{} that moved on at {within}: the muscle was slack", rows_in_words(count)),
+        "keep the row at which the force becomes zero (the free contraction), remove the rest",
+    );
+    let stopped = gate.finding_if_any(
+        FindingKind::Slack,
+        Severity::Note,
+        &free,
+        |count| {
+            format!("{} with {within} at positive pressure: perhaps free contractions", rows_in_words(count))
+        },
+        "nothing, if the muscle just stopped pulling there; remove rows in which it hung slack",
+    );
+    [hung, stopped, pushing(gate)].into_iter().flatten().collect()
+}
+
+/// Rows near zero force at pressure: those that move on at it, and those that don't (or whose order means nothing).
+fn near_zero(gate: &Gate, level: f64) -> (Vec<usize>, Vec<usize>) {
+    let data = gate.data;
     // Where nothing was pulled at all there is no zero to stay at.
     let is_near_zero = |row: usize| {
         level < gate.largest_force
@@ -25,63 +48,49 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             && data.pressure()[row] > PRESSURE * gate.largest_pressure
     };
     let (mut slack, mut free): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
-    if data.is_path() {
-        for (sweep, _) in data.paths() {
-            let mut take = |run: Range<usize>| {
-                if run.len() >= RUN {
-                    let is_slack = expected(gate, &run) > STEPS * level;
-                    if is_slack { slack.extend(run) } else { free.extend(run) }
-                }
-            };
-            let mut start = None;
-            for row in sweep.rows.clone() {
-                match (is_near_zero(row), start) {
-                    (true, None) => start = Some(row),
-                    (false, Some(first)) => {
-                        take(first..row);
-                        start = None;
-                    }
-                    _ => {}
-                }
+    if !data.is_path() {
+        free.extend((0..data.len()).filter(|row| is_near_zero(*row)));
+        return (slack, free);
+    }
+    for (sweep, _) in data.paths() {
+        let mut take = |run: Range<usize>| {
+            if run.len() >= RUN {
+                let is_slack = expected(gate, &run) > STEPS * level;
+                if is_slack { slack.extend(run) } else { free.extend(run) }
             }
-            if let Some(first) = start {
-                take(first..sweep.rows.end);
+        };
+        let mut start = None;
+        for row in sweep.rows.clone() {
+            match (is_near_zero(row), start) {
+                (true, None) => start = Some(row),
+                (false, Some(first)) => {
+                    take(first..row);
+                    start = None;
+                }
+                _ => {}
             }
         }
-    } else {
-        free.extend((0..data.len()).filter(|row| is_near_zero(*row)));
+        if let Some(first) = start {
+            take(first..sweep.rows.end);
+        }
     }
+    (slack, free)
+}
+
+/// Clearly negative forces.
+fn pushing(gate: &Gate) -> Option<Finding> {
+    let force = gate.data.force();
     let below = (5.0 * gate.force.noise).max(NEGATIVE * gate.largest_force);
-    let negative: Vec<usize> = (0..data.len()).filter(|row| data.force()[*row] < -below).collect();
-    [
-        gate.finding_if_any(
-            FindingKind::Slack,
-            Severity::Warning,
-            &slack,
-            |count| format!("{} move on at zero force (within {level:.3} N): the muscle was slack", rows_in_words(count)),
-            "keep the row at which the force becomes zero (the free contraction), remove the rest",
-        ),
-        gate.finding_if_any(
-            FindingKind::Slack,
-            Severity::Note,
-            &free,
-            |count| {
-                format!("{} have zero force (within {level:.3} N) at positive pressure: perhaps free contractions", rows_in_words(count))
-            },
-            "nothing, if the muscle just stopped pulling there; remove rows in which it hung slack",
-        ),
-        gate.finding_if_any(
-            FindingKind::NegativeForce,
-            Severity::Warning,
-            &negative,
-            |count| {
-                let lowest = negative.iter().map(|row| data.force()[*row]).fold(0.0, f64::min);
-                format!("{} have a pushing force, down to {lowest:.3} N", rows_in_words(count))
-            },
-            "a muscle only pulls: check zero and sign of the load cell, or remove the rows if the rig pushed",
-        ),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let rows: Vec<usize> = (0..force.len()).filter(|row| force[*row] < -below).collect();
+    let says = |count| {
+        let lowest = rows.iter().map(|row| force[*row]).fold(0.0, f64::min);
+        format!("{} with a pushing force, down to {lowest:.3} N", rows_in_words(count))
+    };
+    gate.finding_if_any(
+        FindingKind::NegativeForce,
+        Severity::Warning,
+        &rows,
+        says,
+        "a muscle only pulls: check zero and sign of the load cell, or remove the rows if the rig pushed",
+    )
 }

@@ -157,6 +157,13 @@ fn coarse_sensors() {
             );
         }
     }
+    // What is held is judged by its size: 300 N in steps of 1 N are 308 levels, whatever the noise.
+    let mut held = clean_loops(2, 1);
+    let mut noise = Noise::new(4);
+    held.force_n = held.force_n.iter().map(|_| (300.0 + 2.0 * noise.normal()).round()).collect();
+    let largest = crate::resolution::bounds(&held.force_n).1;
+    let says = has(&quality(held), FindingKind::Quantised, Severity::Note);
+    assert!(says.contains(&format!("{} levels up to", largest + 1.0)), "{says}");
     // Set points aren't readings.
     let mut columns = clean_loops(2, 1);
     on_grid(&mut columns.pressure_pa, 1e5);
@@ -197,6 +204,23 @@ fn a_length_and_a_pressure_that_are_clipped() {
     let over: Vec<usize> = (0..400).filter(|row| p[*row] > 3e5).map(|row| row + 1).collect();
     let found = lines(&quality(columns), FindingKind::Clipped);
     assert!(found.len() + 2 > over.len() && found.iter().all(|line| over.contains(line)), "{found:?}");
+}
+
+#[test]
+fn a_recording_that_stands_still() {
+    let rows: Vec<usize> = (301..340).collect();
+    plants(FindingKind::Frozen, &rows, |columns| {
+        columns.force_n[300..340].fill(333.3);
+        columns.pressure_pa[300..340].fill(100_010.0);
+        motion(columns)[300..340].fill(0.1765);
+    });
+    // At rest, readings without noise are equal.
+    let mut columns = clean_loops(1, 1);
+    let rows = columns.force_n.len();
+    columns.force_n = (0..rows).map(|row| 300.0 - ((row / 50) as f64)).collect();
+    columns.pressure_pa.fill(2e5);
+    *motion(&mut columns) = (0..rows).map(|row| 0.02 + 0.005 * ((row / 50) as f64)).collect();
+    assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0);
 }
 
 #[test]
@@ -320,7 +344,15 @@ fn rows_that_are_there_twice() {
         vec![50.0; 10],
     );
     map.filter(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 3]);
-    assert_eq!(lines(&quality(map), FindingKind::DuplicateRow), [11]);
+    assert_eq!(lines(&quality(map.clone()), FindingKind::DuplicateRow), [11]);
+    // Repeats of which some are equal by chance.
+    map.filter(&(0..30).map(|row| row % 10).collect::<Vec<_>>());
+    for (row, force) in map.force_n.iter_mut().enumerate().skip(10).filter(|(row, _)| row % 10 != 7) {
+        *force += row as f64;
+    }
+    let found = quality(map);
+    assert!(has(&found, FindingKind::DuplicateRow, Severity::Note).starts_with("2 rows equal"), "{found:#?}");
+    assert_eq!(lines(&found, FindingKind::DuplicateRow), [] as [usize; 0]);
 }
 
 #[test]
@@ -346,7 +378,8 @@ fn values_of_no_muscle() {
         says(|columns| columns.pressure_pa[3] = -1.2e5)
             .contains("1 row with a gauge pressure below a vacuum")
     );
-    assert!(says(|columns| columns.pressure_pa.iter_mut().for_each(|p| *p *= 1e3)).contains("1000 bar"));
+    assert!(says(|columns| columns.pressure_pa.iter_mut().for_each(|p| *p *= 1e3)).contains("150 bar"));
+    assert!(says(|columns| columns.pressure_pa.iter_mut().for_each(|p| *p *= 1e-5)).contains("below 20 Pa"));
     assert!(
         says(|columns| motion(columns).iter_mut().for_each(|c| *c *= 100.0)).contains("outside -1 to 0.6")
     );

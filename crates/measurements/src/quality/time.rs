@@ -57,7 +57,8 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             severity,
             &pauses,
             |count| {
-                format!("{count} pauses of more than {GAP} times the usual time between rows, the longest of {longest:.3} s")
+                let pauses = if count == 1 { "pause" } else { "pauses" };
+                format!("{count} {pauses} of more than {GAP} times the usual time between rows, the longest of {longest:.3} s")
             },
             if is_labelled {
                 "give what comes after a pause a `sweep` label of its own: what happened in between is not known"

@@ -2,12 +2,15 @@
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::Motion;
+use crate::resolution::bounds;
 use std::f64::consts::PI;
 
 /// Less than a vacuum, as gauge pressure with some error of the zero \[Pa\].
 const VACUUM: f64 = -1.05e5;
-/// More than any muscle holds \[Pa\].
-const BURST: f64 = 1e8;
+/// More than any muscle holds, also a hydraulic one \[Pa\].
+const BURST: f64 = 1.5e7;
+/// Less than any test is about, if all pressures are positive \[Pa\]: bars that were called pascals.
+const HARDLY: f64 = 20.0;
 /// More than any muscle pulls \[N\].
 const FORCE: f64 = 1e6;
 /// More than p pi r^2 is ever multiplied by.
@@ -56,11 +59,22 @@ fn pressures(gate: &Gate) -> Vec<Finding> {
     let above = impossible(
         gate,
         values,
-        ["a pressure above 1000 bar", "Pa"],
+        ["a pressure above 150 bar", "Pa"],
         |_, p| p > BURST,
         "check the unit of the pressure in the header",
     );
-    below.into_iter().chain(above).collect()
+    let (low, high) = bounds(values);
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    // Readings around zero are those of a vented muscle.
+    let is_tiny = low >= 0.0 && high > 0.0 && high < HARDLY && mean > 0.25 * high;
+    let tiny = impossible(
+        gate,
+        values,
+        ["a pressure below 20 Pa, though above 0", "Pa"],
+        |_, p| is_tiny && p > 0.0,
+        "check the unit of the pressure in the header",
+    );
+    below.into_iter().chain(above).chain(tiny).collect()
 }
 
 fn motions(gate: &Gate) -> Vec<Finding> {
