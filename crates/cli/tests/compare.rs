@@ -115,7 +115,7 @@ fn what_was_learnt_is_used() {
     // The next comparison starts where this fit ended.
     let next = json(&["compare", &data, "--muscle", &learnt, "--json"]);
     let [fitted, start] = [fit["rmse_n"].as_f64().unwrap(), rmse(&next, 0)];
-    assert!((start / fitted - 1.0).abs() < 1e-6, "{start} after {fitted}");
+    assert!((start / fitted - 1.0).abs() < 1e-3, "{start} after {fitted}");
     // The shape is that of stretching fibres; friction has no direction at rest.
     let shape = |file: &str| {
         json(&["shape", file, "--pressure", "3 bar", "--contraction", "10 %", "--json"])["force_n"]

@@ -59,7 +59,7 @@ fn effects() -> Vec<Arc<dyn Effect>> {
 
 /// The shipped muscles that can have the effect.
 fn muscles(effect: &dyn Effect) -> Vec<Muscle> {
-    let all = PRESETS.iter().map(|entry| preset(entry.name).unwrap());
+    let all = PRESETS.iter().filter_map(|entry| preset(entry.name).ok());
     all.filter(|muscle| effect.card().kind.is_none_or(|kind| kind == muscle.kind())).collect()
 }
 

@@ -14,6 +14,9 @@ use bulge_numerics::{Dual, Real};
 use crate::FibreError;
 use crate::net::Net;
 
+/// A tension that is none, in parts of p R^2.
+const SLACK: f64 = 1e-12;
+
 /// A cylinder in equilibrium; dimensionless.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cylinder<D> {
@@ -34,7 +37,8 @@ fn balance<D: Real>(net: &Net<D>, sigma: D, tension: D) -> (D, D) {
 /// The cylinder at a contraction.
 ///
 /// # Errors
-/// [`FibreError::TooLong`] if inextensible fibres can't reach the end distance, [`FibreError::NotConverged`] otherwise.
+/// [`FibreError::TooLong`] if inextensible fibres can't reach the end distance, [`FibreError::Slack`] if the rubber alone carries the pressure,
+/// [`FibreError::NotConverged`] otherwise.
 pub(crate) fn solve<D: Real>(net: &Net<D>, contraction: D) -> Result<Cylinder<D>, FibreError> {
     let sigma = net.cos_rest * (-contraction + 1.0);
     let inextensible = net.compliance.value() == 0.0;
@@ -79,6 +83,11 @@ fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32)
             return if tension.value() > 0.0 { Ok((tension, iteration)) } else { break };
         }
         ln_t -= step.clamp(-1.0, 1.0);
+    }
+    // Hardly any tension, and still the wall holds more than the pressure.
+    let (r, gap, _) = residual(SLACK.ln());
+    if r.is_finite() && gap < 0.0 {
+        return Err(FibreError::Slack { contraction });
     }
     Err(FibreError::NotConverged { contraction, residual: last, iterations: 100 })
 }

@@ -154,6 +154,12 @@ pub enum FibreError {
         "there is nothing to shoot at in a muscle with ends = \"cylinder\": its meridian is straight; use the method `auto`, or ends = \"clamped\""
     )]
     NothingToShoot,
+    /// The rubber alone carries the pressure: no equilibrium with taut fibres.
+    #[error("at contraction {:.4} % the fibres are slack: the bladder alone carries more than the pressure; more pressure or less contraction makes them taut", 100.0 * contraction)]
+    Slack {
+        /// Asked contraction.
+        contraction: f64,
+    },
     /// Newton's method did not converge.
     #[error("the equilibrium at contraction {:.4} % did not converge: residual {residual:.2e} after {iterations} iterations; try a contraction nearer to the middle of the muscle's range", 100.0 * contraction)]
     NotConverged {

@@ -1,8 +1,8 @@
 //! What a fit found, put into the muscle: effects that shape it into its own numbers, all others into tables of their own.
 
 use bulge_effects::{Group, learnt};
-use bulge_model::{Chosen, Model, ModelError};
-use bulge_muscles::{Muscle, SHAPE_EFFECTS};
+use bulge_model::{Chosen, Model, ModelError, ModelParameter};
+use bulge_muscles::{Muscle, SHAPE_EFFECTS, units};
 
 use crate::fit::{Fit, Fitted};
 
@@ -23,7 +23,8 @@ pub struct Extension {
 /// The muscle of a fitted model with the fitted effects.
 ///
 /// Rig errors that were fitted as noise within the data sheets are not learnt: the next data set has its own. Effects of single specimens
-/// have no place in the file of the muscle. The standard deviation of a number is half its 95 % interval over 1.96.
+/// have no place in the file of the muscle. The standard deviation of a number is half its 95 % interval over 1.96; a number is rounded
+/// to a thousandth of it.
 ///
 /// # Errors
 /// If the muscle can't have an effect with these numbers.
@@ -44,11 +45,17 @@ pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
             extension.left_out.push((name, "it was fitted as noise of the rig, within its data sheets"));
             continue;
         }
-        let numbers: Vec<f64> = places.iter().map(|i| fit.theta[*i]).collect();
+        let numbers: Vec<f64> = places
+            .iter()
+            .zip(&fitted)
+            .map(|(i, found)| {
+                found.map_or(fit.theta[*i], |f| rounded(fit.theta[*i], f, &model.parameters()[*i]))
+            })
+            .collect();
         let widths: Vec<Option<f64>> = places
             .iter()
             .zip(&fitted)
-            .map(|(i, found)| found.and_then(|f| width(f, model.parameters()[*i].factor)))
+            .map(|(i, found)| found.and_then(width).map(|sd| in_si(sd, &model.parameters()[*i])))
             .collect();
         extension.muscle = put(&extension.muscle, chosen, &numbers, &widths)?;
         if !chosen.fixed {
@@ -65,10 +72,29 @@ fn fitted<'f>(model: &Model, fit: &'f Fit, index: usize) -> Option<&'f Fitted> {
     fit.parameters.iter().find(is_it)
 }
 
-/// One standard deviation in SI; none where the interval is none.
-fn width(fitted: &Fitted, factor: f64) -> Option<f64> {
+/// One standard deviation in the unit shown; none where the interval is none.
+fn width(fitted: &Fitted) -> Option<f64> {
     let sure = fitted.determined && fitted.at_bound.is_none();
-    sure.then(|| (fitted.high - fitted.low) / (2.0 * NORMAL) * factor)
+    sure.then(|| to_digits((fitted.high - fitted.low) / (2.0 * NORMAL), 2))
+}
+
+/// A fitted number to a thousandth of its standard deviation, or to nine digits: what is read in a file should not pretend to be exact.
+fn rounded(value: f64, fitted: &Fitted, number: &ModelParameter) -> f64 {
+    let shown = value / number.factor;
+    let digits = width(fitted).map_or(9.0, |sd| (shown.abs() / sd).log10().ceil() + 3.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 3 and 15")]
+    let digits = digits.clamp(3.0, 15.0) as usize;
+    in_si(to_digits(shown, digits), number).clamp(number.low, number.high)
+}
+
+/// As a file's reader would take it: then it is written as short as it was rounded.
+fn in_si(shown: f64, number: &ModelParameter) -> f64 {
+    units::any(&format!("{shown} {}", number.unit)).map_or(shown * number.factor, |value| value.si)
+}
+
+/// So many significant digits.
+fn to_digits(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
 fn put(

@@ -226,7 +226,8 @@ fn the_extended_muscle_predicts_what_was_fitted() {
         let known = known(&back, &Catalogue::builtin()).unwrap();
         let next = compare(&data, &back, &Options { known, ..options(&[]) }).unwrap();
         let (fitted, start) = (found.rmse_n, next.ladder[0].rmse_n);
-        assert!((start / fitted - 1.0).abs() < 1e-9, "{names:?}: {start} after {fitted}");
+        // Numbers are rounded to a thousandth of their standard deviation.
+        assert!((start / fitted - 1.0).abs() < 1e-5, "{names:?}: {start} after {fitted}");
         assert_eq!(extension.written, names);
     }
 }
