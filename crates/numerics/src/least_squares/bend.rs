@@ -3,7 +3,7 @@
 //! The geodesic acceleration of M. K. Transtrum, J. P. Sethna (arXiv:1201.5885), with the second derivative from the residuals of
 //! the failed step: it costs one evaluation of the Jacobian, and only where a step failed.
 
-use super::linear::{decrease, turned, values};
+use super::linear::{decrease, turned};
 use super::residuals::Residuals;
 use super::search::{Search, Trial};
 use super::step::damped;
@@ -36,14 +36,9 @@ impl<P: Residuals> Search<'_, P> {
         if norm(&(0..step.len()).map(stretch).collect::<Vec<_>>()) > LONGEST * trial.length {
             return false;
         }
-        let theta = self.point(&trial.theta, &bend, scale);
-        let mut bent = vec![0.0; residuals.len()];
-        self.evaluations += 1;
-        if values(self.problem, &theta, &mut bent).is_err() {
-            return false;
-        }
-        let ratio = decrease(&self.residuals, &bent) / trial.predicted;
-        if ratio < ENOUGH || !self.move_to(theta) {
+        let Some(bent) = self.at(self.point(&trial.theta, &bend, scale)) else { return false };
+        let ratio = decrease(&self.residuals, &bent.residuals) / trial.predicted;
+        if ratio < ENOUGH || !self.stay(bent) {
             return false;
         }
         self.radius = if ratio >= 0.75 { GROWTH * trial.length } else { trial.length };

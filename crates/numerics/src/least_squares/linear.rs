@@ -35,6 +35,9 @@ pub(super) struct Linear {
 /// need part of a flat direction.
 const PIN: f64 = 1e-5;
 
+/// Rows of a block that are made triangular at once; what that needs stays near the processor.
+const ROWS: usize = 4096;
+
 impl Linear {
     /// `J^T r`, half the gradient of the sum of squares.
     pub(super) fn gradient(&self) -> Vec<f64> {
@@ -169,18 +172,31 @@ fn triangle<P: Residuals>(
     let k = theta.len();
     let leaf = |rows: Range<usize>, residuals: &mut [f64]| {
         let jacobian = derivatives(problem, theta, &rows, residuals)?;
-        let m = rows.len();
-        let mut columns = vec![0.0; m * (k + 1)];
-        for (i, row) in jacobian.chunks_exact(k.max(1)).enumerate() {
-            for (j, x) in row.iter().enumerate() {
-                columns[j * m + i] = *x;
-            }
-        }
-        columns[k * m..].copy_from_slice(last.map_or(&*residuals, |last| &last[rows]));
-        Ok((Triangle::of_columns(&mut columns, m, k + 1), dot(residuals, residuals)))
+        let last = last.map_or(&*residuals, |last| &last[rows]);
+        Ok((factored(&jacobian, last, k), dot(residuals, residuals)))
     };
     let merge = |a: (Triangle, f64), b: (Triangle, f64)| (a.0.above(b.0), a.1 + b.1);
     in_blocks(residuals, 0, problem.block().max(1), &leaf, &merge)
+}
+
+/// The triangle of a block's Jacobian with one more column. A block of many rows is split, in a tree that depends on their number alone.
+fn factored(jacobian: &[f64], last: &[f64], k: usize) -> Triangle {
+    let m = last.len();
+    if m > ROWS {
+        let half = m / 2;
+        let (above, below) = jacobian.split_at(half * k);
+        let (first, second) = last.split_at(half);
+        let (above, below) = rayon::join(|| factored(above, first, k), || factored(below, second, k));
+        return above.above(below);
+    }
+    let mut columns = vec![0.0; m * (k + 1)];
+    for (i, row) in jacobian.chunks_exact(k.max(1)).enumerate() {
+        for (j, x) in row.iter().enumerate() {
+            columns[j * m + i] = *x;
+        }
+    }
+    columns[k * m..].copy_from_slice(last);
+    Triangle::of_columns(&mut columns, m, k + 1)
 }
 
 /// `J^T r`, half the gradient of the sum of squares.

@@ -26,6 +26,12 @@ pub trait Residuals: Sync {
         (32_768 / width).max(4 * width)
     }
 
+    /// Whether the derivatives cost little beside the residuals. The search then asks for both at every trial: most trials are kept, and the
+    /// residuals of a point that is kept aren't evaluated twice.
+    fn joint(&self) -> bool {
+        false
+    }
+
     /// Writes the residuals of `rows` into `residuals` and, if asked for, the derivatives `dr_i/dtheta_j` into `jacobian`, one
     /// row of [`Residuals::parameters`] numbers after the other. But for rounding, residuals must not depend on whether
     /// derivatives are asked for.

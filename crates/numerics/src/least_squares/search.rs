@@ -140,6 +140,14 @@ pub(super) struct Trial {
     pub(super) full: bool,
 }
 
+/// A point at which the residuals are known.
+pub(super) struct Point {
+    pub(super) theta: Vec<f64>,
+    pub(super) residuals: Vec<f64>,
+    /// What came along with the residuals.
+    linear: Option<Linear>,
+}
+
 /// How an iteration ended.
 enum Progress {
     Moved,
@@ -321,7 +329,6 @@ impl<'a, P: Residuals> Search<'a, P> {
             if norm > 0.0 { newton.z[j] * (self.scale[j] / norm) } else { 0.0 }
         };
         let newton_length = norm(&(0..self.theta.len()).map(in_region).collect::<Vec<_>>());
-        let mut residuals = vec![0.0; self.residuals.len()];
         for _ in 0..TRIALS {
             if self.evaluations + self.linearisations >= self.options.max_evaluations {
                 return Progress::Budget;
@@ -330,23 +337,26 @@ impl<'a, P: Residuals> Search<'a, P> {
             if trial.theta == self.theta {
                 return Progress::Stuck;
             }
-            self.evaluations += 1;
-            if values(self.problem, &trial.theta, &mut residuals).is_err() {
+            let Some(point) = self.at(trial.theta.clone()) else {
                 self.radius = 0.25 * trial.length;
                 continue;
-            }
-            let actual = decrease(&self.residuals, &residuals);
+            };
+            let actual = decrease(&self.residuals, &point.residuals);
             let ratio = actual / trial.predicted;
             if ratio >= ENOUGH {
                 let slope = self.slope(&trial.theta);
-                if self.move_to(trial.theta) {
+                if self.stay(point) {
                     self.resize(ratio, actual, slope, trial.length, trial.full);
                     return Progress::Moved;
                 }
                 self.radius = 0.25 * trial.length;
                 continue;
             }
-            if trial.full && trial.predicted <= POLISH.powi(2) * self.linear.cost && self.polish(&trial) {
+            let residuals = point.residuals.clone();
+            if trial.full
+                && trial.predicted <= POLISH.powi(2) * self.linear.cost
+                && self.polish(&trial, point)
+            {
                 return Progress::Moved;
             }
             if trial.predicted > self.rounding() && self.bend(&trial, &residuals) {
@@ -376,11 +386,37 @@ impl<'a, P: Residuals> Search<'a, P> {
         }
     }
 
-    /// Linearises at a point and stays there; false, and back, if that fails.
-    pub(super) fn move_to(&mut self, theta: Vec<f64>) -> bool {
+    /// The residuals at parameters, with their linearisation where that costs little; none if they can't be evaluated there.
+    pub(super) fn at(&mut self, theta: Vec<f64>) -> Option<Point> {
         let mut residuals = vec![0.0; self.residuals.len()];
-        self.linearisations += 1;
-        let Ok(linear) = linearise(self.problem, &theta, &mut residuals) else { return false };
+        let linear = if self.problem.joint() {
+            self.linearisations += 1;
+            Some(linearise(self.problem, &theta, &mut residuals).ok()?)
+        } else {
+            self.evaluations += 1;
+            values(self.problem, &theta, &mut residuals).ok()?;
+            None
+        };
+        Some(Point { theta, residuals, linear })
+    }
+
+    /// Linearises at parameters and stays there; false, and back, if that fails.
+    pub(super) fn move_to(&mut self, theta: Vec<f64>) -> bool {
+        let residuals = vec![0.0; self.residuals.len()];
+        self.stay(Point { theta, residuals, linear: None })
+    }
+
+    /// Linearises at a point unless that has been done, and stays there; false, and back, if that fails.
+    pub(super) fn stay(&mut self, point: Point) -> bool {
+        let Point { theta, mut residuals, linear } = point;
+        let linear = match linear {
+            Some(linear) => linear,
+            None => {
+                self.linearisations += 1;
+                let Ok(linear) = linearise(self.problem, &theta, &mut residuals) else { return false };
+                linear
+            }
+        };
         for (scale, norm) in self.scale.iter_mut().zip(&linear.norms) {
             *scale = scale.max(*norm);
         }
@@ -391,9 +427,9 @@ impl<'a, P: Residuals> Search<'a, P> {
     }
 
     /// Keeps a full step that shortens the distance to the linearised minimum although rounding hides the decrease of the sum of squares.
-    fn polish(&mut self, trial: &Trial) -> bool {
+    fn polish(&mut self, trial: &Trial, point: Point) -> bool {
         let before = (self.theta.clone(), self.residuals.clone(), self.linear.clone(), self.scale.clone());
-        if self.move_to(trial.theta.clone())
+        if self.stay(point)
             && self.linear.cost <= before.2.cost * (1.0 + POLISH.powi(2))
             && self.newton().predicted <= 0.81 * trial.predicted
         {
