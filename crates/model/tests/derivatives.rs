@@ -10,9 +10,31 @@ use bulge_effects::{Catalogue, Group, Moment};
 use bulge_model::{Model, Record, Wanted};
 use bulge_muscles::{Kind, Muscle, preset};
 
-/// A loop with an inner reversal at two pressures, with time, temperature and two cycles.
-fn path() -> Record {
-    let contraction = |i: usize| 0.06 + 0.04 * (0.35 * i as f64).sin() + 0.02 * (0.9 * i as f64).sin();
+/// A random sequence (Knuth's MMIX constants), in (0, 1).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+}
+
+/// Loops with inner reversals at two random pressures, with time, temperature and two cycles.
+fn path(seed: u64) -> Record {
+    let mut random = Random(seed);
+    random.next();
+    let [middle, wide, narrow] =
+        [random.between(0.06, 0.07), random.between(0.01, 0.04), random.between(0.005, 0.015)];
+    let [slow, fast, phase] = [random.between(0.2, 0.4), random.between(0.7, 1.2), random.between(0.0, 6.0)];
+    let [pressure, higher, pace] =
+        [random.between(1.2e5, 3e5), random.between(0.5e5, 2e5), random.between(0.5, 20.0)];
+    let contraction =
+        |i: usize| middle + wide * (slow * i as f64 + phase).sin() + narrow * (fast * i as f64).sin();
     let mut moments: Vec<Moment> = Vec::new();
     for sweep in 0..2 {
         let mut largest = f64::MIN;
@@ -22,17 +44,17 @@ fn path() -> Record {
             let step = if i == 0 { 0.0 } else { e - contraction(i - 1) };
             moments.push(Moment {
                 direction: if i == 0 { 0.0 } else { step.signum() },
-                rate: 0.1 * (contraction(i + 1) - e),
-                pressure_rate: 30.0,
-                time: 10.0 * i as f64,
-                clock: 10.0 * (i + 24 * sweep) as f64,
-                since: if i == 0 { 0.0 } else { 10.0 },
+                rate: (contraction(i + 1) - e) / pace,
+                pressure_rate: 300.0 / pace,
+                time: pace * i as f64,
+                clock: pace * (i + 24 * sweep) as f64,
+                since: if i == 0 { 0.0 } else { pace },
                 step,
                 temperature: 0.3 * i as f64,
                 cycle: sweep as f64,
                 largest,
                 begins: i == 0,
-                ..Moment::at_rest(1.5e5 + 1e5 * sweep as f64 + 300.0 * i as f64, e)
+                ..Moment::at_rest(pressure + higher * sweep as f64 + 300.0 * i as f64, e)
             });
         }
     }
@@ -46,63 +68,91 @@ fn muscles() -> Vec<Muscle> {
     vec![preset("ppam-2-r16").unwrap(), bulge_muscles::from_toml(braid, "braid").unwrap()]
 }
 
+/// Derivatives by parameter `j` against a difference over `h`, to a millionth of the largest one.
+fn check(model: &Model, record: &Record, theta: &[f64], j: usize, h: f64) {
+    let wanted = Wanted { parameters: (0..theta.len()).collect(), readings: true };
+    let found = model.evaluate(record, theta, &wanted).unwrap();
+    let k = theta.len();
+    let at = |x: f64| {
+        let mut moved = theta.to_vec();
+        moved[j] = x;
+        model.evaluate(record, &moved, &Wanted::default()).unwrap().force
+    };
+    let (up, down) = (at(theta[j] + h), at(theta[j] - h));
+    let largest = (0..record.len()).map(|i| found.jacobian[i * k + j].abs()).fold(0.0, f64::max);
+    for i in 0..record.len() {
+        let quotient = (up[i] - down[i]) / (2.0 * h);
+        let error = (found.jacobian[i * k + j] - quotient).abs();
+        // Rounding of a force of some 1000 N over the step.
+        let rounding = 1e-12 * found.force[i].abs().max(100.0) / h;
+        let p = &model.parameters()[j];
+        assert!(
+            error <= 1e-6 * largest + rounding,
+            "{} {} row {i}: {} against {quotient}",
+            p.effect,
+            p.name,
+            found.jacobian[i * k + j]
+        );
+    }
+}
+
 #[test]
 fn derivatives_agree_with_differences() {
-    let record = path();
     let mut tried = 0;
-    for muscle in muscles() {
-        for effect in Catalogue::builtin().iter() {
-            let Ok(model) = Model::new(&muscle).with(effect, None) else { continue };
-            // Those that need shooting are tried with fewer rows elsewhere.
-            if model.is_costly(&model.start()).unwrap_or(true) {
-                continue;
-            }
-            let mut theta = model.start();
-            for (value, p) in theta.iter_mut().zip(model.parameters()) {
-                // Away from off and from the bounds.
-                if (*value - p.off).abs() < 1e-3 * (p.high - p.low) {
-                    *value += 0.02 * (p.high - p.low);
+    for seed in 1..=4 {
+        let record = path(seed);
+        for muscle in muscles() {
+            for effect in Catalogue::builtin().iter() {
+                let Ok(model) = Model::new(&muscle).with(effect, None) else { continue };
+                // Those that need shooting are tried with fewer rows elsewhere.
+                if model.is_costly(&model.start()).unwrap_or(true) {
+                    continue;
                 }
-            }
-            let wanted = Wanted { parameters: (0..theta.len()).collect(), readings: true };
-            let found = match model.evaluate(&record, &theta, &wanted) {
-                Ok(found) => found,
-                Err(error) => panic!("{}: {error}", effect.card().name),
-            };
-            let k = theta.len();
-            for j in 0..k {
-                let h = 1e-5 * (theta[j] - model.parameters()[j].off).abs().max(1e-4 * theta[j].abs());
-                let at = |x: f64| {
-                    let mut moved = theta.clone();
-                    moved[j] = x;
-                    model.evaluate(&record, &moved, &Wanted::default()).unwrap().force
-                };
-                let (up, down) = (at(theta[j] + h), at(theta[j] - h));
-                let largest = (0..record.len()).map(|i| found.jacobian[i * k + j].abs()).fold(0.0, f64::max);
-                for i in 0..record.len() {
-                    let quotient = (up[i] - down[i]) / (2.0 * h);
-                    let error = (found.jacobian[i * k + j] - quotient).abs();
-                    // Rounding of a force of some 1000 N over the step.
-                    let rounding = 1e-12 * found.force[i].abs().max(100.0) / h;
-                    assert!(
-                        error <= 1e-6 * largest + rounding,
-                        "{} {} row {i}: {} against {quotient}",
-                        effect.card().name,
-                        model.parameters()[j].name,
-                        found.jacobian[i * k + j]
-                    );
+                let mut theta = model.start();
+                for (value, p) in theta.iter_mut().zip(model.parameters()) {
+                    // Away from off and from the bounds.
+                    if (*value - p.off).abs() < 1e-3 * (p.high - p.low) {
+                        *value += 0.02 * (p.high - p.low);
+                    }
                 }
-                tried += 1;
+                for (j, p) in model.parameters().iter().enumerate() {
+                    let h = 1e-5 * (theta[j] - p.off).abs().max(1e-4 * theta[j].abs());
+                    check(&model, &record, &theta, j, h);
+                    tried += 1;
+                }
             }
         }
     }
-    println!("{tried} derivatives of effects along a path of {} rows", record.len());
-    assert!(tried > 60, "{tried}");
+    println!("{tried} derivatives of effects along paths of 48 rows");
+    assert!(tried > 240, "{tried}");
+}
+
+#[test]
+fn derivatives_of_laws_agree_with_differences() {
+    let mut tried = 0;
+    for seed in 1..=4 {
+        let record = path(seed);
+        for muscle in muscles() {
+            let geometry = LawGeometry::from(&muscle);
+            for law in LAWS.iter().filter(|law| law.suits(muscle.kind())) {
+                for table in std::iter::once(None).chain(law.tables.iter().map(Some)) {
+                    let theta = law.start(&geometry, table);
+                    let model = Model::from_law(&muscle, law, &theta, true);
+                    for j in 0..theta.len() {
+                        check(&model, &record, &theta, j, 1e-6 * theta[j].abs().max(1e-3));
+                        tried += 1;
+                    }
+                }
+            }
+        }
+    }
+    println!("{tried} derivatives of force laws along paths of 48 rows");
+    assert!(tried > 200, "{tried}");
 }
 
 #[test]
 fn off_changes_nothing() {
-    let record = path();
+    let record = path(7);
     let mut tried = 0;
     for muscle in muscles() {
         let bare = Model::new(&muscle).evaluate(&record, &[], &Wanted::default()).unwrap().force;
@@ -124,7 +174,7 @@ fn off_changes_nothing() {
 
 #[test]
 fn laws_are_models() {
-    let record = path();
+    let record = path(7);
     let muscle = &muscles()[1];
     let geometry = LawGeometry::from(muscle);
     for law in LAWS.iter().filter(|law| law.suits(Kind::Braided)) {
