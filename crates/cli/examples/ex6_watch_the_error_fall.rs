@@ -2,7 +2,7 @@
 //!
 //! Measurements (here those of example 5) are compared with the muscle as its data sheet describes it, then with one effect more on each rung
 //! of a ladder. Each rung is fitted anew; its error on held-out pressures says whether it learnt the muscle or the noise.
-//! Expect 228 N, 175 N with clamped ends, 14.2 N with the bladder, 2.0 N with friction: the noise of the load cell. c10 = 0.31 MPa, 14 N.
+//! Expect 228 N, 175 N with clamped ends, 14.1 N with the bladder, 2.1 N with friction: the noise of the load cell. c10 = 0.31 MPa, 14 N.
 //! Try next: another order, or a wrong cure (`radius-error`, `braid-angle-error`), which is flagged.
 
 use bulge::effects::Catalogue;
