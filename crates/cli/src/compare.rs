@@ -1,9 +1,10 @@
 //! `bulge compare`: model against measurement, and the error as effects are added.
 
-use bulge_effects::law::{Law, LawGeometry};
-use bulge_effects::{Effect, known};
+use bulge_effects::law::{LAWS, Law, LawGeometry};
+use bulge_effects::{Effect, Stage, known};
 use bulge_inference::{Comparison, Fit, Options, compare};
 use bulge_measurements::Data;
+use bulge_muscles::Muscle;
 use bulge_report::comparison::{html, plots};
 use clap::Args;
 use std::fmt::Write;
@@ -57,7 +58,7 @@ impl CompareCommand {
         let mut options = Options { known, ..Options::new(catalogue, effects) };
         options.rivals = self.rivals;
         if let Some(name) = &self.law {
-            let law = Law::find(name).ok_or_else(|| no_law(name))?;
+            let law = suited_law(name, &muscle, &options.effects)?;
             let table = law.table_for(muscle.name());
             options.law = Some((law, law.start(&LawGeometry::from(&muscle), table), self.fit_law));
         }
@@ -71,6 +72,43 @@ impl CompareCommand {
         }
         if self.json { Ok(document) } else { Ok(text(&comparison, &options.effects) + &wrote) }
     }
+}
+
+/// The law of a name, if it suits the muscle and the effects.
+fn suited_law(name: &str, muscle: &Muscle, effects: &[Arc<dyn Effect>]) -> Result<&'static Law, Failure> {
+    let law = Law::find(name).ok_or_else(|| no_law(name))?;
+    let wrong = |what: String| Err(Failure::Value { option: "--law", what });
+    if let Some(kind) = law.kind.filter(|_| !law.suits(muscle.kind())) {
+        return wrong(format!(
+            "`{}` is a law of {} muscles, and this one is {}",
+            law.name,
+            kind.name(),
+            muscle.kind().name()
+        ));
+    }
+    if let Some(shape) = effects.iter().find(|effect| effect.card().stage == Stage::Shape) {
+        return wrong(format!(
+            "`{}` changes the shape of the muscle, and a law has none; leave out the effect or the law",
+            shape.card().name
+        ));
+    }
+    Ok(law)
+}
+
+/// Names of force laws that are near a mistaken one.
+fn no_law(name: &str) -> Failure {
+    let plain = |text: &str| text.to_lowercase().replace(['_', ' ', '-'], "");
+    let near: Vec<String> = LAWS
+        .iter()
+        .filter(|law| plain(law.name).contains(&plain(name)) || plain(name).contains(&plain(law.name)))
+        .map(|law| format!("`{}`", law.name))
+        .collect();
+    let instead = if near.is_empty() {
+        "`bulge effects --laws` lists them".to_owned()
+    } else {
+        format!("did you mean {}?", near.join(" or "))
+    };
+    Failure::Value { option: "--law", what: format!("there is no force law `{name}`; {instead}") }
 }
 
 /// Writes the report: a page, its plots one by one, and the numbers. Returns what to look at first.
@@ -90,13 +128,6 @@ pub(crate) fn report(
     files::write(&numbers, document.as_bytes())?;
     files::write(&first, page.as_bytes())?;
     Ok([first, numbers])
-}
-
-fn no_law(name: &str) -> Failure {
-    Failure::Value {
-        option: "--law",
-        what: format!("there is no law `{name}`; `bulge effects --laws` lists them"),
-    }
 }
 
 /// The comparison for people.
@@ -195,7 +226,7 @@ pub(crate) fn parameters(out: &mut String, fit: &Fit) {
     for p in &fit.parameters {
         let mut notes = Vec::new();
         if p.nuisance {
-            notes.push("rig, within its data sheet".to_owned());
+            notes.push("nuisance, within its stated width".to_owned());
         }
         if !p.plausible {
             notes.push("IMPLAUSIBLE".to_owned());

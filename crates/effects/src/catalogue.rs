@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::effect::Effect;
+use crate::law::LAWS;
 use crate::{geometry, load, material, rig, specimen};
 
 /// Why an effect is not in the catalogue, or can't enter it.
@@ -17,7 +18,7 @@ pub enum CatalogueError {
         instead: String,
     },
     /// A name that is taken.
-    #[error("an effect `{name}` is in the catalogue already; give yours another name")]
+    #[error("an effect or a law `{name}` is in the catalogue already; give yours another name")]
     Taken {
         /// The name.
         name: String,
@@ -50,7 +51,8 @@ impl Catalogue {
     /// If its name is taken.
     pub fn with(mut self, effect: impl Effect + 'static) -> Result<Self, CatalogueError> {
         let name = effect.card().name.to_owned();
-        if self.effects.iter().any(|other| other.card().name == name) {
+        let is_law = || LAWS.iter().any(|law| law.name == name || law.aliases.contains(&name.as_str()));
+        if self.effects.iter().any(|other| other.card().name == name) || is_law() {
             return Err(CatalogueError::Taken { name });
         }
         self.effects.push(Arc::new(effect));

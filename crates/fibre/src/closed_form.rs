@@ -34,6 +34,12 @@ const MAX_STEP: f64 = 0.7;
 const ENOUGH: f64 = 3e-3;
 /// A last step of this size is the error of the derivatives; that of the values is its square.
 const LAST_STEP: f64 = 1e-10;
+/// The same in a fit: values to 1e-13, derivatives to 3e-7.
+const LAST_STEP_OF_FITS: f64 = 3e-7;
+/// Largest first step from a neighbour's solution; a longer one comes from too far away.
+const NEAR: f64 = 0.2;
+/// Largest move of a neighbour's solution along its derivatives.
+const FARTHEST: f64 = 0.5;
 
 /// A value with its derivatives with respect to contraction, slenderness L and elastic group kappa.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,6 +77,37 @@ pub struct ClosedForm {
     pub evaluations: u32,
     /// Largest relative residual of the two equations, predicted after the last step from its size.
     pub residual: f64,
+    /// Derivatives of (ln t, ln y) by contraction, slenderness L and elastic group kappa.
+    pub(crate) follow: [[f64; 2]; 3],
+}
+
+/// A solved meridian from which a neighbour is searched for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Near {
+    /// t and y.
+    at: [f64; 2],
+    /// Contraction, slenderness and elastic group.
+    of: [f64; 3],
+    /// Derivatives of (ln t, ln y) by these.
+    by: [[f64; 2]; 3],
+}
+
+impl Near {
+    /// What was found for a contraction, slenderness and elastic group.
+    pub(crate) fn new(found: &ClosedForm, of: [f64; 3]) -> Self {
+        Self { at: [found.t, found.y], of, by: found.follow }
+    }
+
+    /// (t, y) to start with for another contraction, slenderness and elastic group; none too far away.
+    fn towards(&self, of: [f64; 3]) -> Option<[f64; 2]> {
+        let mut moves = [0.0; 2];
+        for ((new, old), by) in of.iter().zip(&self.of).zip(&self.by) {
+            moves[0] += by[0] * (new - old);
+            moves[1] += by[1] * (new - old);
+        }
+        let is_near = moves.iter().all(|step| step.abs() <= FARTHEST) && (of[0] < 0.0) == (self.of[0] < 0.0);
+        is_near.then(|| [self.at[0] * moves[0].exp(), self.at[1] * moves[1].exp()])
+    }
 }
 
 impl ClosedForm {
@@ -179,16 +216,34 @@ impl Equations {
 /// [`FibreError::NotConverged`] with the last residual where no equilibrium is found (fibres so soft that they balloon, contraction far
 /// beyond the limit).
 pub fn solve(contraction: f64, slenderness: f64, kappa: f64) -> Result<ClosedForm, FibreError> {
+    let failed = FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: 0 };
+    let start = start(contraction, slenderness, kappa).ok_or(failed)?;
+    search(start.into(), [contraction, slenderness, kappa], LAST_STEP, f64::INFINITY)
+}
+
+/// The same within a fit, from a neighbour's solution if there is one: values to 1e-13, derivatives to 3e-7.
+///
+/// # Errors
+/// Those of [`solve`].
+pub(crate) fn solve_near(near: Option<&Near>, of: [f64; 3]) -> Result<ClosedForm, FibreError> {
+    near.and_then(|near| near.towards(of))
+        .and_then(|start| search(start, of, LAST_STEP_OF_FITS, NEAR).ok())
+        .map_or_else(|| solve(of[0], of[1], of[2]), Ok)
+}
+
+/// Newton's method from (t, y) until a step is below `last`; the first one must not be longer than `first`.
+fn search(start: [f64; 2], of: [f64; 3], last_step: f64, first: f64) -> Result<ClosedForm, FibreError> {
+    let [contraction, slenderness, kappa] = of;
     let failed = |residual: f64, iterations| FibreError::NotConverged { contraction, residual, iterations };
-    let (t, y) = start(contraction, slenderness, kappa).ok_or_else(|| failed(f64::INFINITY, 0))?;
+    let [mut t, mut y] = start;
     let stretched = contraction < 0.0;
     // A stretched muscle is nearly straight and T/EA is nearly -eps: there the gap eps + T/EA takes the place of y.
-    let mut gap = 2.0 * y * (1.0 + t * t) * straight_d(t) / slenderness;
-    let mut z = [t.ln(), y.ln()];
+    let mut gap = if stretched { 2.0 * y * (1.0 + t * t) * straight_d(t) / slenderness } else { 0.0 };
     let mut last = f64::INFINITY;
     for iteration in 1..=MAX_ITERATIONS {
-        let t = z[0].exp();
-        let y = if stretched { (kappa / (gap - contraction)).sqrt() } else { z[1].exp() };
+        if stretched {
+            y = (kappa / (gap - contraction)).sqrt();
+        }
         let a = if stretched { y * gap } else { contraction * y + kappa / y };
         let m = y * y * (1.0 + t * t);
         let integrals = Integrals::at(t, m);
@@ -196,18 +251,21 @@ pub fn solve(contraction: f64, slenderness: f64, kappa: f64) -> Result<ClosedFor
         let step = equations.solve(equations.residual);
         let gap_step = if stretched { step[1] * -2.0 * (gap - contraction) / gap } else { step[1] };
         let size = step[0].abs().max(step[1].abs()).max(gap_step.abs());
-        if !size.is_finite() {
+        if !size.is_finite() || (iteration == 1 && size > first) {
             return Err(failed(last, iteration));
         }
-        if size < LAST_STEP {
+        if size < last_step {
             // The derivatives at this point serve for the outputs as well: their error is of the size of the step, the corrected values'
             // of its square.
-            return Ok(outputs(&integrals, &equations, [t, y], [slenderness, kappa], step, iteration));
+            return Ok(outputs(&integrals, &equations, [t, y], of, step, iteration));
         }
         last = equations.residual[0].abs().max(equations.residual[1].abs());
         let damping = (MAX_STEP / size).min(1.0);
-        z = [z[0] - damping * step[0], z[1] - damping * step[1]];
-        gap *= (-damping * gap_step).exp();
+        t *= (-damping * step[0]).exp();
+        y *= (-damping * step[1]).exp();
+        if stretched {
+            gap *= (-damping * gap_step).exp();
+        }
     }
     Err(failed(last, MAX_ITERATIONS))
 }
@@ -290,11 +348,11 @@ fn outputs(
     i: &Integrals,
     equations: &Equations,
     [t, y]: [f64; 2],
-    slenderness_and_group: [f64; 2],
+    of: [f64; 3],
     step: [f64; 2],
     iterations: u32,
 ) -> ClosedForm {
-    let [l, kappa] = slenderness_and_group;
+    let [_, l, kappa] = of;
     let m = y * y * (1.0 + t * t);
     let m_t = 2.0 * m * i.s * i.s;
     let m_y = 2.0 * m;
@@ -342,5 +400,6 @@ fn outputs(
         iterations,
         evaluations: iterations,
         residual,
+        follow: [by_contraction, by_slenderness, by_compliance],
     }
 }

@@ -20,7 +20,7 @@ mod start;
 pub use draw::PleatedNumbers;
 pub use error::FibreError;
 pub use isobars::{Isobar, isobars};
-pub use linearised::{Linear, Linearised, Start};
+pub use linearised::{Linear, Linearised, Repeated, Start};
 pub use outcome::Approach;
 pub use problem::{
     BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, PLEATED_SLENDERNESS, Problem, Variable,

@@ -7,8 +7,14 @@
 use bulge_muscles::Parameter;
 use bulge_numerics::{Dual, Real};
 
+mod repeated;
+mod straight;
+
+pub use repeated::Repeated;
+
 use crate::FibreError;
-use crate::outcome::{Approach, Outcome};
+use crate::closed_form::Near;
+use crate::outcome::{Approach, Outcome, Solution};
 use crate::problem::{Problem, Variable};
 use crate::shape::Convergence;
 use crate::shooting::{FITTED, Total, Unknowns};
@@ -37,7 +43,7 @@ impl Linear {
 /// An equilibrium with its exact first derivatives.
 ///
 /// The sign conventions are those of [`crate::Response`]; the force may be negative, as in [`Problem::follow`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Linearised {
     /// Contraction (l0 - l)/l0 \[-\].
     pub contraction: f64,
@@ -55,16 +61,35 @@ pub struct Linearised {
 }
 
 impl Linearised {
-    /// Where a search for a neighbouring equilibrium may start; none where nothing is searched for (closed forms).
+    /// Where a search for a neighbouring equilibrium may start; none where nothing is searched for (closed forms), but
+    /// [`Repeated`] has one for straight fibres.
     #[must_use]
     pub fn start(&self) -> Option<&Start> {
         self.start.as_ref()
     }
+
+    /// The same to keep.
+    #[must_use]
+    pub fn into_start(self) -> Option<Start> {
+        self.start
+    }
 }
 
 /// An equilibrium from which to start a search for a neighbouring one: at another contraction, pressure, or parameters of a muscle of the same kind.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Start {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Start(Found);
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq)]
+enum Found {
+    ClosedForm(Near),
+    /// Much larger, and a small part of what finding it costs.
+    Shooting(Box<Shot>),
+}
+
+/// A solved meridian that was shot for.
+#[derive(Debug, Clone, PartialEq)]
+struct Shot {
     unknowns: Unknowns,
     contraction: f64,
     /// Values of all variables, in the order of [`Variable::all`].
@@ -77,7 +102,7 @@ pub struct Start {
 /// Largest moves of the unknowns along their derivatives; beyond them the derivatives say little. (ln|k| of a long braid moves fast, but straight.)
 const FARTHEST: [f64; 2] = [0.5, 20.0];
 
-impl Start {
+impl Shot {
     /// The unknowns to start with at a contraction of another problem.
     fn towards(&self, problem: &Problem, contraction: f64) -> Unknowns {
         let mut change = [0.0; Variable::COUNT];
@@ -121,6 +146,18 @@ impl Problem {
         variables: &[Variable],
         approach: Approach,
     ) -> Result<Linearised, FibreError> {
+        let seeds = self.seeds(variables)?;
+        let ask = Question { start, contraction, variables, approach };
+        match seeds.count {
+            0..=2 => self.answer::<4>(&ask, &seeds),
+            3..=4 => self.answer::<6>(&ask, &seeds),
+            5..=8 => self.answer::<10>(&ask, &seeds),
+            _ => self.answer::<{ 2 + Variable::COUNT }>(&ask, &seeds),
+        }
+    }
+
+    /// Places for the variables.
+    fn seeds(&self, variables: &[Variable]) -> Result<Seeds, FibreError> {
         let mut seeds =
             Seeds { places: [usize::MAX; Variable::COUNT], asked: [false; Variable::COUNT], count: 1 };
         seeds.places[Variable::Pressure.index()] = 2;
@@ -132,19 +169,16 @@ impl Problem {
             }
             seeds.add(*variable)?;
         }
-        let ask = Question { start, contraction, variables, approach };
-        match seeds.count {
-            0..=2 => self.answer::<4>(&ask, &seeds),
-            3..=4 => self.answer::<6>(&ask, &seeds),
-            5..=8 => self.answer::<10>(&ask, &seeds),
-            _ => self.answer::<{ 2 + Variable::COUNT }>(&ask, &seeds),
-        }
+        Ok(seeds)
     }
 
     fn answer<const N: usize>(&self, ask: &Question<'_>, seeds: &Seeds) -> Result<Linearised, FibreError> {
         let seeded = self.seeded::<N>(|variable| seeds.places[variable.index()]);
         let net = self.net_of(&seeded);
-        let from = ask.start.map(|start| start.towards(self, ask.contraction));
+        let from = ask.start.and_then(|start| match &start.0 {
+            Found::Shooting(shot) => Some(shot.towards(self, ask.contraction)),
+            Found::ClosedForm(_) => None,
+        });
         let outcome =
             self.outcome_of_many(self.method(ask.approach)?, ask.contraction, &net, from, FITTED)?;
         let with_contraction = |total: &Total<N>| {
@@ -179,13 +213,18 @@ impl Problem {
             mid_radius_m: linear(radius * mid),
             volume_polygon_m3: linear(volume),
             convergence: outcome.convergence,
-            start: self.start(ask.contraction, &outcome, seeds),
+            start: self.start_of(ask.contraction, &outcome, seeds),
         })
     }
 
-    fn start<const N: usize>(&self, contraction: f64, outcome: &Outcome<N>, seeds: &Seeds) -> Option<Start> {
+    fn start_of<const N: usize>(
+        &self,
+        contraction: f64,
+        outcome: &Outcome<N>,
+        seeds: &Seeds,
+    ) -> Option<Start> {
+        let Solution::Shooting(unknowns) = outcome.solution else { return None };
         let follow = outcome.follow.as_ref()?;
-        let crate::outcome::Solution::Shooting(unknowns) = outcome.solution else { return None };
         let mut values = [0.0; Variable::COUNT];
         let mut by_variable = [[0.0; Variable::COUNT]; 2];
         for (i, variable) in Variable::all().enumerate() {
@@ -195,7 +234,8 @@ impl Problem {
             }
         }
         let by_contraction = [follow[0].by_contraction, follow[1].by_contraction];
-        Some(Start { unknowns, contraction, values, by_contraction, by_variable })
+        let shot = Shot { unknowns, contraction, values, by_contraction, by_variable };
+        Some(Start(Found::Shooting(Box::new(shot))))
     }
 }
 

@@ -22,7 +22,9 @@
 //! u. A Gauss-Kronrod pair of 10 and 21 points (R. Piessens et al., *QUADPACK*, Springer 1983) places the points from the values; the
 //! integrals of numbers with derivatives are then sums over them.
 
+use arrayvec::ArrayVec;
 use bulge_numerics::Real;
+
 use std::f64::consts::PI;
 
 use crate::meridian::{Middle, NoTrajectory, State, Trajectory};
@@ -209,7 +211,7 @@ impl<D: Real> Law<D> {
 
 /// The points of the quadrature.
 struct Plan {
-    points: Vec<Point>,
+    points: ArrayVec<Point, { 21 * MOST_PIECES }>,
     evaluations: u32,
 }
 
@@ -226,16 +228,17 @@ impl Plan {
             let part = (law.y_m - cloth.radius * cloth.radius) / law.span;
             (ratio * part).sqrt().asinh().min(end)
         });
-        let mut pieces = Vec::with_capacity(8);
+        // On the stack: a solve allocates nothing.
+        let mut pieces: ArrayVec<(f64, f64, bool), MOST_PIECES> = ArrayVec::new();
         for (low, high, slack) in [(0.0, kink.unwrap_or(end), false), (kink.unwrap_or(end), end, true)] {
             let (mut top, mut length) = (high, PIECE);
             while top > low {
                 let bottom = if top - low < 1.3 * length { low } else { top - length };
-                pieces.push((bottom, top, slack));
+                pieces.try_push((bottom, top, slack)).map_err(|_| NoTrajectory { evaluations: 1 })?;
                 (top, length) = (bottom, 2.0 * length);
             }
         }
-        let mut plan = Self { points: Vec::with_capacity(21 * pieces.len()), evaluations: 0 };
+        let mut plan = Self { points: ArrayVec::new(), evaluations: 0 };
         let mut count = pieces.len();
         while let Some((low, high, slack)) = pieces.pop() {
             let points = points(low, high, slack, ratio);

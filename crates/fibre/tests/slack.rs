@@ -1,7 +1,5 @@
 //! A braid whose rubber alone carries the pressure has no equilibrium with taut fibres, and the answer says so.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use bulge_fibre::{Approach, FibreError, Problem};
 use bulge_muscles::{Pressure, from_toml};
 
@@ -13,7 +11,9 @@ fn rubber_that_carries_the_pressure_leaves_the_fibres_slack() {
     let at = |bar: f64, e: f64| {
         Problem::new(&muscle, Pressure::bar(bar)).unwrap().linearised(e, &[], Approach::Auto)
     };
-    assert!(matches!(at(1.0, 0.2), Err(FibreError::Slack { contraction }) if contraction == 0.2));
+    assert!(
+        matches!(at(1.0, 0.2), Err(FibreError::Slack { contraction }) if contraction.to_bits() == 0.2_f64.to_bits())
+    );
     // The hoop of a tube without fibres: p = (2 t/r0) W_2/(l1 l2), which the fibres take over as soon as p is larger.
     let (l1, cos): (f64, f64) = (0.8, 25.0_f64.to_radians().cos());
     let l2 = (1.0 - (l1 * cos).powi(2)).sqrt() / 25.0_f64.to_radians().sin();

@@ -5,12 +5,13 @@ use bulge_effects::{Catalogue, Effect, Needs};
 use bulge_measurements::{Data, QualityOptions};
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
 use bulge_muscles::{Muscle, Quantity};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::comparison::{Comparison, DataSummary, NoiseFloor, Rung};
 use crate::error::InferenceError;
 use crate::fit::Fit;
-use crate::fitting::{Task, fit};
+use crate::fitting::{Task, fit, fit_and_force};
 use crate::floor::noise_floor;
 use crate::levels::{Folds, Levels};
 use crate::nuisance::{Prepared, with_nuisances};
@@ -23,6 +24,8 @@ use crate::{loops, residuals, rivals, stack};
 pub(crate) const FEWER_ROWS: usize = 4000;
 /// A measured force above this part of full scale where the model would push is a muscle that doesn't match.
 const CLEARLY_PULLS: f64 = 0.1;
+/// Contractions that a muscle can have: no braid is three times as long as at rest, and no pleated muscle gets shorter than 54.3 %.
+const POSSIBLE: std::ops::RangeInclusive<f64> = -0.5..=0.6;
 
 /// What is compared, besides muscle and data.
 #[derive(Debug, Clone)]
@@ -76,6 +79,11 @@ pub(crate) struct Analysis<'a> {
 /// # Errors
 /// See [`InferenceError`]: too few rows, a muscle that doesn't match, an effect that doesn't fit the muscle or the data.
 pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
+    // On a thread of the pool: small evaluations aren't handed over to it one by one.
+    rayon::scope(|_| compared(data, muscle, options))
+}
+
+fn compared(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
     let mut analysis = Analysis::new(data, muscle, options)?;
     let first = analysis.climb(0, None)?;
     analysis.check_match(&first)?;
@@ -88,11 +96,17 @@ pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Compar
         rungs.push(next);
     }
     let ladder = rungs
-        .iter()
+        .par_iter()
         .enumerate()
         .map(|(number, climbed)| analysis.rung(number, climbed))
         .collect::<Result<Vec<_>, _>>()?;
     let last = &rungs[rungs.len() - 1];
+    // A surface follows the residuals of a better model better: then less of them is taken for noise.
+    let again = analysis.noise_floor(last);
+    let floor = match (floor, again) {
+        (Some(first), Some(again)) if again.sd_n < first.sd_n => Some(again),
+        (first, _) => first,
+    };
     let forces = [&rungs[0].force, &last.force];
     Ok(Comparison {
         schema: "bulge.comparison/1",
@@ -137,6 +151,10 @@ pub struct Fitting {
 /// # Errors
 /// As [`compare`].
 pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
+    rayon::scope(|_| fitted(data, muscle, options))
+}
+
+fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
     let mut analysis = Analysis::new(data, muscle, options)?;
     let base = analysis.climb(0, None)?;
     analysis.check_match(&base)?;
@@ -165,6 +183,7 @@ impl<'a> Analysis<'a> {
         for effect in &options.effects {
             check_needs(effect, &record)?;
         }
+        check_size(data, muscle, &record, &used.mask)?;
         let full_scale = full_scale(data.force());
         let levels = Levels::of(&record, &used.mask);
         let folds = Folds::of(&record, &levels);
@@ -209,18 +228,16 @@ impl<'a> Analysis<'a> {
             carry_over(&below.prepared.model, &below.theta, &prepared.model, &mut theta);
         }
         let numbers = free(&prepared.model).len();
-        let mut found = None;
         if numbers > 0 {
             self.check_rows(numbers)?;
             let task = Task { record: &self.record, used: &self.used.mask, noise: self.noise, quick: false };
-            let fitted = fit(&prepared, &theta, &task).map_err(|error| self.about(error))?;
-            theta.clone_from(&fitted.theta);
-            found = Some(fitted);
+            let (fit, force) = fit_and_force(&prepared, &theta, &task).map_err(|error| self.about(error))?;
+            return Ok(Climbed { prepared, theta: fit.theta.clone(), fit: Some(fit), force });
         }
         let counting = Warm::of_rows(&self.used.mask);
         let prediction = prepared.model.evaluate_warm(&self.record, &theta, &Wanted::default(), &counting);
         let force = prediction.map_err(|error| self.about(error))?.force;
-        Ok(Climbed { prepared, theta, fit: found, force })
+        Ok(Climbed { prepared, theta, fit: None, force })
     }
 
     fn check_rows(&self, numbers: usize) -> Result<(), InferenceError> {
@@ -273,18 +290,22 @@ impl<'a> Analysis<'a> {
         })
     }
 
+    /// What no model can go below, as the residuals of a rung show it.
+    fn noise_floor(&self, climbed: &Climbed) -> Option<NoiseFloor> {
+        let residuals: Vec<f64> = self
+            .record
+            .force()
+            .iter()
+            .zip(&climbed.force)
+            .map(|(measured, model)| measured - model)
+            .collect();
+        let repeats = self.data.repeats(self.muscle.length().si());
+        noise_floor(repeats.pure_error().as_ref(), &self.record, &self.used.mask, &residuals, self.muscle)
+    }
+
     /// The noise of the force from here on, and the floor for people.
     fn measure_noise(&mut self, first: &Climbed) -> Option<NoiseFloor> {
-        let residuals: Vec<f64> =
-            self.record.force().iter().zip(&first.force).map(|(measured, model)| measured - model).collect();
-        let repeats = self.data.repeats(self.muscle.length().si());
-        let floor = noise_floor(
-            repeats.pure_error().as_ref(),
-            &self.record,
-            &self.used.mask,
-            &residuals,
-            self.muscle,
-        );
+        let floor = self.noise_floor(first);
         let stated = self.muscle.instruments().force.map_or(0.0, |force| force.noise());
         let sd = if stated > 0.0 { stated } else { floor.as_ref().map_or(0.0, |floor| floor.sd_n) };
         if sd > 0.0 {
@@ -298,7 +319,12 @@ impl<'a> Analysis<'a> {
         let title = match (added, &self.options.law) {
             (Some(effect), _) => effect.card().title.to_owned(),
             (None, Some((law, _, _))) => law.title.to_owned(),
-            (None, None) => "equilibrium of the muscle as stated".to_owned(),
+            (None, None) if self.options.known.is_empty() => "equilibrium of the muscle as stated".to_owned(),
+            (None, None) => {
+                let learnt: Vec<_> =
+                    self.options.known.iter().map(|(effect, _)| effect.card().name).collect();
+                format!("the muscle as stated, with its {}", learnt.join(", "))
+            }
         };
         let error = residuals::summary(self, &climbed.force);
         let held_out = if self.options.held_out { self.held_out(climbed)? } else { None };
@@ -323,10 +349,7 @@ impl<'a> Analysis<'a> {
         let Some(folds) = &self.folds else { return Ok(None) };
         let (thin, kept) = self.record.thinned(FEWER_ROWS);
         let numbers = free(&climbed.prepared.model).len();
-        let counting: Vec<bool> = kept.iter().map(|row| self.used.mask[*row]).collect();
-        let mut square = 0.0;
-        let mut count = 0_usize;
-        for fold in 0..folds.count {
+        let of_fold = |fold: usize| -> Result<Option<(f64, usize)>, ModelError> {
             let in_fold = |row: &usize| folds.of[*row] == fold;
             let train: Vec<bool> = kept.iter().map(|row| self.used.mask[*row] && !in_fold(row)).collect();
             if numbers > 0 && train.iter().filter(|t| **t).count() <= numbers {
@@ -334,21 +357,27 @@ impl<'a> Analysis<'a> {
             }
             let theta = if numbers > 0 {
                 let task = Task { record: &thin, used: &train, noise: self.noise, quick: true };
-                fit(&climbed.prepared, &climbed.theta, &task).map_err(|error| self.about(error))?.theta
+                fit(&climbed.prepared, &climbed.theta, &task)?.theta
             } else {
                 climbed.theta.clone()
             };
-            let warm = Warm::of_rows(&counting);
-            let prediction = climbed.prepared.model.evaluate_warm(&thin, &theta, &Wanted::default(), &warm);
-            let force = prediction.map_err(|error| self.about(error))?.force;
-            for (i, row) in kept.iter().enumerate() {
-                if self.used.mask[*row] && in_fold(row) {
-                    square += (thin.force()[i] - force[i]).powi(2);
-                    count += 1;
-                }
-            }
+            // Predicted are all rows that were held out, with all of their history.
+            let test: Vec<bool> =
+                (0..self.record.len()).map(|row| self.used.mask[row] && in_fold(&row)).collect();
+            let warm = Warm::of_rows(&test);
+            let model = &climbed.prepared.model;
+            let force = model.evaluate_warm(&self.record, &theta, &Wanted::default(), &warm)?.force;
+            let rows = (0..test.len()).filter(|row| test[*row]);
+            let square = rows.clone().map(|row| (self.record.force()[row] - force[row]).powi(2)).sum();
+            Ok(Some((square, rows.count())))
+        };
+        let found: Vec<_> = (0..folds.count).into_par_iter().map(of_fold).collect();
+        let mut sums = (0.0, 0_usize);
+        for fold in found {
+            let Some((square, count)) = fold.map_err(|error| self.about(error))? else { return Ok(None) };
+            sums = (sums.0 + square, sums.1 + count);
         }
-        Ok((count > 0).then(|| (square / count as f64).sqrt()))
+        Ok((sums.1 > 0).then(|| (sums.0 / sums.1 as f64).sqrt()))
     }
 
     fn summary(&self) -> DataSummary {
@@ -432,6 +461,20 @@ pub(crate) fn carry_over(from: &Model, values: &[f64], to: &Model, theta: &mut [
             theta[place] = values[old];
         }
     }
+}
+
+/// Contractions that no muscle has are those of another one.
+fn check_size(data: &Data, muscle: &Muscle, record: &Record, mask: &[bool]) -> Result<(), InferenceError> {
+    let contraction = |row: usize| record.moments()[row].contraction;
+    let outside = |row: &usize| mask[*row] && !POSSIBLE.contains(&contraction(*row));
+    let rows: Vec<usize> = (0..record.len()).filter(outside).collect();
+    let Some(&row) = rows.first() else { return Ok(()) };
+    Err(InferenceError::OtherSize {
+        muscle: muscle.name().to_owned(),
+        lines: format!("line {}", lines(data, &rows)),
+        contraction: contraction(row),
+        length_m: muscle.length().si(),
+    })
 }
 
 fn check_needs(effect: &Arc<dyn Effect>, record: &Record) -> Result<(), InferenceError> {

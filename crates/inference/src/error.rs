@@ -46,6 +46,21 @@ pub enum InferenceError {
         /// Largest force that was measured at these rows \[N\].
         measured_n: f64,
     },
+    /// The contractions are impossible: the data are those of another muscle, or in another unit.
+    #[error(
+        "the muscle doesn't match the data: the contraction at {lines} is {:.1} % of the {:.1} mm of {muscle}; check `length` in the muscle file, and the \
+         unit and the zero of the data", 100.0 * contraction, 1e3 * length_m
+    )]
+    OtherSize {
+        /// Name of the muscle.
+        muscle: String,
+        /// Lines of the file.
+        lines: String,
+        /// Contraction of the first row.
+        contraction: f64,
+        /// Length of the muscle \[m\].
+        length_m: f64,
+    },
     /// An effect needs something that the data don't have.
     #[error("`{effect}` needs {needs}, which these data don't have; leave it out or measure it")]
     Needs {

@@ -34,6 +34,10 @@ pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
     for chosen in model.effects() {
         let card = chosen.effect.card();
         let name = card.name.to_owned();
+        if chosen.fixed {
+            // In the muscle already, with its widths.
+            continue;
+        }
         if card.group == Group::Specimen {
             extension.left_out.push((name, "it belongs to single specimens, not to the muscle"));
             continue;
@@ -58,9 +62,7 @@ pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
             .map(|(i, found)| found.and_then(width).map(|sd| in_si(sd, &model.parameters()[*i])))
             .collect();
         extension.muscle = put(&extension.muscle, chosen, &numbers, &widths)?;
-        if !chosen.fixed {
-            extension.written.push(name);
-        }
+        extension.written.push(name);
     }
     Ok(extension)
 }

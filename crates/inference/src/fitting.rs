@@ -5,6 +5,8 @@ use bulge_numerics::least_squares::{
     Bounds, LeastSquaresError, Minimum, Options, Reason, Side, minimise, starts_in_box,
 };
 
+use rayon::prelude::*;
+
 use crate::fit::{Convergence, Fit, Fitted};
 use crate::interval;
 use crate::nuisance::Prepared;
@@ -17,8 +19,14 @@ const FEW_ROWS: usize = 400;
 const STARTS: usize = 8;
 /// Part of the plausible box at either end in which no start lies.
 const EDGE: f64 = 0.1;
-/// Minima of the thinned record that are polished on all rows.
+/// Minima of the thinned record that are followed further.
 const POLISHED: usize = 2;
+/// Rows on which they are followed before all rows, where those are many more.
+const MORE_ROWS: usize = 4000;
+/// Rows from which that saves time: several minima, and one.
+const MANY_ROWS: [usize; 2] = [8000, 20_000];
+/// Part by which a minimum may be above the least one there, and is still followed on all rows.
+const RIVAL: f64 = 0.05;
 /// Costs that differ by less than this part belong to the same minimum.
 const SAME: f64 = 1e-3;
 /// Correlations beyond this are spoken of.
@@ -36,6 +44,15 @@ pub(crate) struct Task<'a> {
 
 /// Fits the free numbers of a model.
 pub(crate) fn fit(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Fit, ModelError> {
+    fit_and_force(prepared, start, task).map(|(fit, _)| fit)
+}
+
+/// The same with the force that goes with the fit \[N\]; it is 0 in rows that don't count.
+pub(crate) fn fit_and_force(
+    prepared: &Prepared,
+    start: &[f64],
+    task: &Task<'_>,
+) -> Result<(Fit, Vec<f64>), ModelError> {
     let model = &prepared.model;
     let mut best = vec![start.to_vec()];
     let mut minima = 1;
@@ -44,6 +61,9 @@ pub(crate) fn fit(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result
     if !task.quick && !free(model).is_empty() {
         let searched = search(prepared, start, task)?;
         (best, minima, agreeing, tried) = (searched.best, searched.minima, searched.agreeing, searched.tried);
+    }
+    if task.record.len() > MANY_ROWS[usize::from(best.len() == 1)] && !task.quick {
+        best = followed(prepared, best, task)?;
     }
     let mut found: Option<(Minimum, FitProblem<'_>)> = None;
     for theta in &best {
@@ -57,7 +77,8 @@ pub(crate) fn fit(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result
     let Some((minimum, problem)) = found else {
         return Err(ModelError::Values { given: 0, expected: 1 });
     };
-    Ok(report(
+    let force = problem.force(&minimum.residuals);
+    let fit = report(
         prepared,
         &minimum,
         &problem,
@@ -72,7 +93,8 @@ pub(crate) fn fit(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result
             minima,
             rank: minimum.certificate.rank,
         },
-    ))
+    );
+    Ok((fit, force))
 }
 
 struct Searched {
@@ -89,19 +111,24 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     let used: Vec<bool> = kept.iter().map(|row| task.used[*row]).collect();
     let few = Task { record: &thin, used: &used, ..*task };
     let sd = weights(model, start, &few)?;
-    let problem = FitProblem::new(model, &thin, &used, sd, start.to_vec(), &prepared.priors);
+    // Each start remembers equilibria of its own: they run at the same time.
+    let problem_of = || FitProblem::new(model, &thin, &used, sd.clone(), start.to_vec(), &prepared.priors);
+    let problem = problem_of();
     let bounds = problem.bounds();
-    let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
-    let mut tried = 0;
-    let mut first_error = None;
     let options =
         Options { check_curvature: false, tolerance: 1e-4, max_evaluations: 60, ..Options::default() };
     let mut starts = vec![clamped(problem.coordinates(start), &bounds.lower, &bounds.upper)];
     starts.push(clamped(problem.coordinates(&nearly_off(model, start)), &bounds.lower, &bounds.upper));
     starts.extend(scattered(prepared, &problem, start, STARTS - 2));
-    for coordinates in starts {
-        tried += 1;
-        match minimise(&problem, &coordinates, &bounds, &options) {
+    let tried = starts.len();
+    let followed: Vec<_> = starts
+        .par_iter()
+        .map(|coordinates| minimise(&problem_of(), coordinates, &bounds, &options))
+        .collect();
+    let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
+    let mut first_error = None;
+    for end in followed {
+        match end {
             Ok(minimum) => ends.push((minimum.cost, problem.theta(&minimum.theta))),
             Err(LeastSquaresError::Start(error)) => first_error = first_error.or(Some(error)),
             Err(_) => {}
@@ -126,6 +153,28 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
         agreeing,
         tried,
     })
+}
+
+/// Minima of few rows followed on more rows; those that are far above the least one are dropped.
+fn followed(
+    prepared: &Prepared,
+    minima: Vec<Vec<f64>>,
+    task: &Task<'_>,
+) -> Result<Vec<Vec<f64>>, ModelError> {
+    let model = &prepared.model;
+    let (thin, kept) = task.record.thinned(MORE_ROWS);
+    let used: Vec<bool> = kept.iter().map(|row| task.used[*row]).collect();
+    let some = Task { record: &thin, used: &used, ..*task };
+    let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
+    for theta in minima {
+        let sd = weights(model, &theta, &some)?;
+        let problem = FitProblem::new(model, &thin, &used, sd, theta.clone(), &prepared.priors);
+        let minimum = settle(&problem, &theta, true)?;
+        ends.push((minimum.cost, problem.theta(&minimum.theta)));
+    }
+    let least = ends.iter().map(|end| end.0).fold(f64::INFINITY, f64::min);
+    ends.retain(|end| end.0 <= least * (1.0 + RIVAL));
+    Ok(ends.into_iter().map(|(_, theta)| theta).collect())
 }
 
 /// Nine tenths of the way from a start to where effects are off: there the muscle is nearly as stated, which has an equilibrium in most rows.

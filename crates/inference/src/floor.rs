@@ -13,8 +13,10 @@ use crate::levels::sweep_of;
 
 /// Degrees of freedom from which repeats are believed.
 const ENOUGH: f64 = 8.0;
-/// Rows on which the smooth surface is fitted; more would not make it better.
-const MOST_ROWS: usize = 20_000;
+/// Rows on which the smooth surface is fitted: its scatter is then known to one per cent.
+const MOST_ROWS: usize = 5_000;
+/// Part of the sum of squares below which what a promised decrease leaves may be rounding.
+const LEFT: f64 = 1e-9;
 
 /// From repeats, else from what a smooth surface leaves, else from the data sheet.
 pub(crate) fn noise_floor(
@@ -35,12 +37,14 @@ pub(crate) fn noise_floor(
         });
     }
     if let Some((sd_n, columns)) = saturated(record, used, residuals) {
+        // No reading is better than its last digit.
+        let sd_n = sd_n.max(step(record.force()) / 12.0_f64.sqrt());
         return Some(NoiseFloor {
             sd_n,
             source: "saturated",
             says: format!(
-                "what a smooth surface of {columns} numbers in pressure, contraction and direction leaves of the residuals; a surface can also \
-                 follow or miss a part of the noise, so this is an estimate"
+                "what a smooth surface of {columns} numbers in pressure, contraction and direction leaves of the residuals: an estimate, \
+                 without noise that changes slowly along a sweep"
             ),
         });
     }
@@ -50,6 +54,18 @@ pub(crate) fn noise_floor(
         source: "instruments",
         says: "noise of the load cell as the muscle file states it".to_owned(),
     })
+}
+
+/// The step in which the force was read: the least difference between readings, where most of them occur several times.
+fn step(force: &[f64]) -> f64 {
+    let mut levels = force.to_vec();
+    levels.sort_unstable_by(f64::total_cmp);
+    levels.dedup();
+    if 3 * levels.len() > force.len() {
+        return 0.0;
+    }
+    // A single level has no step.
+    levels.windows(2).map(|pair| pair[1] - pair[0]).reduce(f64::min).unwrap_or(0.0)
 }
 
 /// Polynomials of Chebyshev in pressure and contraction, even and odd in direction.
@@ -136,10 +152,16 @@ fn saturated(record: &Record, used: &[bool], residuals: &[f64]) -> Option<(f64, 
     }
     let values: Vec<f64> = rows.iter().map(|row| residuals[*row]).collect();
     let surface = Surface { columns, rows: matrix, values };
-    let options = Options { check_curvature: false, ..Options::default() };
-    let minimum = minimise(&surface, &vec![0.0; columns], &Bounds::none(columns), &options).ok()?;
-    let freedom = n.checked_sub(minimum.certificate.rank).filter(|f| *f > 0)?;
-    let smooth = (minimum.cost / freedom as f64).sqrt();
+    let fitted = |max_evaluations| {
+        let options = Options { check_curvature: false, max_evaluations, ..Options::default() };
+        let found = minimise(&surface, &vec![0.0; columns], &Bounds::none(columns), &options).ok()?;
+        let part = 1.0 - found.certificate.relative_decrease;
+        Some((found.cost * part, part, found.certificate.rank))
+    };
+    // The surface is linear in its numbers: what the first step promises is the minimum.
+    let (cost, _, rank) = fitted(1).filter(|(_, part, _)| *part > LEFT).or_else(|| fitted(2000))?;
+    let freedom = n.checked_sub(rank).filter(|f| *f > 0)?;
+    let smooth = (cost / freedom as f64).sqrt();
     // What a coarse surface can't follow would count as noise: neighbours along a sweep know better.
     let local = neighbours(record, used, residuals).unwrap_or(f64::INFINITY);
     Some((smooth.min(local.max(0.5 * smooth)), columns)).filter(|(sd, _)| *sd > 0.0)

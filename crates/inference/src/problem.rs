@@ -2,7 +2,11 @@
 
 use bulge_model::{Model, ModelError, ModelParameter, Record, Wanted, Warm};
 use bulge_numerics::least_squares::{Bounds, Residuals};
+use rayon::prelude::*;
 use std::ops::Range;
+
+/// Rows that one core weights at a time.
+const ROWS: usize = 4096;
 
 /// The free numbers of a model against a record.
 pub(crate) struct FitProblem<'a> {
@@ -70,6 +74,15 @@ impl<'a> FitProblem<'a> {
         Bounds { lower: self.coordinates(&low), upper: self.coordinates(&high) }
     }
 
+    /// The force of every row of the record \[N\] that goes with residuals; 0 where a row doesn't count.
+    pub(crate) fn force(&self, residuals: &[f64]) -> Vec<f64> {
+        let mut force = vec![0.0; self.record.len()];
+        for (row, residual) in self.rows.iter().zip(residuals) {
+            force[*row] = self.record.force()[*row] - residual * self.sd[*row];
+        }
+        force
+    }
+
     /// Number of rows of the record that count.
     pub(crate) fn measured(&self) -> usize {
         self.rows.len()
@@ -108,6 +121,11 @@ impl Residuals for FitProblem<'_> {
         self.rows()
     }
 
+    /// Derivatives come along with the equilibria.
+    fn joint(&self) -> bool {
+        true
+    }
+
     fn evaluate(
         &self,
         coordinates: &[f64],
@@ -120,9 +138,12 @@ impl Residuals for FitProblem<'_> {
         let wanted = Wanted { parameters, readings: false };
         let prediction = self.model.evaluate_warm(self.record, &theta, &wanted, &self.warm)?;
         let measured = self.record.force();
-        for (residual, row) in residuals.iter_mut().zip(&self.rows) {
-            *residual = (measured[*row] - prediction.force[*row]) / self.sd[*row];
-        }
+        let (used, _) = residuals.split_at_mut(self.rows.len());
+        used.par_chunks_mut(ROWS).zip(self.rows.par_chunks(ROWS)).for_each(|(residuals, rows)| {
+            for (residual, row) in residuals.iter_mut().zip(rows) {
+                *residual = (measured[*row] - prediction.force[*row]) / self.sd[*row];
+            }
+        });
         let n = self.rows.len();
         for (residual, (place, mean, sd)) in residuals[n..].iter_mut().zip(&self.priors) {
             *residual = (coordinates[*place] - mean) / sd;
@@ -131,13 +152,17 @@ impl Residuals for FitProblem<'_> {
         let Some(jacobian) = jacobian.filter(|_| k > 0) else { return Ok(()) };
         let scale: Vec<f64> =
             (0..k).map(|place| if self.logarithmic[place] { theta[self.free[place]] } else { 1.0 }).collect();
-        for (line, row) in jacobian.chunks_exact_mut(k).zip(&self.rows) {
-            let slopes = &prediction.jacobian[row * k..(row + 1) * k];
-            for ((out, slope), scale) in line.iter_mut().zip(slopes).zip(&scale) {
-                *out = -slope * scale / self.sd[*row];
+        let (used, priors) = jacobian.split_at_mut(n * k);
+        used.par_chunks_mut(ROWS * k).zip(self.rows.par_chunks(ROWS)).for_each(|(lines, rows)| {
+            for (line, row) in lines.chunks_exact_mut(k).zip(rows) {
+                let slopes = &prediction.jacobian[row * k..(row + 1) * k];
+                let weight = -1.0 / self.sd[*row];
+                for ((out, slope), scale) in line.iter_mut().zip(slopes).zip(&scale) {
+                    *out = slope * scale * weight;
+                }
             }
-        }
-        for (line, (place, _, sd)) in jacobian[n * k..].chunks_exact_mut(k).zip(&self.priors) {
+        });
+        for (line, (place, _, sd)) in priors.chunks_exact_mut(k).zip(&self.priors) {
             line.fill(0.0);
             line[*place] = 1.0 / sd;
         }

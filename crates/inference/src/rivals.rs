@@ -13,7 +13,9 @@ use crate::residuals;
 
 /// Every law for this kind of muscle, with its printed coefficients where there are any, and fitted.
 pub(crate) fn laws(analysis: &Analysis<'_>) -> Vec<Rival> {
-    let suits = |law: &&'static Law| law.suits(analysis.muscle.kind());
+    // A law of a single pressure can't follow several.
+    let isobaric = |law: &Law| law.is_isobaric() && analysis.levels.len() > 1;
+    let suits = |law: &&'static Law| law.suits(analysis.muscle.kind()) && !isobaric(law);
     LAWS.iter().filter(suits).map(|law| rival(analysis, law)).collect()
 }
 

@@ -11,7 +11,8 @@ pub(crate) struct Used {
     pub(crate) left_out: Vec<LeftOut>,
 }
 
-/// Readings cut at (nearly) zero say only that the muscle didn't pull: two or more of exactly the lowest force, within 1 % of full scale of zero.
+/// Readings at zero say only that the muscle didn't pull: two or more of exactly the lowest force, within 1 % of full scale of zero; rows that moved
+/// on at zero force; rows in which the muscle pushed.
 pub(crate) fn used(data: &Data) -> Used {
     let force = data.force();
     let full = full_scale(force);
@@ -28,6 +29,17 @@ pub(crate) fn used(data: &Data) -> Used {
             why: format!("slack: {lowest} N, the lowest reading, says only that the muscle didn't pull"),
             lines: lines(data, &cut),
             rows: cut.len(),
+        });
+    }
+    let idle: Vec<usize> = data.not_pulling().into_iter().filter(|row| mask[*row]).collect();
+    if !idle.is_empty() && idle.len() < mask.iter().filter(|counts| **counts).count() {
+        for row in &idle {
+            mask[*row] = false;
+        }
+        left_out.push(LeftOut {
+            why: "slack or pushing: the muscle didn't pull, and says nothing about its force".to_owned(),
+            lines: lines(data, &idle),
+            rows: idle.len(),
         });
     }
     Used { mask, left_out }

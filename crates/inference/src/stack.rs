@@ -2,7 +2,7 @@
 
 use bulge_model::{Wanted, Warm};
 
-use crate::compare::{Analysis, Climbed, FEWER_ROWS, carry_over};
+use crate::compare::{Analysis, Climbed, carry_over};
 use crate::comparison::{Part, Stack};
 use crate::error::InferenceError;
 use crate::residuals::{bin, contractions};
@@ -16,9 +16,8 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
     if effects.is_empty() {
         return Ok(Vec::new());
     }
-    let (thin, kept) = analysis.record.thinned(FEWER_ROWS);
-    let counting: Vec<bool> = kept.iter().map(|row| analysis.used.mask[*row]).collect();
-    let counting = Warm::of_rows(&counting);
+    let record = &analysis.record;
+    let counting = Warm::of_rows(&analysis.used.mask);
     let mut forces: Vec<Vec<f64>> = Vec::new();
     for count in 0..=effects.len() {
         let prepared = analysis.model(count)?;
@@ -32,23 +31,21 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
                 *value = final_values[i];
             }
         }
-        let prediction = prepared.model.evaluate_warm(&thin, &theta, &Wanted::default(), &counting);
+        let prediction = prepared.model.evaluate_warm(record, &theta, &Wanted::default(), &counting);
         forces.push(prediction.map_err(|error| analysis.about(error))?.force);
     }
     let mut names: Vec<String> = effects.iter().map(|effect| effect.card().name.to_owned()).collect();
     if last.prepared.nuisance.contains(&true) {
-        forces.push(kept.iter().map(|row| last.force[*row]).collect());
+        forces.push(last.force.clone());
         names.push("rig within its data sheets".to_owned());
     }
     let [low, high] = contractions(analysis);
-    let contraction: Vec<f64> = thin.moments().iter().map(|m| m.contraction).collect();
+    let contraction: Vec<f64> = record.moments().iter().map(|m| m.contraction).collect();
     let mut stacks = Vec::new();
     for (level, pressure_pa) in analysis.levels.mean.iter().enumerate() {
         let mut rows_of = vec![Vec::new(); BINS];
-        for (i, row) in kept.iter().enumerate() {
-            if analysis.used.mask[*row] && analysis.levels.of[*row] == level {
-                rows_of[bin(thin.moments()[i].contraction, low, high, BINS)].push(i);
-            }
+        for row in analysis.rows().filter(|row| analysis.levels.of[*row] == level) {
+            rows_of[bin(contraction[row], low, high, BINS)].push(row);
         }
         let filled: Vec<&Vec<usize>> = rows_of.iter().filter(|rows| !rows.is_empty()).collect();
         let mean = |values: &[f64]| -> Vec<f64> {
@@ -63,7 +60,7 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
         stacks.push(Stack {
             pressure_pa: *pressure_pa,
             contraction: mean(&contraction),
-            measured_n: mean(thin.force()),
+            measured_n: mean(record.force()),
             base_n: mean(&forces[0]),
             parts: names
                 .iter()

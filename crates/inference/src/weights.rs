@@ -3,6 +3,10 @@
 use bulge_model::{Prediction, Record};
 use bulge_muscles::Muscle;
 use bulge_muscles::Quantity;
+use rayon::prelude::*;
+
+/// Lags up to which correlations are summed.
+const MOST_LAGS: usize = 2000;
 
 /// Standard deviations of single readings.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,19 +73,38 @@ pub fn effective_rows(record: &Record, residuals: &[f64], used: &[bool]) -> f64 
     }
     let longest = sweeps.iter().map(Vec::len).max().unwrap_or(0);
     let correlation = |lag: usize| -> f64 {
-        sweeps.iter().flat_map(|s| s.iter().zip(s.iter().skip(lag))).map(|(a, b)| a * b).sum::<f64>() / total
+        sweeps.iter().filter_map(|s| Some(product(s, s.get(lag..)?))).sum::<f64>() / total
     };
     let mut sum = 0.0;
     let mut lag = 1;
-    while lag + 1 < longest.min(2000) {
-        let pair = correlation(lag) + correlation(lag + 1);
-        if pair <= 0.0 {
-            break;
+    let mut batch = 2;
+    let most = longest.min(MOST_LAGS);
+    'lags: while lag + 1 < most {
+        let ahead: Vec<f64> = (lag..lag + batch).into_par_iter().map(correlation).collect();
+        for pair in ahead.chunks_exact(2) {
+            let pair = pair[0] + pair[1];
+            if pair <= 0.0 || lag + 1 >= most {
+                break 'lags;
+            }
+            sum += pair;
+            lag += 2;
         }
-        sum += pair;
-        lag += 2;
+        // Long correlations go on: more lags at once.
+        batch = (2 * batch).min(64);
     }
     (rows / (1.0 + 2.0 * sum)).clamp(1.0, rows)
+}
+
+/// Sum of the products of two series as long as the shorter one, in eight interleaved parts, which are added at once.
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    let (mut a, mut b) = (a[..a.len().min(b.len())].chunks_exact(8), b.chunks_exact(8));
+    let mut parts = [0.0; 8];
+    for (a, b) in a.by_ref().zip(b.by_ref()) {
+        for (part, (a, b)) in parts.iter_mut().zip(a.iter().zip(b)) {
+            *part += a * b;
+        }
+    }
+    parts.iter().sum::<f64>() + a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum::<f64>()
 }
 
 #[cfg(test)]

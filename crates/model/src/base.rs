@@ -1,6 +1,6 @@
 //! The base law at one pressure and contraction: the equilibrium of the reshaped muscle, with derivatives by what reshaped it.
 
-use bulge_fibre::{Approach, FibreError, Linear, Linearised, Problem, Start, Variable};
+use bulge_fibre::{FibreError, Linear, Linearised, Problem, Repeated, Start, Variable};
 use bulge_muscles::{Muscle, Parameter, Pressure};
 
 use crate::answer::{Answer, Graded, SHAPE};
@@ -20,11 +20,11 @@ pub(crate) enum ShapeVariable {
 /// A muscle to be solved, with the parameters by which its answers are differentiated.
 #[derive(Debug, Clone)]
 pub(crate) struct Equilibrium {
-    /// At 1 bar; other pressures are derived from it.
-    problem: Problem,
-    /// What moves, without doubles.
-    numbers: Vec<Variable>,
+    /// With derivatives by what moves, without doubles.
+    here: Repeated,
     slopes: Vec<Slope>,
+    /// Whether each answer takes a search for the equilibrium, and a lattice is worth its while.
+    costly: bool,
 }
 
 /// Where the derivatives by one parameter come from.
@@ -33,18 +33,15 @@ enum Slope {
     /// (place among the numbers, factor)
     Own(Vec<(usize, f64)>),
     Beside {
-        problem: Box<Problem>,
-        numbers: Vec<Variable>,
+        there: Box<Repeated>,
         places: Vec<(usize, f64)>,
     },
     Difference {
-        problems: Box<[Problem; 3]>,
+        there: Box<[Repeated; 3]>,
         step: f64,
     },
 }
 
-/// Any pressure will do to make the problem.
-const REFERENCE: f64 = 1e5;
 /// Weights of the values here and at one, one half and one quarter of a step in the derivative here, times the step: three forward differences,
 /// extrapolated to no step (Richardson).
 const WEIGHTS: [f64; 4] = [-7.0, 1.0 / 3.0, -4.0, 32.0 / 3.0];
@@ -63,7 +60,6 @@ fn places(moved: &[(Parameter, f64)], numbers: &mut Vec<Variable>) -> Vec<(usize
 
 impl Equilibrium {
     pub(crate) fn new(muscle: &Muscle, variables: Vec<ShapeVariable>) -> Result<Self, FibreError> {
-        let problem_of = |muscle: &Muscle| Problem::new(muscle, Pressure::pa(REFERENCE));
         let mut numbers: Vec<Variable> = Vec::new();
         let slope_of = |variable| {
             Ok(match variable {
@@ -71,26 +67,29 @@ impl Equilibrium {
                 ShapeVariable::Beside { muscle, moved } => {
                     let mut numbers = Vec::new();
                     let places = places(&moved, &mut numbers);
-                    Slope::Beside { problem: Box::new(problem_of(&muscle)?), numbers, places }
+                    Slope::Beside { there: Box::new(Repeated::new(&muscle, numbers)?), places }
                 }
                 ShapeVariable::Difference { muscles, step } => {
                     let [a, b, c] = &*muscles;
-                    let problems = Box::new([problem_of(a)?, problem_of(b)?, problem_of(c)?]);
-                    Slope::Difference { problems, step }
+                    let at = |muscle| Repeated::new(muscle, Vec::new());
+                    Slope::Difference { there: Box::new([at(a)?, at(b)?, at(c)?]), step }
                 }
             })
         };
         let slopes = variables.into_iter().map(slope_of).collect::<Result<_, FibreError>>()?;
-        Ok(Self { problem: problem_of(muscle)?, numbers, slopes })
+        let mut equilibrium = Self { here: Repeated::new(muscle, numbers)?, slopes, costly: false };
+        let costly = equilibrium.problems().any(Problem::shoots);
+        equilibrium.costly = costly;
+        Ok(equilibrium)
     }
 
     fn problems(&self) -> impl Iterator<Item = &Problem> {
         let others = |slope| match slope {
             &Slope::Own(_) => [].as_slice(),
-            Slope::Beside { problem, .. } => std::slice::from_ref(problem.as_ref()),
-            Slope::Difference { problems, .. } => problems.as_slice(),
+            Slope::Beside { there, .. } => std::slice::from_ref(there.as_ref()),
+            Slope::Difference { there, .. } => there.as_slice(),
         };
-        std::iter::once(&self.problem).chain(self.slopes.iter().flat_map(others))
+        std::iter::once(&self.here).chain(self.slopes.iter().flat_map(others)).map(Repeated::problem)
     }
 
     /// Whether force/p, shape and volume don't depend on the pressure.
@@ -100,12 +99,12 @@ impl Equilibrium {
 
     /// Whether each answer takes a search for the equilibrium, and a lattice is worth its while.
     pub(crate) fn is_costly(&self) -> bool {
-        self.problems().any(Problem::shoots)
+        self.costly
     }
 
     /// Whether the force grows without bound towards contraction 0.
     pub(crate) fn is_singular(&self) -> bool {
-        self.problem.is_singular()
+        self.here.problem().is_singular()
     }
 
     /// The answer at a pressure \[Pa\] and a contraction, and where a search for a similar one may start.
@@ -116,30 +115,22 @@ impl Equilibrium {
         from: Option<&Start>,
     ) -> Result<(Answer, Option<Start>), FibreError> {
         let pressure = Pressure::pa(pressure);
-        let here = self.problem.at_pressure(pressure)?;
-        let found = here.linearised_from(from, contraction, &self.numbers, Approach::Auto)?;
+        let found = self.here.linearised_from(from, pressure, contraction)?;
         let mut answer = Answer {
             force: plain(&found.force_n),
             tension: plain(&found.equator_force_n),
             mid_radius: plain(&found.mid_radius_m),
             volume: plain(&found.volume_polygon_m3),
         };
-        let near = |problem: &Problem, numbers: &[Variable]| {
-            problem.at_pressure(pressure)?.linearised_from(
-                found.start(),
-                contraction,
-                numbers,
-                Approach::Auto,
-            )
-        };
+        let near = |there: &Repeated| there.linearised_from(found.start(), pressure, contraction);
         for (j, slope) in self.slopes.iter().enumerate().take(SHAPE) {
             let slopes = match slope {
                 Slope::Own(places) => along(&found, places),
-                Slope::Beside { problem, numbers, places } => along(&near(problem, numbers)?, places),
-                Slope::Difference { problems, step } => {
+                Slope::Beside { there, places } => along(&near(there)?, places),
+                Slope::Difference { there, step } => {
                     let mut sum = outputs(&found).map(|output| WEIGHTS[0] * output.value);
-                    for (problem, weight) in problems.iter().zip(&WEIGHTS[1..]) {
-                        let moved = near(problem, &[])?;
+                    for (there, weight) in there.iter().zip(&WEIGHTS[1..]) {
+                        let moved = near(there)?;
                         for (sum, output) in sum.iter_mut().zip(outputs(&moved)) {
                             *sum += weight * output.value;
                         }
@@ -152,7 +143,7 @@ impl Equilibrium {
                 graded.by_shape[j] = slope;
             }
         }
-        Ok((answer, found.start().copied()))
+        Ok((answer, found.into_start()))
     }
 }
 

@@ -7,7 +7,7 @@ use bulge_muscles::MuscleError;
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum ModelError {
     /// Some rows have no equilibrium.
-    #[error("no equilibrium at {} of the rows, first at {pressure_pa} Pa and contraction {contraction:.4}: {source}", rows.len())]
+    #[error("no equilibrium at {pressure_pa} Pa and contraction {contraction:.4}: {source}")]
     NoEquilibrium {
         /// Rows, from 0.
         rows: Vec<usize>,

@@ -40,7 +40,8 @@ pub struct Prediction {
 
 /// Rows handed to one core at a time, where nothing is remembered from row to row, and where each of them takes a search. Fixed, so that results
 /// don't depend on the number of threads.
-const CHUNK: [usize; 2] = [2048, 8];
+const CHUNK: [usize; 2] = [256, 8];
+
 /// Everything that stays the same for all rows of one evaluation.
 pub(crate) struct Run<'a> {
     pub(crate) model: &'a Model,
@@ -50,6 +51,8 @@ pub(crate) struct Run<'a> {
     shapes: Vec<usize>,
     pub(crate) equilibrium: Option<Equilibrium>,
     pub(crate) lattice: Option<Lattice>,
+    /// Whether equilibria are searched for from those found before, as exactly as a fit needs them.
+    pub(crate) within_fit: bool,
 }
 
 /// Which variable each lane carries in one pass.
@@ -69,13 +72,12 @@ pub(crate) enum RowError {
     NotFinite,
 }
 
-struct Part {
-    force: Vec<f64>,
-    /// Column by column of the wanted parameters.
-    jacobian: Vec<f64>,
-    by_pressure: Vec<f64>,
-    by_contraction: Vec<f64>,
-    failed: Vec<(usize, RowError)>,
+/// The rows of one segment in a [`Prediction`].
+struct Part<'a> {
+    force: &'a mut [f64],
+    jacobian: &'a mut [f64],
+    by_pressure: &'a mut [f64],
+    by_contraction: &'a mut [f64],
 }
 
 impl Model {
@@ -95,7 +97,7 @@ impl Model {
     /// The same within a fit: searches start where those of the evaluation before ended, and each of the rows that count (see
     /// [`Warm::of_rows`]) has an answer or there is none: the error then lists the first such row of each segment only.
     ///
-    /// The forces are those of [`Model::evaluate`] within the accuracy of the solver, some 1e-10 of them.
+    /// The forces are those of [`Model::evaluate`] within the accuracy of the solver, some 1e-10 of them; derivatives within 1e-6.
     ///
     /// # Errors
     /// Those of [`Model::evaluate`], for the rows that count.
@@ -121,23 +123,25 @@ impl Model {
         slots: &mut Slots,
     ) -> Result<Prediction, ModelError> {
         let counts = |row: usize| warm.is_none_or(|warm| warm.counts(row));
-        let run = self.run(record, theta, &wanted.parameters, &counts, &mut slots.nodes)?;
+        let mut run = self.run(record, theta, &wanted.parameters, &counts, &mut slots.nodes)?;
+        run.within_fit = warm.is_some();
         let segments = run.segments(record);
         slots.fit(segments.iter().map(Range::len));
         let task = Task {
             record,
             passes: Self::passes(theta, wanted, &run.shapes),
             columns: wanted.parameters.len(),
-            readings: wanted.readings,
             counts: &counts,
-            within_fit: warm.is_some(),
         };
-        let parts: Vec<Part> = segments
+        let mut all = Prediction::zero(record.len(), wanted);
+        let failed: Vec<Vec<(usize, RowError)>> = segments
             .par_iter()
+            .zip(all.parts(&segments, task.columns))
             .zip(&mut slots.rows)
-            .map(|(rows, slots)| run.segment(&task, rows.clone(), slots))
+            .map(|((rows, part), slots)| run.segment(&task, rows.clone(), part, slots))
             .collect();
-        gather(parts, record.len())
+        let failed: Vec<(usize, RowError)> = failed.into_iter().flatten().collect();
+        if failed.is_empty() { Ok(all) } else { Err(failure(failed)) }
     }
 
     fn run<'a>(
@@ -158,6 +162,7 @@ impl Model {
             shapes: Vec::new(),
             equilibrium: None,
             lattice: None,
+            within_fit: false,
         };
         if let Base::Law { .. } = self.base {
             return Ok(run);
@@ -251,9 +256,7 @@ struct Task<'a> {
     record: &'a Record,
     passes: Vec<Pass>,
     columns: usize,
-    readings: bool,
     counts: &'a (dyn Fn(usize) -> bool + Sync),
-    within_fit: bool,
 }
 
 impl Run<'_> {
@@ -339,21 +342,25 @@ impl Run<'_> {
         segments.par_iter().map(of_segment).collect::<Vec<_>>().into_iter().flatten().collect()
     }
 
-    fn segment(&self, task: &Task<'_>, rows: Range<usize>, slots: &mut [Option<Start>]) -> Part {
-        let count = rows.len();
-        let sized = |wanted: bool| if wanted { vec![0.0; count] } else { Vec::new() };
-        let mut part = Part {
-            force: vec![0.0; count],
-            jacobian: vec![0.0; count * task.columns],
-            by_pressure: sized(task.readings),
-            by_contraction: sized(task.readings),
-            failed: Vec::new(),
-        };
+    /// Whether rows start from the row before: within a fit where nothing is shot for.
+    fn walks(&self) -> bool {
+        self.within_fit && self.equilibrium.as_ref().is_some_and(|equilibrium| !equilibrium.is_costly())
+    }
+
+    fn segment(
+        &self,
+        task: &Task<'_>,
+        rows: Range<usize>,
+        mut part: Part<'_>,
+        slots: &mut [Option<Start>],
+    ) -> Vec<(usize, RowError)> {
+        let mut failed = Vec::new();
         // Rows that don't count matter only for what they leave in the memory.
-        let remembers = self.remembers();
+        let (remembers, walks) = (self.remembers(), self.walks());
         for (number, pass) in task.passes.iter().enumerate() {
             let mut memory = self.memory();
-            for ((i, row), slot) in rows.clone().enumerate().zip(slots.iter_mut()) {
+            let mut before: Option<usize> = None;
+            for (i, row) in rows.clone().enumerate() {
                 let (moment, counts) = (&task.record.moments()[row], (task.counts)(row));
                 if moment.begins {
                     memory.iter_mut().flatten().for_each(|m| *m = Jet::from(0.0));
@@ -361,23 +368,58 @@ impl Run<'_> {
                 if !(counts || remembers) {
                     continue;
                 }
-                match self.row(moment, pass, &mut memory, slot) {
+                if walks && slots[i].is_none() {
+                    slots[i] = before.and_then(|before| slots[before].clone());
+                }
+                before = Some(i);
+                match self.row(moment, pass, &mut memory, &mut slots[i]) {
                     Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
                     Err(error) if counts && number == 0 => {
-                        part.failed.push((row, error));
-                        if task.within_fit {
-                            return part;
+                        failed.push((row, error));
+                        if self.within_fit {
+                            return failed;
                         }
                     }
                     Ok(_) | Err(_) => {}
                 }
             }
         }
-        part
+        failed
     }
 }
 
-impl Part {
+impl Prediction {
+    /// All zero, with room for what is wanted.
+    fn zero(rows: usize, wanted: &Wanted) -> Self {
+        let readings = if wanted.readings { rows } else { 0 };
+        Self {
+            force: vec![0.0; rows],
+            jacobian: vec![0.0; rows * wanted.parameters.len()],
+            by_pressure: vec![0.0; readings],
+            by_contraction: vec![0.0; readings],
+        }
+    }
+
+    /// One part for each of the segments, which follow one another.
+    fn parts(&mut self, segments: &[Range<usize>], columns: usize) -> Vec<Part<'_>> {
+        let readings = !self.by_pressure.is_empty();
+        let mut rest =
+            [&mut *self.force, &mut *self.jacobian, &mut *self.by_pressure, &mut *self.by_contraction];
+        let per_row = [1, columns, usize::from(readings), usize::from(readings)];
+        let part = |rows: &Range<usize>| {
+            let mut next = 0;
+            let [force, jacobian, by_pressure, by_contraction] = rest.each_mut().map(|rest| {
+                let count = rows.len() * per_row[next];
+                next += 1;
+                rest.split_off_mut(..count).unwrap_or_default()
+            });
+            Part { force, jacobian, by_pressure, by_contraction }
+        };
+        segments.iter().map(part).collect()
+    }
+}
+
+impl Part<'_> {
     /// What one pass says of row `i`.
     fn fill(&mut self, i: usize, number: usize, pass: &Pass, columns: usize, reading: Jet) {
         if number == 0 {
@@ -394,24 +436,6 @@ impl Part {
             self.by_contraction[i] = gradient[lane];
         }
     }
-}
-
-fn gather(parts: Vec<Part>, rows: usize) -> Result<Prediction, ModelError> {
-    let mut all = Prediction {
-        force: Vec::with_capacity(rows),
-        jacobian: Vec::new(),
-        by_pressure: Vec::new(),
-        by_contraction: Vec::new(),
-    };
-    let mut failed = Vec::new();
-    for part in parts {
-        all.force.extend(part.force);
-        all.jacobian.extend(part.jacobian);
-        all.by_pressure.extend(part.by_pressure);
-        all.by_contraction.extend(part.by_contraction);
-        failed.extend(part.failed);
-    }
-    if failed.is_empty() { Ok(all) } else { Err(failure(failed)) }
 }
 
 fn failure(failed: Vec<(usize, RowError)>) -> ModelError {

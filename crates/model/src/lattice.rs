@@ -140,7 +140,7 @@ impl Lattice {
         let mut first = None;
         let ways: [&mut dyn Iterator<Item = &usize>; 2] = [&mut above.iter(), &mut below.iter().rev()];
         for way in ways {
-            let mut near: Option<Start> = first;
+            let mut near: Option<Start> = first.clone();
             let mut any = false;
             for &column in way {
                 let from = slots.get(&self.key(row, column)).or(near.as_ref());
@@ -150,8 +150,8 @@ impl Lattice {
                     }
                     continue;
                 };
-                (any, near) = (true, start);
-                first = first.or(start);
+                (any, near) = (true, start.clone());
+                first = first.or_else(|| start.clone());
                 found.push((column, node, start));
             }
         }
@@ -297,7 +297,9 @@ pub(crate) fn answer(
         return Ok(answer);
     }
     let (answer, start) = equilibrium.answer(pressure, contraction, slot.as_ref())?;
-    *slot = start.or(*slot);
+    if start.is_some() {
+        *slot = start;
+    }
     Ok(answer)
 }
 

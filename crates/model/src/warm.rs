@@ -1,9 +1,9 @@
 //! What one evaluation leaves to the next: where its searches for equilibria ended, and which rows count.
 //!
 //! A fit asks for nearly the same equilibria thousands of times. Each row and each node of the lattice has a slot with its last equilibrium,
-//! from which the next search starts along the derivatives. A slot is read and written by its own row or node only, so results don't depend
-//! on the number of threads; and a search that doesn't get anywhere from there begins anew, so they depend on the slots no further than the
-//! accuracy of the solver.
+//! from which the next search starts along the derivatives. A slot is read and written by its own row or node only, but for an empty one,
+//! which may be filled from the row before in the same segment: so results don't depend on the number of threads. And a search that
+//! doesn't get anywhere from there begins anew, so they depend on the slots no further than the accuracy of the solver.
 
 use bulge_fibre::Start;
 use std::collections::HashMap;

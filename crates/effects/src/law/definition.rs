@@ -117,6 +117,12 @@ impl Law {
         is_finite && (self.form != Form::PleatedPolynomial || at.contraction > 0.0)
     }
 
+    /// Whether its coefficients hold at a single pressure.
+    #[must_use]
+    pub fn is_isobaric(&self) -> bool {
+        self.form == Form::Isobaric
+    }
+
     /// Whether the law is for such muscles.
     #[must_use]
     pub fn suits(&self, kind: Kind) -> bool {

@@ -18,7 +18,7 @@ impl Effect for PreslidingHysteresis {
             title: "Friction that builds up after a reversal",
             about: "Fibres stick and give before they slide: after a reversal the friction goes over from one sign to the other within a \
                     distance delta instead of at once, and inner loops are thinner than the outer one.",
-            equation: "dz/d eps = (1 - z sign(d eps))/delta * sign(d eps) ... z -> s + (z - s) exp(-|d eps|/delta),   dF = -w z",
+            equation: "dz/d eps = (1 - z sign(d eps))/delta,   over a step z -> s + (z - s) exp(-|d eps|/delta),   dF = -w z",
             source: "Dahl 1968, exponent 1",
             evidence: Evidence::Literature,
             group: Group::Load,

@@ -1,5 +1,6 @@
 //! Is there enough, and does it vary: rows, pressures, contractions, temperature.
 
+use super::quantisation::four;
 use super::{Finding, FindingKind, Gate, Severity};
 use crate::resolution::bounds;
 
@@ -47,7 +48,7 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     }
     if motion.range <= TRAVEL * data.structure.scale && rows > 1 {
         let severity = if varies { Severity::Note } else { Severity::Warning };
-        let says = format!("the {} changes by no more than {:.3e} (SI)", gate.motion_name(), motion.range);
+        let says = format!("the {} changes by no more than {} (SI)", gate.motion_name(), four(motion.range));
         let instead = "measure over the working range of the contraction as well";
         found.push(whole(FindingKind::ContractionConstant, severity, says, instead));
     }

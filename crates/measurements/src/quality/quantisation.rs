@@ -42,8 +42,10 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
         }
         let severity = if levels < WARNING { Severity::Warning } else { Severity::Note };
         let says = format!(
-            "the {name} is read in steps of {:.4e} {unit}: {levels} levels {} {:.4e}",
-            resolution.step, span.0, span.1
+            "the {name} is read in steps of {} {unit}: {levels} levels {} {}",
+            four(resolution.step),
+            span.0,
+            four(span.1)
         );
         let instead =
             "use a finer range of the sensor or write more digits; differences below one step mean nothing";
@@ -59,4 +61,14 @@ fn share_of_changes(gate: &Gate, values: &[f64]) -> f64 {
         |rows: &std::ops::Range<usize>| values[rows.clone()].windows(2).filter(|w| w[0] != w[1]).count();
     let count: usize = gate.data.sweeps().iter().map(|sweep| changes(&sweep.rows)).sum();
     count as f64 / values.len().max(1) as f64
+}
+
+/// Four significant digits, as people write them.
+pub(super) fn four(value: f64) -> String {
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-5..1e7).contains(&rounded.abs()) {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
 }

@@ -1,7 +1,8 @@
 //! Forces at and below zero: a muscle that is slack, or a load cell whose zero is off.
 
 use super::clipping::expected;
-use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
+use super::{Finding, FindingKind, Gate, QualityOptions, Severity, rows_in_words};
+use crate::data::Data;
 use std::ops::Range;
 
 /// Forces within this share of the largest are near zero.
@@ -15,8 +16,31 @@ const STEPS: f64 = 5.0;
 /// A negative force beyond this share of the largest is no noise.
 const NEGATIVE: f64 = 0.01;
 
+impl Data {
+    /// Rows in which the muscle didn't pull, in ascending order: it moved on at zero force, or the force was clearly negative. No model of a pulling
+    /// muscle says anything about them.
+    #[must_use]
+    pub fn not_pulling(&self) -> Vec<usize> {
+        if self.is_empty() {
+            return Vec::new();
+        }
+        let options = QualityOptions::default();
+        let gate = Gate::new(self, &options);
+        let (mut rows, _) = near_zero(&gate, level(&gate));
+        rows.extend(pushing_rows(&gate).1);
+        rows.sort_unstable();
+        rows.dedup();
+        rows
+    }
+}
+
+/// Forces up to this are as good as zero \[N\].
+fn level(gate: &Gate) -> f64 {
+    (4.0 * gate.force.noise).max(gate.force.step).max(NEAR_ZERO * gate.largest_force)
+}
+
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
-    let level = (4.0 * gate.force.noise).max(gate.force.step).max(NEAR_ZERO * gate.largest_force);
+    let level = level(gate);
     let (slack, free) = near_zero(gate, level);
     let within = format!("zero force (within {level:.3} N)");
     let hung = gate.finding_if_any(
@@ -77,11 +101,15 @@ fn near_zero(gate: &Gate, level: f64) -> (Vec<usize>, Vec<usize>) {
     (slack, free)
 }
 
-/// Clearly negative forces.
-fn pushing(gate: &Gate) -> Option<Finding> {
+/// Clearly negative forces, and their rows.
+fn pushing_rows<'a>(gate: &Gate<'a>) -> (&'a [f64], Vec<usize>) {
     let force = gate.data.force();
     let below = (5.0 * gate.force.noise).max(NEGATIVE * gate.largest_force);
-    let rows: Vec<usize> = (0..force.len()).filter(|row| force[*row] < -below).collect();
+    (force, (0..force.len()).filter(|row| force[*row] < -below).collect())
+}
+
+fn pushing(gate: &Gate) -> Option<Finding> {
+    let (force, rows) = pushing_rows(gate);
     let says = |count| {
         let lowest = rows.iter().map(|row| force[*row]).fold(0.0, f64::min);
         format!("{} with a pushing force, down to {lowest:.3} N", rows_in_words(count))

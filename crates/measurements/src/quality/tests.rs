@@ -152,7 +152,9 @@ fn coarse_sensors() {
             let says = has(&quality(columns), FindingKind::Quantised, severity);
             let levels = format!("{} levels", ((high - low) / step).round() + 1.0);
             assert!(
-                says.contains(name) && says.contains(&levels) && says.contains(&format!("{step:.4e}")),
+                says.contains(name)
+                    && says.contains(&levels)
+                    && says.contains(&super::quantisation::four(step)),
                 "{says}"
             );
         }

@@ -409,13 +409,12 @@ impl<'a, P: Residuals> Search<'a, P> {
     /// Linearises at a point unless that has been done, and stays there; false, and back, if that fails.
     pub(super) fn stay(&mut self, point: Point) -> bool {
         let Point { theta, mut residuals, linear } = point;
-        let linear = match linear {
-            Some(linear) => linear,
-            None => {
-                self.linearisations += 1;
-                let Ok(linear) = linearise(self.problem, &theta, &mut residuals) else { return false };
-                linear
-            }
+        let linear = if let Some(linear) = linear {
+            linear
+        } else {
+            self.linearisations += 1;
+            let Ok(linear) = linearise(self.problem, &theta, &mut residuals) else { return false };
+            linear
         };
         for (scale, norm) in self.scale.iter_mut().zip(&linear.norms) {
             *scale = scale.max(*norm);

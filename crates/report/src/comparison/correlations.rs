@@ -8,7 +8,7 @@ use crate::comparison::parameters_table::label;
 use crate::comparison::wording::last_fit;
 
 /// Pairs with at least this correlation are listed.
-const HIGH: f64 = 0.9;
+pub(super) const HIGH: f64 = 0.9;
 /// Pairs that are listed.
 const MOST: usize = 30;
 

@@ -106,7 +106,7 @@ pub(super) fn verdict(comparison: &Comparison) -> Vec<String> {
         let meaning = if ratio < 1.15 {
             "about as large: the model does as well on what it has not seen"
         } else if ratio < 1.5 {
-            "somewhat larger: the model does nearly as well on what it has not seen"
+            "larger: a part of what the fit learnt holds only for these readings"
         } else {
             "much larger: the fit knows these readings better than the muscle"
         };

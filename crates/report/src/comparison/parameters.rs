@@ -2,6 +2,7 @@
 
 use bulge_inference::{Comparison, Fitted};
 
+use crate::comparison::correlations::HIGH;
 use crate::comparison::legend::{self, Mark};
 use crate::comparison::number::count;
 use crate::comparison::parameters_table::{interval, label, value};
@@ -125,7 +126,17 @@ pub(super) fn says(comparison: &Comparison) -> String {
     remark(number(|p| p.at_bound.is_some()), "at a bound of the search");
     remark(number(|p| !p.determined), "not determined by these data");
     if remarks.is_empty() {
-        format!("{fitted} {were} fitted: all are plausible, and the data determine them.")
+        let told_apart = fit
+            .correlations
+            .chunks(fit.parameters.len())
+            .enumerate()
+            .all(|(i, row)| row.iter().enumerate().all(|(j, r)| i == j || r.abs() <= HIGH));
+        let data = if told_apart {
+            "the data determine them"
+        } else {
+            "but not all can be told apart (see the correlations)"
+        };
+        format!("{fitted} {were} fitted: all are plausible, {}{data}.", if told_apart { "and " } else { "" })
     } else {
         format!(
             "{fitted} {were} fitted: {}. Do not use the values that are marked elsewhere.",

@@ -40,7 +40,7 @@ fn row(parameter: &Fitted) -> Row {
     }
     let mut notes = Vec::new();
     if parameter.nuisance {
-        notes.push("nuisance".to_owned());
+        notes.push("nuisance, within its stated width".to_owned());
     }
     if parameter.interval == "profile" {
         notes.push("interval by profile".to_owned());

@@ -13,6 +13,7 @@ struct Model<F> {
     rows: usize,
     parameters: usize,
     block: usize,
+    joint: bool,
     row: F,
 }
 
@@ -29,6 +30,10 @@ impl<F: Fn(&[f64], usize) -> Row + Sync> Residuals for Model<F> {
 
     fn block(&self) -> usize {
         self.block
+    }
+
+    fn joint(&self) -> bool {
+        self.joint
     }
 
     fn evaluate(
@@ -52,7 +57,7 @@ impl<F: Fn(&[f64], usize) -> Row + Sync> Residuals for Model<F> {
 }
 
 fn model<F: Fn(&[f64], usize) -> Row + Sync>(rows: usize, parameters: usize, row: F) -> Model<F> {
-    Model { rows, parameters, block: 4096, row }
+    Model { rows, parameters, block: 4096, joint: false, row }
 }
 
 /// `r = (10 (y - x^2), 1 - x)`.

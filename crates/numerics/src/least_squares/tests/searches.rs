@@ -122,6 +122,30 @@ fn rosenbrock_free_and_bounded() {
 }
 
 #[test]
+fn derivatives_with_every_trial_give_the_same_path_with_fewer_evaluations() {
+    let start = [-1.2, 1.0];
+    let apart = free(&rosenbrock(), &start);
+    let joint = free(&Model { joint: true, ..rosenbrock() }, &start);
+    assert_eq!(bits(&joint.theta), bits(&apart.theta));
+    assert_eq!(joint.iterations, apart.iterations);
+    assert_eq!(joint.evaluations, 0);
+    // Each trial is evaluated once.
+    assert!(joint.linearisations < apart.evaluations + apart.linearisations);
+}
+
+#[test]
+fn blocks_of_many_rows_are_split() {
+    // Least squares of a line through 20 001 points in one block: sum t = 0, so the slope is sum t y/sum t^2.
+    let rows = 20_001;
+    let (t, y) = (|i: usize| i as f64 / 1e4 - 1.0, |i: usize| ((i * 7919) % 101) as f64 / 101.0);
+    let line = |p: &[f64], i: usize| Some((p[0] + p[1] * t(i) - y(i), vec![1.0, t(i)]));
+    let minimum = free(&Model { block: rows, ..model(rows, 2, line) }, &[0.0, 0.0]);
+    let sum = |f: &dyn Fn(usize) -> f64| (0..rows).map(f).sum::<f64>();
+    let slope = sum(&|i| t(i) * y(i)) / sum(&|i| t(i) * t(i));
+    assert_close(&minimum.theta, &[sum(&y) / rows as f64, slope], 1e-11);
+}
+
+#[test]
 fn straight_line_has_the_textbook_covariance() {
     // Points x = 0..9: var(slope) = 1/sum (x - 4.5)^2 = 1/82.5; var(intercept) = 1/10 + 4.5^2/82.5; cov = -4.5/82.5.
     let problem = model(10, 2, |p, i| {
