@@ -8,6 +8,7 @@ use bulge_muscles::Muscle;
 use bulge_report::comparison::{html, plots};
 use clap::Args;
 use std::fmt::Write;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -121,12 +122,17 @@ pub(crate) fn report(
     let page = html(comparison)?;
     let plots = plots(comparison)?;
     files::folder(folder)?;
-    for plot in &plots {
-        files::write(&folder.join(format!("{}.svg", plot.name)), plot.svg.as_bytes())?;
-    }
     let [numbers, first] = [folder.join("compare.json"), folder.join("report.html")];
-    files::write(&numbers, document.as_bytes())?;
-    files::write(&first, page.as_bytes())?;
+    let mut contents = vec![(numbers.clone(), document), (first.clone(), page.as_str())];
+    contents.extend(plots.iter().map(|plot| (folder.join(format!("{}.svg", plot.name)), plot.svg.as_str())));
+    // Nothing is written where one of them can't be.
+    if let Some((path, _)) = contents.iter().find(|(path, _)| path.is_dir()) {
+        let source = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; move it away");
+        return Err(Failure::Output { path: path.clone(), source });
+    }
+    for (path, content) in &contents {
+        files::write(path, content.as_bytes())?;
+    }
     Ok([first, numbers])
 }
 
@@ -244,7 +250,7 @@ pub(crate) fn parameters(out: &mut String, fit: &Fit) {
         let line = format!(
             "    {:<width$}  {value:>9} {:<6} {low} to {high}  {}",
             label(p),
-            p.unit,
+            if p.unit == "1" { "" } else { &p.unit },
             notes.join(", ")
         );
         let _ = writeln!(out, "{}", line.trim_end());

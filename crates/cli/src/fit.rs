@@ -145,7 +145,7 @@ fn provenance(fitting: &Fitting) -> String {
     for p in &fitting.fit.parameters {
         let flag = if p.plausible { "" } else { "; IMPLAUSIBLE: a wrong cure" };
         let [value, low, high] = with_interval(p.value, p.low, p.high);
-        let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
+        let unit = if p.unit.is_empty() || p.unit == "1" { String::new() } else { format!(" {}", p.unit) };
         let _ = writeln!(text, "# {} {} = {value}{unit} (95 %: {low} to {high}){flag}", p.effect, p.name);
     }
     text + "\n"

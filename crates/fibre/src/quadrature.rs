@@ -216,7 +216,8 @@ struct Plan {
 }
 
 impl Plan {
-    fn of(law: &Law<f64>, end_radius: f64) -> Result<Self, NoTrajectory> {
+    /// Not as a value: moving it would cost as much as making it.
+    fn fill(&mut self, law: &Law<f64>, end_radius: f64) -> Result<(), NoTrajectory> {
         let start = law.at(0.0, false);
         let ratio = (law.span * start.curve / law.slope).max(LEAST_RATIO);
         let end = ratio.sqrt().asinh();
@@ -238,23 +239,22 @@ impl Plan {
                 (top, length) = (bottom, 2.0 * length);
             }
         }
-        let mut plan = Self { points: ArrayVec::new(), evaluations: 0 };
         let mut count = pieces.len();
         while let Some((low, high, slack)) = pieces.pop() {
             let points = points(low, high, slack, ratio);
-            plan.evaluations += 21;
-            let agree = agree(law, &points).ok_or(NoTrajectory { evaluations: plan.evaluations })?;
+            self.evaluations += 21;
+            let agree = agree(law, &points).ok_or(NoTrajectory { evaluations: self.evaluations })?;
             if agree {
-                plan.points.extend(points);
+                self.points.extend(points);
             } else if count >= MOST_PIECES {
-                return Err(NoTrajectory { evaluations: plan.evaluations });
+                return Err(NoTrajectory { evaluations: self.evaluations });
             } else {
                 let middle = 0.5 * (low + high);
                 pieces.extend([(low, middle, slack), (middle, high, slack)]);
                 count += 1;
             }
         }
-        Ok(plan)
+        Ok(())
     }
 }
 
@@ -303,7 +303,8 @@ pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Tra
         tension: middle.tension.value(),
     };
     let plain = net.constant();
-    let plan = Plan::of(&Law::of(&plain, &values), plain.end_radius)?;
+    let mut plan = Plan { points: ArrayVec::new(), evaluations: 0 };
+    plan.fill(&Law::of(&plain, &values), plain.end_radius)?;
     let evaluations = plan.evaluations;
     let none = NoTrajectory { evaluations };
     let mut sums = [D::from(0.0); 3];

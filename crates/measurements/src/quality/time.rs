@@ -43,6 +43,12 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             }
         }
     }
+    // A clock that runs backwards makes a run of every row.
+    let starts = data.sweeps().iter().skip(1).map(|sweep| sweep.rows.start);
+    let backwards: Vec<usize> = starts.filter(|row| time[*row] < time[*row - 1]).collect();
+    if !is_labelled && 2 * backwards.len() > data.len() {
+        back = backwards;
+    }
     let severity = if is_labelled { Severity::Warning } else { Severity::Note };
     [
         gate.finding_if_any(
