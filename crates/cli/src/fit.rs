@@ -148,5 +148,5 @@ fn provenance(fitting: &Fitting) -> String {
         let unit = if p.unit.is_empty() || p.unit == "1" { String::new() } else { format!(" {}", p.unit) };
         let _ = writeln!(text, "# {} {} = {value}{unit} (95 %: {low} to {high}){flag}", p.effect, p.name);
     }
-    text + "\n"
+    text + "# Widths of effects (+-) are one standard deviation, for the reader: later fits take the numbers as known.\n\n"
 }

@@ -1,10 +1,10 @@
 //! Model against measurement: the ladder of errors, rung by rung, and where the error lies.
 
 use bulge_effects::law::Law;
-use bulge_effects::{Catalogue, Effect, Needs};
+use bulge_effects::{Catalogue, Effect};
 use bulge_measurements::{Data, QualityOptions};
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
-use bulge_muscles::{Muscle, Quantity};
+use bulge_muscles::{Muscle, Parameter, Quantity};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -16,6 +16,7 @@ use crate::floor::noise_floor;
 use crate::levels::{Folds, Levels};
 use crate::nuisance::{Prepared, with_nuisances};
 use crate::problem::free;
+use crate::requirements::{check_needs, check_size};
 use crate::rows::{Used, full_scale, lines, used};
 use crate::weights::Noise;
 use crate::{loops, residuals, rivals, stack};
@@ -24,8 +25,6 @@ use crate::{loops, residuals, rivals, stack};
 pub(crate) const FEWER_ROWS: usize = 4000;
 /// A measured force above this part of full scale where the model would push is a muscle that doesn't match.
 const CLEARLY_PULLS: f64 = 0.1;
-/// Contractions that a muscle can have: no braid is three times as long as at rest, and no pleated muscle gets shorter than 54.3 %.
-const POSSIBLE: std::ops::RangeInclusive<f64> = -0.5..=0.6;
 
 /// What is compared, besides muscle and data.
 #[derive(Debug, Clone)]
@@ -410,6 +409,13 @@ impl<'a> Analysis<'a> {
                 "nothing could be held out: there are fewer than three pressures, two specimens and three sweeps".to_owned(),
             );
         }
+        let used = |p: Parameter| matches!(p, Parameter::Length | Parameter::Radius | Parameter::BraidAngle);
+        for (parameter, _) in self.muscle.widths().iter().filter(|(p, _)| !used(*p)) {
+            warnings.push(format!(
+                "the width stated for `{}` is not used: only those of length, radius and braid angle are",
+                parameter.key()
+            ));
+        }
         let lowest = ladder.iter().filter_map(|rung| rung.held_out_rmse_n).fold(f64::INFINITY, f64::min);
         if let Some((last, held_out)) = ladder.last().and_then(|rung| Some((rung, rung.held_out_rmse_n?)))
             && held_out > 1.2 * lowest
@@ -461,35 +467,4 @@ pub(crate) fn carry_over(from: &Model, values: &[f64], to: &Model, theta: &mut [
             theta[place] = values[old];
         }
     }
-}
-
-/// Contractions that no muscle has are those of another one.
-fn check_size(data: &Data, muscle: &Muscle, record: &Record, mask: &[bool]) -> Result<(), InferenceError> {
-    let contraction = |row: usize| record.moments()[row].contraction;
-    let outside = |row: &usize| mask[*row] && !POSSIBLE.contains(&contraction(*row));
-    let rows: Vec<usize> = (0..record.len()).filter(outside).collect();
-    let Some(&row) = rows.first() else { return Ok(()) };
-    Err(InferenceError::OtherSize {
-        muscle: muscle.name().to_owned(),
-        lines: format!("line {}", lines(data, &rows)),
-        contraction: contraction(row),
-        length_m: muscle.length().si(),
-    })
-}
-
-fn check_needs(effect: &Arc<dyn Effect>, record: &Record) -> Result<(), InferenceError> {
-    let card = effect.card();
-    let moments = record.moments();
-    let has = match card.needs {
-        Needs::Nothing => true,
-        Needs::Path => moments.iter().any(|m| m.direction != 0.0),
-        Needs::Time => record.has_time(),
-        Needs::Cycles => moments.iter().any(|m| m.cycle > 0.0),
-        Needs::Temperature => moments.iter().any(|m| m.temperature != 0.0),
-        Needs::Specimens => record.specimens().len() > 1,
-    };
-    if has {
-        return Ok(());
-    }
-    Err(InferenceError::Needs { effect: card.name.to_owned(), needs: card.needs.says() })
 }

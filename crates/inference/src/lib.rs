@@ -18,6 +18,7 @@ mod levels;
 mod loops;
 mod nuisance;
 mod problem;
+mod requirements;
 mod residuals;
 mod rivals;
 mod rows;

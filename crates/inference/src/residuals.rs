@@ -119,7 +119,8 @@ fn even(
     let width = (high - low) / BINS as f64;
     let label = |i: usize| {
         let start = low + i as f64 * width;
-        let digits = usize::from(width < 1.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 6")]
+        let digits = (-width.log10().floor()).clamp(0.0, 6.0) as usize;
         (format!("{start:.digits$} to {:.digits$}", start + width), start + 0.5 * width)
     };
     Some(Groups { variable, unit, of, labels: (0..BINS).map(label).collect() })
