@@ -25,7 +25,9 @@ impl Scale {
     /// For a minimum with `rows` rows of which `effective` are independent.
     pub(crate) fn new(minimum: &Minimum, rows: usize, effective: f64) -> Self {
         let freedom = (rows as f64 - minimum.certificate.rank as f64).max(1.0);
-        let spread = (minimum.cost / freedom).max(1.0);
+        // Of the rows alone: priors behind them say nothing about the noise.
+        let cost: f64 = minimum.residuals.iter().take(rows).map(|r| r * r).sum();
+        let spread = (cost / freedom).max(1.0);
         let independent = (effective - minimum.certificate.rank as f64).max(1.0);
         let quantile = StudentsT::new(0.0, 1.0, independent)
             .map_or(1.959_964, |t| t.inverse_cdf(0.975))

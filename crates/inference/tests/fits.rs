@@ -191,7 +191,7 @@ fn a_profile_of_a_line_is_its_covariance() {
         fitted(&measured(&muscle, &[("force-offset", &[1.1 * most])], 2.0, 8), &muscle, &["force-offset"]);
     let (one, two) = (&inside.fit.parameters[0], &beyond.fit.parameters[0]);
     assert_eq!((one.interval, two.interval), ("covariance", "profile"));
-    assert!(((one.high - one.low) / (two.high - two.low) - 1.0).abs() < 0.04, "{one:?} {two:?}");
+    assert!(((one.high - one.low) / (two.high - two.low) - 1.0).abs() < 0.01, "{one:?} {two:?}");
 }
 
 #[test]
