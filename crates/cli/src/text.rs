@@ -1,23 +1,6 @@
 //! Numbers for people: four to six significant digits, and the unit that suits the size.
 
-/// `digits` significant digits, without an exponent for usual sizes.
-pub(crate) fn significant(value: f64, digits: i32) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let exponent = value.abs().log10().floor();
-    if !(-4.0..9.0).contains(&exponent) {
-        return format!("{value:.*e}", usize::try_from(digits - 1).unwrap_or(0));
-    }
-    #[expect(clippy::cast_possible_truncation, reason = "an exponent between -4 and 9")]
-    let decimals = usize::try_from(digits - 1 - exponent as i32).unwrap_or(0);
-    let rounded = format!("{value:.decimals$}");
-    // "-0.00" says nothing that "0.00" doesn't.
-    if rounded.trim_start_matches(['-', '0', '.']).is_empty() {
-        return rounded.trim_start_matches('-').to_owned();
-    }
-    rounded
-}
+pub(crate) use bulge_muscles::units::significant;
 
 /// A value and the ends of its interval, so that the interval can be seen.
 pub(crate) fn with_interval(value: f64, low: f64, high: f64) -> [String; 3] {
@@ -47,15 +30,6 @@ pub(crate) fn table(rows: &[Vec<String>]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn significant_digits() {
-        assert_eq!(significant(1438.0439, 5), "1438.0");
-        assert_eq!(significant(0.012_345, 3), "0.0123");
-        assert_eq!(significant(-0.0, 3), "-0");
-        assert_eq!(significant(1.5e12, 3), "1.50e12");
-        assert_eq!(significant(123_456.7, 4), "123457");
-    }
 
     #[test]
     fn columns_align() {

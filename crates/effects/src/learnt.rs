@@ -111,9 +111,7 @@ fn value(stated: &Learnt, card: &ParameterCard<'_>) -> Result<f64, FileError> {
 /// A number in the unit of its card.
 fn shown(si: f64, card: &ParameterCard<'_>) -> String {
     // Twelve digits hide the rounding of the change of units.
-    let number = si / card.factor;
-    let rounded: f64 = format!("{number:.11e}").parse().unwrap_or(number);
-    format!("{rounded} {}", card.unit).trim_end().to_owned()
+    format!("{} {}", units::rounded(si / card.factor, 12), card.unit).trim_end().to_owned()
 }
 
 #[cfg(test)]

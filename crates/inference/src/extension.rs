@@ -77,7 +77,7 @@ fn fitted<'f>(model: &Model, fit: &'f Fit, index: usize) -> Option<&'f Fitted> {
 /// One standard deviation in the unit shown; none where the interval is none.
 fn width(fitted: &Fitted) -> Option<f64> {
     let sure = fitted.determined && fitted.at_bound.is_none();
-    sure.then(|| to_digits((fitted.high - fitted.low) / (2.0 * NORMAL), 2))
+    sure.then(|| units::rounded((fitted.high - fitted.low) / (2.0 * NORMAL), 2))
 }
 
 /// A fitted number to a thousandth of its standard deviation, or to nine digits: what is read in a file should not pretend to be exact.
@@ -86,17 +86,12 @@ fn rounded(value: f64, fitted: &Fitted, number: &ModelParameter) -> f64 {
     let digits = width(fitted).map_or(9.0, |sd| (shown.abs() / sd).log10().ceil() + 3.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 3 and 15")]
     let digits = digits.clamp(3.0, 15.0) as usize;
-    in_si(to_digits(shown, digits), number).clamp(number.low, number.high)
+    in_si(units::rounded(shown, digits), number).clamp(number.low, number.high)
 }
 
 /// As a file's reader would take it: then it is written as short as it was rounded.
 fn in_si(shown: f64, number: &ModelParameter) -> f64 {
     units::any(&format!("{shown} {}", number.unit)).map_or(shown * number.factor, |value| value.si)
-}
-
-/// So many significant digits.
-fn to_digits(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
 fn put(

@@ -12,6 +12,7 @@ use crate::interval;
 use crate::nuisance::Prepared;
 use crate::problem::{FitProblem, free};
 use crate::weights::{Noise, effective_rows};
+use bulge_muscles::units::significant;
 
 /// Rows on which starts are tried.
 const FEW_ROWS: usize = 400;
@@ -341,13 +342,13 @@ fn warnings(fit: &Fit) -> Vec<String> {
         ));
     }
     for p in &fit.parameters {
-        let value = format!("{} {}", three(p.value), p.unit);
+        let value = format!("{} {}", significant(p.value, 3), p.unit);
         if !p.plausible {
             warnings.push(format!(
                 "implausible: {} = {value}, outside {} to {} {}: a wrong cure, even if the error falls",
                 label(p),
-                three(p.plausible_range[0]),
-                three(p.plausible_range[1]),
+                significant(p.plausible_range[0], 3),
+                significant(p.plausible_range[1], 3),
                 p.unit
             ));
         }
@@ -372,20 +373,4 @@ fn warnings(fit: &Fit) -> Vec<String> {
         }
     }
     warnings
-}
-
-/// Three significant digits.
-pub(crate) fn three(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let magnitude = value.abs().log10().floor();
-    if (-4.0..6.0).contains(&magnitude) {
-        let decimals = (2.0 - magnitude).max(0.0);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 6")]
-        let decimals = decimals as usize;
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.2e}")
-    }
 }

@@ -215,3 +215,24 @@ fn chebyshev(x: f64, degree: usize) -> Vec<f64> {
     t.truncate(degree + 1);
     t
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::Moment;
+    use bulge_muscles::preset;
+
+    #[test]
+    fn no_floor_is_finer_than_the_steps_of_the_force() {
+        let moments: Vec<Moment> = (0..120)
+            .map(|i| Moment::at_rest(f64::from(1 + i / 20) * 1e5, 0.01 * f64::from(i % 20)))
+            .collect();
+        let force: Vec<f64> = (0..120).map(|i| 40.0 * f64::from(20 - i % 20)).collect();
+        let record = Record::from_moments(moments, force, std::iter::once(0..120).collect()).unwrap();
+        // A model that meets the rounded readings to a millionth of a newton.
+        let residuals: Vec<f64> = (0..120).map(|i| 1e-6 * f64::from(i * 37 % 11)).collect();
+        let muscle = preset("ppam-2-r16").unwrap();
+        let floor = noise_floor(None, &record, &[true; 120], &residuals, &muscle).unwrap();
+        assert!((floor.sd_n - 40.0 / 12.0_f64.sqrt()).abs() < 1e-9, "{}", floor.sd_n);
+    }
+}

@@ -1,8 +1,9 @@
 //! Numbers with a unit of whatever dimension: "4 N s", "0.2", "1 N +- 0.2 N", "1e-3 1/K".
 
 use crate::any_unit_error::AnyUnitError;
+use crate::digits::shortest;
 use crate::dimension::Dimension;
-use crate::quantity::{Ratio, in_unit, rounded, to_si};
+use crate::quantity::{Ratio, in_unit, to_si};
 use crate::unit_expression::{normalised, unit};
 use crate::units::{Quantity, is_not_finite, number_length, shortened};
 
@@ -80,11 +81,7 @@ pub fn any_with_width(text: &str) -> Result<(Any, Option<f64>), AnyUnitError> {
 pub fn exact_any_text(si: f64, unit: &str) -> String {
     let Ok((factor, dimension)) = crate::unit_expression::unit(unit) else { return plain_number(si) };
     let shown = in_unit(si, factor);
-    let shortest = [3, 6, 9, 12, 15, 16, 17]
-        .into_iter()
-        .map(|digits| rounded(shown, digits))
-        .find(|value| to_si(*value, factor).to_bits() == si.to_bits());
-    let (number, unit) = match shortest {
+    let (number, unit) = match shortest(shown, |value| to_si(value, factor).to_bits() == si.to_bits()) {
         Some(value) => {
             (plain_number(value), if is_pure(unit) { String::new() } else { unit.trim().to_owned() })
         }

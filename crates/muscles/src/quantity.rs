@@ -25,11 +25,6 @@ const fn whole_inverse(factor: f64) -> Option<f64> {
     if is_whole { Some(whole) } else { None }
 }
 
-/// Rounds to `digits` significant decimal digits, so that 0.11 m reads "110 mm", not "110.00000000000001 mm".
-pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
-}
-
 macro_rules! quantity {
     (
         $(#[$doc:meta])*
@@ -76,7 +71,7 @@ macro_rules! quantity {
                 let value = in_unit(self.0, $shown_factor);
                 match f.precision() {
                     Some(digits) => write!(f, "{value:.digits$} {}", $shown),
-                    None => write!(f, "{} {}", rounded(value, 12), $shown),
+                    None => write!(f, "{} {}", $crate::digits::rounded(value, 12), $shown),
                 }
             }
         }

@@ -2,9 +2,9 @@
 
 pub use crate::any_unit::{Any, any, any_with_width, exact_any_text};
 pub use crate::any_unit_error::AnyUnitError;
-use crate::quantity::{
-    Angle, Area, Force, Length, LineStiffness, Pressure, Ratio, Volume, in_unit, rounded, to_si,
-};
+use crate::digits::shortest;
+pub use crate::digits::{rounded, significant};
+use crate::quantity::{Angle, Area, Force, Length, LineStiffness, Pressure, Ratio, Volume, in_unit, to_si};
 pub use crate::unit_error::UnitError;
 pub use crate::unit_expression::unit;
 
@@ -165,10 +165,7 @@ pub(crate) fn exact_text_in<Q: Quantity>(quantity: Q, unit: &str) -> String {
     let in_si = || format!("{si} {}", Q::UNITS.first().map_or("", |first| first.0)).trim_end().to_owned();
     let Some((unit, factor)) = find(Q::UNITS, |symbol| symbol == unit) else { return in_si() };
     let shown = in_unit(si, factor);
-    let shortest = [6, 9, 12, 15, 16, 17]
-        .into_iter()
-        .map(|digits| rounded(shown, digits))
-        .find(|value| to_si(*value, factor).to_bits() == si.to_bits());
+    let shortest = shortest(shown, |value| to_si(value, factor).to_bits() == si.to_bits());
     shortest.map_or_else(in_si, |value| format!("{value} {unit}"))
 }
 

@@ -65,7 +65,7 @@ fn share_of_changes(gate: &Gate, values: &[f64]) -> f64 {
 
 /// Four significant digits, as people write them.
 pub(super) fn four(value: f64) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    let rounded = bulge_muscles::units::rounded(value, 4);
     if rounded == 0.0 || (1e-5..1e7).contains(&rounded.abs()) {
         rounded.to_string()
     } else {
