@@ -5,12 +5,14 @@ mod characteristics;
 mod compare;
 mod curve;
 mod demo;
+mod diagnose;
 mod effects;
 mod failure;
 mod files;
 mod fit;
 mod muscle;
 mod shape;
+mod simulate;
 mod sketch;
 mod text;
 mod validate;
@@ -44,8 +46,12 @@ enum Command {
     Curve(curve::CurveCommand),
     /// Model against measurement: where it fails, and how the error falls as effects are added
     Compare(compare::CompareCommand),
+    /// Which physical effect is missing, and how sure that is
+    Diagnose(diagnose::DiagnoseCommand),
     /// Fit effects to measurements, and write the muscle with what was learnt
     Fit(fit::FitCommand),
+    /// Synthetic measurements with chosen (hidden) effects, noise and rig errors
+    Simulate(simulate::SimulateCommand),
     /// The catalogue of physical effects, and of the papers' force laws
     Effects(effects::EffectsCommand),
     /// Shipped muscles: list them, or print one as a file to start from
@@ -73,7 +79,9 @@ fn main() -> ExitCode {
         Command::Shape(command) => command.run(),
         Command::Curve(command) => command.run(),
         Command::Compare(command) => command.run(),
+        Command::Diagnose(command) => command.run(),
         Command::Fit(command) => command.run(),
+        Command::Simulate(command) => command.run(),
         Command::Effects(command) => command.run(),
         Command::Muscle(command) => command.run(),
         Command::Validate(command) => command.run(),

@@ -172,7 +172,11 @@ fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, In
 }
 
 impl<'a> Analysis<'a> {
-    fn new(data: &'a Data, muscle: &'a Muscle, options: &'a Options) -> Result<Self, InferenceError> {
+    pub(crate) fn new(
+        data: &'a Data,
+        muscle: &'a Muscle,
+        options: &'a Options,
+    ) -> Result<Self, InferenceError> {
         let record = Record::new(data, muscle.length().si());
         let used = used(data);
         if !used.mask.contains(&true) {
@@ -207,6 +211,15 @@ impl<'a> Analysis<'a> {
         Ok(model)
     }
 
+    /// The base with all effects that were asked for, without what data sheets leave open.
+    pub(crate) fn base_with_effects(&self) -> Result<Model, ModelError> {
+        let mut model = self.base(self.options.effects.len())?;
+        for effect in &self.options.effects {
+            model = model.with(effect, None)?;
+        }
+        Ok(model)
+    }
+
     /// The model with the first `count` effects.
     pub(crate) fn model(&self, count: usize) -> Result<Prepared, InferenceError> {
         let with_effects = || {
@@ -220,7 +233,7 @@ impl<'a> Analysis<'a> {
     }
 
     /// The rung of the first `count` effects: fitted if there is anything to fit.
-    fn climb(&self, count: usize, below: Option<&Climbed>) -> Result<Climbed, InferenceError> {
+    pub(crate) fn climb(&self, count: usize, below: Option<&Climbed>) -> Result<Climbed, InferenceError> {
         let prepared = self.model(count)?;
         let mut theta = prepared.model.start();
         if let Some(below) = below {
@@ -271,7 +284,7 @@ impl<'a> Analysis<'a> {
     }
 
     /// Whether the model pulls where the muscle does.
-    fn check_match(&self, first: &Climbed) -> Result<(), InferenceError> {
+    pub(crate) fn check_match(&self, first: &Climbed) -> Result<(), InferenceError> {
         let measured = self.record.force();
         let pushes =
             |row: &usize| first.force[*row] < 0.0 && measured[*row] > CLEARLY_PULLS * self.full_scale;
@@ -303,7 +316,7 @@ impl<'a> Analysis<'a> {
     }
 
     /// The noise of the force from here on, and the floor for people.
-    fn measure_noise(&mut self, first: &Climbed) -> Option<NoiseFloor> {
+    pub(crate) fn measure_noise(&mut self, first: &Climbed) -> Option<NoiseFloor> {
         let floor = self.noise_floor(first);
         let stated = self.muscle.instruments().force.map_or(0.0, |force| force.noise());
         let sd = if stated > 0.0 { stated } else { floor.as_ref().map_or(0.0, |floor| floor.sd_n) };

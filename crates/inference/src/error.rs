@@ -69,6 +69,14 @@ pub enum InferenceError {
         /// What it needs.
         needs: &'static str,
     },
+    /// A protocol that nobody can carry out, or with this muscle.
+    #[error("{what}; {instead}")]
+    Protocol {
+        /// What is wrong.
+        what: String,
+        /// What to write or do instead.
+        instead: String,
+    },
     /// The model has no prediction.
     #[error("{what}{source}")]
     Model {

@@ -17,6 +17,7 @@ pub(crate) struct Levels {
     pub(crate) of: Vec<usize>,
     /// Mean pressure of each level \[Pa\], rising.
     pub(crate) mean: Vec<f64>,
+    is_cut: bool,
 }
 
 impl Levels {
@@ -33,10 +34,11 @@ impl Levels {
             }
         }
         ends.push(order.len());
-        if ends.len() > MOST {
+        let is_cut = ends.len() > MOST;
+        if is_cut {
             ends = (1..=MOST).map(|k| k * order.len() / MOST).collect();
         }
-        let mut levels = Self { of: vec![0; record.len()], mean: Vec::new() };
+        let mut levels = Self { of: vec![0; record.len()], mean: Vec::new(), is_cut };
         let mut start = 0;
         for end in ends.into_iter().filter(|end| *end > 0) {
             if end <= start {
@@ -60,6 +62,11 @@ impl Levels {
                 |a: &usize, b: &usize| (self.mean[*a] - p).abs().total_cmp(&(self.mean[*b] - p).abs());
             self.of[row] = (0..self.mean.len()).min_by(nearest).unwrap_or(0);
         }
+    }
+
+    /// Whether the pressures have no levels of their own, but were cut into some.
+    pub(crate) fn is_cut(&self) -> bool {
+        self.is_cut
     }
 
     /// Number of levels.

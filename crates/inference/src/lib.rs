@@ -6,31 +6,69 @@
 //!
 //! Deliberately absent: equilibria (it asks `bulge-model`), files, and the decision which effect is missing.
 
+mod as_set;
+mod averaged;
+mod candidates;
+mod classes;
 mod compare;
 mod comparison;
+mod confirm;
+mod diagnose;
+mod diagnosis;
 mod error;
 mod extension;
 mod fit;
 mod fitting;
 mod floor;
 mod interval;
+mod law_of_record;
 mod levels;
 mod loops;
+mod misfit;
+mod noise_error;
+mod noise_estimate;
+mod noise_law;
 mod nuisance;
+mod null;
+mod orthonormal;
+mod planned;
 mod problem;
+mod protocol;
+mod protocol_file;
+mod random;
 mod requirements;
 mod residuals;
+mod restricted_likelihood;
 mod rivals;
 mod rows;
+mod scene;
+mod search;
+mod showing;
+mod simplex;
+mod simulation;
+mod smooth;
+mod space;
 mod stack;
+mod truth;
 mod weights;
+mod whitening;
 
 pub use compare::{Fitting, Options, compare, fit_effects};
 pub use comparison::{
     Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, LeftOut, LoopGap, NoiseFloor, Part,
     ResidualMap, Rival, Rung, Stack,
 };
+pub use diagnose::{DiagnoseOptions, diagnose};
+pub use diagnosis::*;
 pub use error::InferenceError;
 pub use extension::{Extension, extended};
 pub use fit::{Convergence, Fit, Fitted};
+pub use noise_error::NoiseError;
+pub use noise_law::{CorrelationTime, NoiseLaw, NoiseSource};
+pub use protocol::{Block, MOST_ROWS, Path, Protocol, ReadingNoise, ReadingSteps, RigErrors};
+pub use protocol_file::PROTOCOL_EXAMPLE;
+pub use random::Random;
+pub use simulation::{Simulation, simulate};
+pub use truth::{Ended, HiddenEffect, HiddenNumber, RigReadings, Truth};
 pub use weights::{Noise, effective_rows};
+pub use whitening::Whitening;

@@ -5,6 +5,8 @@ use bulge_numerics::least_squares::{Bounds, Residuals};
 use rayon::prelude::*;
 use std::ops::Range;
 
+use crate::whitening::Whitening;
+
 /// Rows that one core weights at a time.
 const ROWS: usize = 4096;
 
@@ -23,6 +25,8 @@ pub(crate) struct FitProblem<'a> {
     /// (place among the free, mean, standard deviation), in the coordinates of the search.
     priors: Vec<(usize, f64, f64)>,
     logarithmic: Vec<bool>,
+    /// Takes the correlations of the noise out, where they are known; standard deviations are then 1.
+    whitening: Option<&'a Whitening>,
     /// Equilibria of the evaluation before, from which the next one starts.
     warm: Warm,
 }
@@ -46,7 +50,21 @@ impl<'a> FitProblem<'a> {
         };
         let priors = free.iter().enumerate().filter_map(of_free).collect();
         let rows = (0..record.len()).filter(|row| used[*row]).collect();
-        Self { model, record, rows, sd, free, base, priors, logarithmic, warm: Warm::of_rows(used) }
+        let warm = Warm::of_rows(used);
+        Self { model, record, rows, sd, free, base, priors, logarithmic, whitening: None, warm }
+    }
+
+    /// The same for correlated noise: all rows of the record count, and the law says how much.
+    pub(crate) fn whitened(
+        model: &'a Model,
+        record: &'a Record,
+        whitening: &'a Whitening,
+        base: Vec<f64>,
+        priors: &[Option<(f64, f64)>],
+    ) -> Self {
+        let rows = record.len();
+        let plain = Self::new(model, record, &vec![true; rows], vec![1.0; rows], base, priors);
+        Self { whitening: Some(whitening), ..plain }
     }
 
     /// All numbers of the model, from the coordinates of the search.
@@ -99,6 +117,14 @@ impl<'a> FitProblem<'a> {
     }
 }
 
+impl FitProblem<'_> {
+    fn whiten(&self, columns: &mut [f64]) -> Result<(), ModelError> {
+        let Some(whitening) = self.whitening else { return Ok(()) };
+        let what = "the noise law doesn't suit the record";
+        whitening.apply(columns).map_err(|_| ModelError::NotFinite { rows: Vec::new(), what })
+    }
+}
+
 /// Places of the numbers that a fit may change.
 pub(crate) fn free(model: &Model) -> Vec<usize> {
     let is_free = |(_, p): &(usize, &ModelParameter)| !p.fixed;
@@ -145,6 +171,7 @@ impl Residuals for FitProblem<'_> {
             }
         });
         let n = self.rows.len();
+        self.whiten(&mut residuals[..n])?;
         for (residual, (place, mean, sd)) in residuals[n..].iter_mut().zip(&self.priors) {
             *residual = (coordinates[*place] - mean) / sd;
         }
@@ -162,6 +189,7 @@ impl Residuals for FitProblem<'_> {
                 }
             }
         });
+        self.whiten(used)?;
         for (line, (place, _, sd)) in priors.chunks_exact_mut(k).zip(&self.priors) {
             line.fill(0.0);
             line[*place] = 1.0 / sd;

@@ -196,3 +196,90 @@ impl Record {
         (thin, kept)
     }
 }
+
+impl Record {
+    /// The same moments with other forces \[N\], one for each; those that are missing stay.
+    #[must_use]
+    pub fn with_force(mut self, force: Vec<f64>) -> Self {
+        for (own, new) in self.force.iter_mut().zip(force) {
+            *own = new;
+        }
+        self
+    }
+
+    /// The same history at other pressures \[Pa\] and contractions, one for each moment; those that are missing stay.
+    #[must_use]
+    pub fn at(mut self, pressure: &[f64], contraction: &[f64]) -> Self {
+        for (moment, (pressure, contraction)) in self.moments.iter_mut().zip(pressure.iter().zip(contraction)) {
+            (moment.pressure, moment.contraction) = (*pressure, *contraction);
+        }
+        self
+    }
+
+    /// The record with groups of neighbouring rows replaced by their means, with the forces that go with them; `sweeps` are ranges of groups.
+    ///
+    /// Each group is within one sweep and one specimen, and moves in one direction: then the mean moment is one through which the muscle went. Steps and times
+    /// since the moment before are those between the means; a mean remembers the largest contraction of its last row.
+    ///
+    /// Returns none if a group is empty or names a row that isn't there, or the numbers of groups and forces differ.
+    #[must_use]
+    pub fn averaged(
+        &self,
+        groups: &[Vec<usize>],
+        force: Vec<f64>,
+        sweeps: Vec<Range<usize>>,
+    ) -> Option<Self> {
+        let mut moments: Vec<Moment> = Vec::with_capacity(groups.len());
+        for group in groups {
+            let members = group.iter().map(|row| self.moments.get(*row)).collect::<Option<Vec<_>>>()?;
+            let (first, last) = (members.first()?, members.last()?);
+            let mean = |of: &dyn Fn(&Moment) -> f64| {
+                members.iter().map(|m| of(m)).sum::<f64>() / members.len() as f64
+            };
+            // A group of one stays what it is, to the bit.
+            let moment = if members.len() == 1 {
+                **first
+            } else {
+                Moment {
+                    pressure: mean(&|m| m.pressure),
+                    contraction: mean(&|m| m.contraction),
+                    rate: mean(&|m| m.rate),
+                    pressure_rate: mean(&|m| m.pressure_rate),
+                    time: mean(&|m| m.time),
+                    clock: mean(&|m| m.clock),
+                    temperature: mean(&|m| m.temperature),
+                    cycle: mean(&|m| m.cycle),
+                    largest: last.largest,
+                    ..**first
+                }
+            };
+            moments.push(moment);
+        }
+        for sweep in &sweeps {
+            for i in sweep.clone() {
+                let begins = i == sweep.start;
+                let before = moments.get(i.saturating_sub(1)).copied();
+                let moment = moments.get_mut(i)?;
+                moment.begins = begins;
+                let Some(before) = before.filter(|_| !begins) else {
+                    (moment.since, moment.step) = (0.0, 0.0);
+                    continue;
+                };
+                moment.since = moment.clock - before.clock;
+                moment.step = if self.is_path { moment.contraction - before.contraction } else { 0.0 };
+            }
+        }
+        let sd = |all: &Vec<f64>| {
+            groups.iter().map(|g| g.iter().map(|row| all[*row]).sum::<f64>() / g.len() as f64).collect()
+        };
+        (force.len() == moments.len()).then(|| Self {
+            moments,
+            sweeps,
+            specimens: self.specimens.clone(),
+            force,
+            force_sd: self.force_sd.as_ref().map(sd),
+            is_path: self.is_path,
+            has_time: self.has_time,
+        })
+    }
+}

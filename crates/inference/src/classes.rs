@@ -1,0 +1,136 @@
+//! Which effects the data can't tell from a named one: rivals of the same evidence, or of a separation within the noise.
+//!
+//! ```text
+//! d_ee' = min over a' of |s_e - s_e' a'|,    s_e the whitened change of the force by e at its best numbers, without what the other numbers can do
+//! ```
+
+use bulge_effects::Effect;
+use bulge_model::{Model, ModelError, Wanted, Warm};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+use crate::confirm::Confirmed;
+use crate::scene::{Given, Scene};
+use crate::search::{Hypothesis, Stage, Tried, singles};
+use crate::space::dot;
+
+/// Rivals whose log evidence is less than this below stay in the class.
+pub(crate) const EVIDENCE: f64 = 3.0;
+/// And those that differ by fewer sigmas than this: one error in a thousand.
+pub(crate) const SEPARATION: f64 = 3.29;
+/// Rivals this far below in linear evidence aren't fitted.
+const FITTED: f64 = 8.0;
+/// Most rivals that are fitted.
+const MOST: usize = 8;
+
+/// An effect that could stand in for a named one.
+#[derive(Debug, Clone)]
+pub(crate) struct Rival {
+    pub(crate) effect: Arc<dyn Effect>,
+    /// Log evidence over that of the model without either.
+    pub(crate) log_evidence: f64,
+    /// Sigmas between the two, after the rival has done its best.
+    pub(crate) separation: f64,
+    /// Whether the data can't decide.
+    pub(crate) in_class: bool,
+    /// The fit, where one was made.
+    pub(crate) fit: Option<Confirmed>,
+}
+
+/// A named effect and what stands beside it.
+#[derive(Debug, Clone)]
+pub(crate) struct Class {
+    pub(crate) effect: Arc<dyn Effect>,
+    /// Log evidence over that of the model without it.
+    pub(crate) log_evidence: f64,
+    /// Its length in sigmas beside the others.
+    pub(crate) detectability: f64,
+    pub(crate) rivals: Vec<Rival>,
+}
+
+impl Given<'_> {
+    /// The class of one of the added effects, all others staying; and the stage without it.
+    pub(crate) fn class(
+        &self,
+        base: &Model,
+        stage: &Stage,
+        place: usize,
+    ) -> Result<(Class, Stage), ModelError> {
+        let effect = Arc::clone(&stage.added[place]);
+        let others: Vec<Arc<dyn Effect>> =
+            stage.added.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, e)| Arc::clone(e)).collect();
+        let without = self.confirm(base, &others, Some(&stage.confirmed), &[])?;
+        let without = self.stage(others, without)?;
+        let signal = self.signal(&stage.confirmed, &without)?;
+        let name = effect.card().name;
+        let own = without.scene.showings.effects.iter().position(|s| s.effect.card().name == name);
+        let ticket = own.map_or(0.0, |own| crate::search::ticket(&without.scene, own));
+        let log_evidence = stage.confirmed.log_evidence - without.confirmed.log_evidence + ticket;
+        let list = singles(&without.scene, &without.confirmed.prepared.model);
+        let best = list.iter().map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
+        let mut fitted = 0;
+        let rivals: Vec<(Hypothesis, f64, bool)> = list
+            .into_iter()
+            .filter(|h| Some(h.effects[0]) != own)
+            .map(|h| {
+                let separation = separation(&without.scene, h.effects[0], &signal);
+                let near = (h.log_evidence > best - FITTED || separation < SEPARATION) && fitted < MOST;
+                fitted += usize::from(near);
+                (h, separation, near)
+            })
+            .collect();
+        let rivals = rivals
+            .into_par_iter()
+            .map(|(hypothesis, separation, near)| {
+                let linear = hypothesis.log_evidence;
+                let place = hypothesis.effects[0];
+                let tried = near.then(|| self.fitted(base, &without, hypothesis));
+                self.rival(&without.scene, place, linear, separation, tried, log_evidence)
+            })
+            .collect();
+        let detectability = dot(&signal, &signal).sqrt();
+        Ok((Class { effect, log_evidence, detectability, rivals }, without))
+    }
+
+    fn rival(
+        &self,
+        scene: &Scene,
+        place: usize,
+        linear: f64,
+        separation: f64,
+        tried: Option<Tried>,
+        named: f64,
+    ) -> Rival {
+        let log_evidence = tried.as_ref().map_or(linear, |tried| tried.log_evidence);
+        let in_class = tried.is_some()
+            && log_evidence.is_finite()
+            && log_evidence > 0.0
+            && (log_evidence > named - EVIDENCE || separation < SEPARATION);
+        let effect = Arc::clone(&scene.showings.effects[place].effect);
+        Rival { effect, log_evidence, separation, in_class, fit: tried.and_then(|tried| tried.confirmed) }
+    }
+
+    /// What the effect changes, in the coordinates of the scene without it.
+    fn signal(&self, with: &Confirmed, without: &Stage) -> Result<Vec<f64>, ModelError> {
+        let model = &with.prepared.model;
+        let force = model.evaluate_warm(self.record, &with.theta, &Wanted::default(), &Warm::new())?.force;
+        let mut change: Vec<f64> =
+            force.iter().zip(&without.scene.force).map(|(with, without)| with - without).collect();
+        // The law was made for this record.
+        let _ = self.whitening.apply(&mut change);
+        change.resize(self.record.len() + without.scene.priors, 0.0);
+        Ok(without.scene.space.coordinates(&change))
+    }
+}
+
+/// What is left of a signal when an effect does its best to stand in for it, in sigmas.
+fn separation(scene: &Scene, effect: usize, signal: &[f64]) -> f64 {
+    let whole = dot(signal, signal);
+    let most = scene
+        .candidates
+        .iter()
+        .filter(|c| c.effect == effect)
+        .map(|c| c.explains(signal).gain)
+        .fold(0.0, f64::max);
+    (whole - most).max(0.0).sqrt()
+}

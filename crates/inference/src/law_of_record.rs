@@ -1,0 +1,175 @@
+//! The noise law of a record, found before any candidate is looked at, and then frozen: what a saturated model leaves, or repeats, or the data sheets.
+
+use bulge_effects::Catalogue;
+use bulge_measurements::PureError;
+use bulge_model::{ModelError, Record, Wanted, Warm};
+use bulge_muscles::Muscle;
+
+use crate::as_set::as_set;
+use crate::levels::Levels;
+use crate::noise_law::{NoiseLaw, NoiseSource};
+use crate::nuisance::Prepared;
+use crate::problem::free;
+use crate::showing::{Showing, Showings};
+use crate::smooth::smooth;
+use crate::space::{Space, norm};
+
+/// Independent columns of the saturated model, as a part of the rows: of smooth functions, and of all.
+const SMOOTH_PART: f64 = 0.25;
+const ALL_PART: f64 = 0.4;
+/// Most independent columns: with many rows more of them only cost time.
+const MOST: usize = 160;
+/// A column of which less than this part is new adds nothing.
+const NEW: f64 = 1e-4;
+/// Degrees of freedom below which data sheets are better than what is left.
+const FEWEST: f64 = 8.0;
+/// Degrees of freedom from which repeats of a static map are the noise.
+const ENOUGH_REPEATS: f64 = 15.0;
+
+/// What the law is found from.
+pub(crate) struct Source<'a> {
+    pub(crate) catalogue: &'a Catalogue,
+    pub(crate) muscle: &'a Muscle,
+    /// Means of rows, with their forces.
+    pub(crate) record: &'a Record,
+    /// Of the means \[N^2\], from noise of pressure and contraction.
+    pub(crate) input_variances: &'a [f64],
+    pub(crate) pure_error: Option<PureError>,
+}
+
+impl Source<'_> {
+    /// The law, under a base model with the numbers `theta`; none if nothing is known of the noise.
+    pub(crate) fn law(&self, prepared: &Prepared, theta: &[f64]) -> Result<Option<NoiseLaw>, ModelError> {
+        if let Some(pure) =
+            self.pure_error.filter(|p| !self.record.is_path() && p.degrees_of_freedom >= ENOUGH_REPEATS)
+        {
+            let says = format!("repeated points, {:.0} degrees of freedom", pure.degrees_of_freedom);
+            return Ok(Some(NoiseLaw::white(pure.sd_n, NoiseSource::Repeats, pure.degrees_of_freedom, says)));
+        }
+        let wanted = Wanted { parameters: free(&prepared.model), readings: false };
+        let prediction = prepared.model.evaluate_warm(self.record, theta, &wanted, &Warm::new())?;
+        let residual: Vec<f64> = self
+            .record
+            .force()
+            .iter()
+            .zip(&prediction.force)
+            .map(|(measured, force)| measured - force)
+            .collect();
+        let k = wanted.parameters.len();
+        let kept = as_set(self.record);
+        let at_levels = prepared.model.evaluate_warm(&kept, theta, &wanted, &Warm::new())?;
+        let tangents: Vec<Vec<f64>> =
+            (0..k).map(|j| at_levels.jacobian.iter().skip(j).step_by(k).copied().collect()).collect();
+        let showings = Showings::of(self.catalogue, prepared, theta, &kept, &at_levels.force)?;
+        let columns: Vec<&Vec<f64>> = usual(&showings).into_iter().flat_map(|s| &s.columns).collect();
+        let design = saturated(self.record, &tangents, &columns);
+        let n = self.record.len();
+        let stated = self.muscle.instruments().force.map_or(0.0, |force| force.noise());
+        let left = n as f64 - design.len() as f64;
+        let found = (left >= FEWEST)
+            .then(|| {
+                let rows: Vec<f64> =
+                    (0..n).flat_map(|i| design.iter().map(move |column| column[i])).collect();
+                NoiseLaw::estimate(self.record, &vec![true; n], self.input_variances, &rows, &residual).ok()
+            })
+            .flatten();
+        Ok(found.or_else(|| {
+            (stated > 0.0).then(|| {
+                let says = "the data sheet of the load cell: these rows are too few to say".to_owned();
+                NoiseLaw::white(stated, NoiseSource::Instruments, 0.0, says)
+            })
+        }))
+    }
+}
+
+/// One form of each effect, the middle one: all forms of those that go with the clock would follow the sweeps one by one.
+fn usual(showings: &Showings) -> Vec<&Showing> {
+    showings
+        .showings
+        .chunk_by(|a, b| a.effect == b.effect)
+        .filter_map(|forms| forms.get(forms.len() / 2))
+        .collect()
+}
+
+/// The saturated model as orthonormal columns: within the sweeps what the base can do, smooth functions, and what effects could do besides; from sweep
+/// to sweep only what is set: pressure, specimen, temperature, and the clock. More than that from sweep to sweep is an offset of the sweep: with a rich
+/// model there too nothing would be left to find offsets from.
+fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> Vec<Vec<f64>> {
+    let n = record.len() as f64;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "numbers of columns")]
+    let [smooth_most, most] = [SMOOTH_PART, ALL_PART].map(|part| (part * n) as usize);
+    let mut space = Space::without(&[]);
+    for column in between(record) {
+        enter_new(&mut space, &column);
+    }
+    for tangent in tangents {
+        enter_new(&mut space, &within(record, tangent));
+    }
+    for function in smooth(record) {
+        if space.len() >= smooth_most.max(tangents.len() + 1) {
+            break;
+        }
+        enter_new(&mut space, &within(record, &function.values));
+    }
+    // What is least like all before enters first, so that few columns stand for many effects.
+    let mut left: Vec<(f64, Vec<f64>)> = effects
+        .iter()
+        .map(|column| {
+            let column = within(record, column);
+            (space.outside(&column).sqrt() / norm(&column).max(f64::MIN_POSITIVE), column)
+        })
+        .collect();
+    left.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for (_, column) in left {
+        if space.len() >= most.clamp(tangents.len() + 1, MOST) {
+            break;
+        }
+        enter_new(&mut space, &column);
+    }
+    space.into_units()
+}
+
+/// A column less its mean over each sweep.
+fn within(record: &Record, column: &[f64]) -> Vec<f64> {
+    let mut left = column.to_vec();
+    if !record.is_path() {
+        // In a static map a sweep is no run: there are no offsets to be told.
+        return left;
+    }
+    for sweep in record.sweeps() {
+        let values = &mut left[sweep.clone()];
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        for value in values {
+            *value -= mean;
+        }
+    }
+    left
+}
+
+/// What is set from sweep to sweep.
+fn between(record: &Record) -> Vec<Vec<f64>> {
+    let kept = as_set(record);
+    let levels = Levels::of(record, &vec![true; record.len()]).len();
+    let of = |f: &dyn Fn(&bulge_effects::Moment) -> f64| kept.moments().iter().map(f).collect::<Vec<f64>>();
+    let largest = kept.moments().iter().map(|m| m.pressure).fold(f64::MIN_POSITIVE, f64::max);
+    let mut columns = vec![vec![1.0; record.len()], of(&|m| m.pressure / largest)];
+    if levels > 3 {
+        columns.push(of(&|m| (m.pressure / largest).powi(2)));
+    }
+    for specimen in 1..record.specimens().len() {
+        columns.push(of(&|m| f64::from(u8::from(m.specimen as usize == specimen))));
+    }
+    if kept.moments().iter().any(|m| m.temperature != 0.0) {
+        columns.push(of(&|m| m.temperature));
+    }
+    if record.has_time() && record.sweeps().len() > levels {
+        columns.push(of(&|m| m.clock));
+    }
+    columns
+}
+
+fn enter_new(space: &mut Space, column: &[f64]) {
+    if space.outside(column).sqrt() > NEW * norm(column) {
+        space.enter(column);
+    }
+}

@@ -1,0 +1,196 @@
+//! A model at its best numbers, seen from where the rest of the catalogue stands: the misfit that is left, and what each effect could do about it.
+
+use bulge_effects::Catalogue;
+use bulge_model::{ModelError, Record, Wanted, Warm};
+
+use crate::as_set::as_set;
+use crate::candidates::Candidate;
+use crate::nuisance::Prepared;
+use crate::null::{Null, Statistics};
+use crate::problem::free;
+use crate::showing::Showings;
+use crate::smooth::{Variable, smooth};
+use crate::space::{Space, dot, norm};
+use crate::whitening::Whitening;
+
+/// A smooth function adds nothing if less than this part of it is new.
+const NEW: f64 = 1e-3;
+/// Smooth functions for at most this part of the rows that count as independent.
+const PART: f64 = 0.25;
+
+/// Everything that stays the same while models are tried.
+#[derive(Clone, Copy)]
+pub(crate) struct Given<'a> {
+    pub(crate) catalogue: &'a Catalogue,
+    /// Means of rows, with their forces.
+    pub(crate) record: &'a Record,
+    pub(crate) whitening: &'a Whitening,
+    /// Degrees of freedom of the noise law.
+    pub(crate) freedom: f64,
+    pub(crate) seed: u64,
+}
+
+/// A smooth function outside what the model's numbers can do.
+#[derive(Debug, Clone)]
+pub(crate) struct Direction {
+    pub(crate) variable: Variable,
+    /// Unit vector in coordinates.
+    pub(crate) unit: Vec<f64>,
+    /// The function \[N\] that goes with one standard deviation of its coordinate.
+    pub(crate) values: Vec<f64>,
+}
+
+/// The misfit of a model, and all candidates, in coordinates.
+pub(crate) struct Scene {
+    pub(crate) showings: Showings,
+    pub(crate) candidates: Vec<Candidate>,
+    pub(crate) smooth: Vec<Direction>,
+    /// The coordinates.
+    pub(crate) space: Space,
+    /// Number of priors, the last rows of every column.
+    pub(crate) priors: usize,
+    /// The misfit in coordinates.
+    pub(crate) z: Vec<f64>,
+    /// Number of directions that the model's own numbers take.
+    pub(crate) taken: usize,
+    /// Force of the model at the means \[N\].
+    pub(crate) force: Vec<f64>,
+}
+
+impl Given<'_> {
+    /// The scene of a model with the numbers `theta`.
+    pub(crate) fn scene(&self, prepared: &Prepared, theta: &[f64]) -> Result<Scene, ModelError> {
+        let wanted = Wanted { parameters: free(&prepared.model), readings: false };
+        let plain = Wanted::default();
+        let prediction = prepared.model.evaluate_warm(self.record, theta, &plain, &Warm::new())?;
+        // Columns are functions of what was set, not of what was read.
+        let kept = as_set(self.record);
+        let at_levels = prepared.model.evaluate_warm(&kept, theta, &wanted, &Warm::new())?;
+        let priors: Vec<(usize, f64, f64)> = wanted
+            .parameters
+            .iter()
+            .enumerate()
+            .filter(|(_, i)| prepared.nuisance[**i])
+            .filter_map(|(column, i)| {
+                prepared.priors[*i].map(|(mean, sd)| (column, (mean - theta[*i]) / sd, 1.0 / sd))
+            })
+            .collect();
+        let whiten = |column: &[f64]| -> Vec<f64> {
+            let mut white = column.to_vec();
+            // The law was made for this record: there is nothing to go wrong.
+            let _ = self.whitening.apply(&mut white);
+            white.resize(column.len() + priors.len(), 0.0);
+            white
+        };
+        let k = wanted.parameters.len();
+        let rows = self.record.len();
+        let raw: Vec<Vec<f64>> =
+            (0..k).map(|j| at_levels.jacobian.iter().skip(j).step_by(k).copied().collect()).collect();
+        let tangents: Vec<Vec<f64>> = raw
+            .iter()
+            .enumerate()
+            .map(|(j, column)| {
+                let mut white = whiten(column);
+                for (place, prior) in priors.iter().enumerate().filter(|(_, prior)| prior.0 == j) {
+                    white[rows + place] = prior.2;
+                }
+                white
+            })
+            .collect();
+        let residual: Vec<f64> = self
+            .record
+            .force()
+            .iter()
+            .zip(&prediction.force)
+            .map(|(measured, force)| measured - force)
+            .collect();
+        let mut misfit = whiten(&residual);
+        for (place, prior) in priors.iter().enumerate() {
+            misfit[rows + place] = prior.1;
+        }
+        let mut space = Space::without(&tangents);
+        let taken = space.taken();
+        let showings = Showings::of(self.catalogue, prepared, theta, &kept, &at_levels.force)?;
+        let candidates = Candidate::all(&showings, &mut space, &whiten);
+        let smooth = self.directions(&raw, &tangents, &mut space, &whiten);
+        let z = space.coordinates(&misfit);
+        Ok(Scene {
+            showings,
+            candidates,
+            smooth,
+            space,
+            priors: priors.len(),
+            z,
+            taken,
+            force: prediction.force,
+        })
+    }
+
+    /// Smooth functions, the smoothest first, each without those before it and without what the model's own numbers can do; `raw` are the model's tangents
+    /// \[N\], `tangents` the same whitened.
+    fn directions(
+        &self,
+        raw: &[Vec<f64>],
+        tangents: &[Vec<f64>],
+        space: &mut Space,
+        whiten: &dyn Fn(&[f64]) -> Vec<f64>,
+    ) -> Vec<Direction> {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of rows")]
+        let most = (PART * self.record.len() as f64) as usize;
+        // White units with the functions that they are made of.
+        let mut known: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+        for (raw, white) in raw.iter().zip(tangents) {
+            known.extend(orthogonal(raw.clone(), white.clone(), &known));
+        }
+        let mut found: Vec<Direction> = Vec::new();
+        for function in smooth(self.record) {
+            if found.len() >= most {
+                break;
+            }
+            let white = whiten(&function.values);
+            let Some((values, unit)) = orthogonal(function.values, white, &known) else { continue };
+            found.push(Direction { variable: function.variable, unit: space.enter(&unit), values: values.clone() });
+            known.push((values, unit));
+        }
+        found
+    }
+}
+
+/// A function without what others span, so that its white column has the length 1; none if nothing of it is new.
+fn orthogonal(mut raw: Vec<f64>, mut white: Vec<f64>, known: &[(Vec<f64>, Vec<f64>)]) -> Option<(Vec<f64>, Vec<f64>)> {
+    let whole = norm(&white);
+    for _ in 0..2 {
+        for (other, unit) in known {
+            let part = dot(&white, unit);
+            for (value, u) in white.iter_mut().zip(unit) {
+                *value -= part * u;
+            }
+            for (value, o) in raw.iter_mut().zip(other) {
+                *value -= part * o;
+            }
+        }
+    }
+    let left = norm(&white);
+    if left <= NEW * whole {
+        return None;
+    }
+    for value in raw.iter_mut().chain(&mut white) {
+        *value /= left;
+    }
+    Some((raw, white))
+}
+
+impl Scene {
+    fn units(&self) -> Vec<Vec<f64>> {
+        self.smooth.iter().map(|direction| direction.unit.clone()).collect()
+    }
+
+    /// The statistics of the misfit, and how often chance alone gives as much: of the screen and of the smooth test.
+    pub(crate) fn chance(&self, given: &Given<'_>) -> (Statistics, Null, [f64; 2]) {
+        let units = self.units();
+        let found = Statistics::of(&self.z, &self.candidates, &units);
+        let null = Null::of(self.z.len(), &self.candidates, &units, given.freedom, given.seed);
+        let chance = null.chance(&found);
+        (found, null, chance)
+    }
+}
