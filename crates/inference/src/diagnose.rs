@@ -92,7 +92,7 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
         catalogue: &options.base.catalogue,
         record: &record,
         whitening: &whitening,
-        freedom: law.degrees_of_freedom,
+        law: &law,
         seed: options.seed,
     };
     let model = analysis.base_with_effects().map_err(about)?;

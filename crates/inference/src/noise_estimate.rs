@@ -335,6 +335,7 @@ impl<'a> Estimate<'a> {
             offset_n: sd(components.offset),
             source: NoiseSource::Saturated,
             degrees_of_freedom: self.likelihood.freedom(),
+            offset_freedom: self.likelihood.offset_freedom(),
             says,
         }
     }

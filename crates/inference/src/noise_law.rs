@@ -27,6 +27,8 @@ pub struct NoiseLaw {
     pub source: NoiseSource,
     /// Rows less independent columns that it was found from; 0 for a data sheet.
     pub degrees_of_freedom: f64,
+    /// Sweeps less what the saturated model can follow from sweep to sweep: degrees of freedom of the offsets.
+    pub offset_freedom: f64,
     /// In words: what it was found from, and what was left out, and why.
     pub says: String,
 }
@@ -67,7 +69,16 @@ impl NoiseLaw {
     /// Independent noise of standard deviation `white_n` \[N\].
     #[must_use]
     pub fn white(white_n: f64, source: NoiseSource, degrees_of_freedom: f64, says: String) -> Self {
-        Self { white_n, correlated_n: 0.0, time: None, offset_n: 0.0, source, degrees_of_freedom, says }
+        Self {
+            white_n,
+            correlated_n: 0.0,
+            time: None,
+            offset_n: 0.0,
+            source,
+            degrees_of_freedom,
+            offset_freedom: 0.0,
+            says,
+        }
     }
 
     /// Whether rows are independent under the law.

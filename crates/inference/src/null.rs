@@ -13,6 +13,8 @@ use crate::candidates::Candidate;
 use crate::random::Random;
 use crate::space::dot;
 
+/// Largest ratio of the true to the estimated variance that is drawn.
+const MOST_RATIO: f64 = 50.0;
 /// Draws.
 const DRAWS: usize = 2000;
 /// Draws from one stream of random numbers.
@@ -27,6 +29,38 @@ pub(crate) struct Statistics {
     pub(crate) screen: f64,
     /// Adaptive smooth test.
     pub(crate) smooth: f64,
+}
+
+/// What the misfit of a right model is drawn from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Chance<'a> {
+    /// Number of coordinates.
+    pub(crate) coordinates: usize,
+    /// Degrees of freedom of the noise law.
+    pub(crate) freedom: f64,
+    /// One standard deviation of the offset of each sweep, in coordinates.
+    pub(crate) offsets: &'a [Vec<f64>],
+    /// Degrees of freedom of the offsets.
+    pub(crate) offset_freedom: f64,
+}
+
+impl Chance<'_> {
+    /// The misfit of a right model, in coordinates. Noise may be larger than the law says, as it was estimated; offsets from few sweeps may be much larger.
+    pub(crate) fn draw(&self, random: &mut Random) -> Vec<f64> {
+        let scale = noise_ratio(random, self.freedom);
+        let mut z: Vec<f64> = (0..self.coordinates).map(|_| scale * random.normal()).collect();
+        if self.offsets.is_empty() {
+            return z;
+        }
+        let excess = (noise_ratio(random, self.offset_freedom).powi(2).min(MOST_RATIO) - 1.0).max(0.0).sqrt();
+        for offset in self.offsets {
+            let size = excess * random.normal();
+            for (value, o) in z.iter_mut().zip(offset) {
+                *value += size * o;
+            }
+        }
+        z
+    }
 }
 
 /// The distribution of both under chance, sorted.
@@ -48,12 +82,11 @@ impl Statistics {
 }
 
 impl Null {
-    /// For `coordinates` coordinates and a noise law with so many degrees of freedom.
+    /// Of the catalogue and the smooth functions.
     pub(crate) fn of(
-        coordinates: usize,
+        chance: &Chance<'_>,
         candidates: &[Candidate],
         smooth: &[Vec<f64>],
-        freedom: f64,
         seed: u64,
     ) -> Self {
         let drawn: Vec<Statistics> = (0..DRAWS.div_ceil(PER_STREAM))
@@ -61,11 +94,7 @@ impl Null {
             .flat_map_iter(|stream| {
                 let mut random = Random::new(seed, stream as u64);
                 (0..PER_STREAM)
-                    .map(|_| {
-                        let scale = noise_ratio(&mut random, freedom);
-                        let z: Vec<f64> = (0..coordinates).map(|_| scale * random.normal()).collect();
-                        Statistics::of(&z, candidates, smooth)
-                    })
+                    .map(|_| Statistics::of(&chance.draw(&mut random), candidates, smooth))
                     .collect::<Vec<_>>()
             })
             .collect();
@@ -98,7 +127,7 @@ impl Null {
 
 /// Estimated over true standard deviation is sqrt(chi^2/freedom): what z is then too large by.
 pub(crate) fn noise_ratio(random: &mut Random, freedom: f64) -> f64 {
-    let freedom = freedom.max(2.0);
+    let freedom = freedom.max(1.0);
     let part = 2.0 / (9.0 * freedom);
     (1.0 - part + random.normal() * part.sqrt()).max(0.05).powf(-1.5)
 }
@@ -141,25 +170,29 @@ mod tests {
         )
     }
 
+    fn white(freedom: f64) -> Chance<'static> {
+        Chance { coordinates: 10, freedom, offsets: &[], offset_freedom: 0.0 }
+    }
+
     #[test]
     fn the_largest_of_ten_normal_numbers() {
         let candidates: Vec<Candidate> = (0..10).map(|i| axis(i, Sign::Any)).collect();
-        let null = Null::of(10, &candidates, &[], 1e9, 1);
+        let null = Null::of(&white(1e9), &candidates, &[], 1);
         // P(max z_i^2 < x) = erf(sqrt(x/2))^10: 95 % at x = 7.84.
         assert!((null.score_at(0.05) - 7.84).abs() < 0.6, "{}", null.score_at(0.05));
         // Of one sign: half as many.
         let signed: Vec<Candidate> = (0..10).map(|i| axis(i, Sign::Positive)).collect();
-        let one_sided = Null::of(10, &signed, &[], 1e9, 1).score_at(0.05);
+        let one_sided = Null::of(&white(1e9), &signed, &[], 1).score_at(0.05);
         assert!((one_sided - 6.58).abs() < 0.6, "{one_sided}");
         // Noise that is hardly known: more.
-        assert!(Null::of(10, &candidates, &[], 8.0, 1).score_at(0.05) > 9.0);
+        assert!(Null::of(&white(8.0), &candidates, &[], 1).score_at(0.05) > 9.0);
     }
 
     #[test]
     fn chance_is_uniform_under_the_null() {
         let candidates: Vec<Candidate> = (0..4).map(|i| axis(i, Sign::Any)).collect();
         let smooth: Vec<Vec<f64>> = (0..6).map(|i| axis(i, Sign::Any).columns.remove(0)).collect();
-        let null = Null::of(10, &candidates, &smooth, 60.0, 3);
+        let null = Null::of(&white(60.0), &candidates, &smooth, 3);
         let mut random = Random::new(9, 0);
         let mut below = [0_usize; 2];
         for _ in 0..2000 {
@@ -177,7 +210,7 @@ mod tests {
     #[test]
     fn a_bump_among_the_smoothest_functions_is_seen() {
         let smooth: Vec<Vec<f64>> = (0..10).map(|i| axis(i, Sign::Any).columns.remove(0)).collect();
-        let null = Null::of(10, &[], &smooth, 1e9, 5);
+        let null = Null::of(&white(1e9), &[], &smooth, 5);
         let mut z = vec![0.7; 10];
         z[3] = 6.0;
         assert!(null.chance(&Statistics::of(&z, &[], &smooth))[1] < 0.01);

@@ -6,7 +6,8 @@ use bulge_model::{ModelError, Record, Wanted, Warm};
 use crate::as_set::as_set;
 use crate::candidates::Candidate;
 use crate::nuisance::Prepared;
-use crate::null::{Null, Statistics};
+use crate::noise_law::NoiseLaw;
+use crate::null::{Chance, Null, Statistics};
 use crate::problem::free;
 use crate::showing::Showings;
 use crate::smooth::{Variable, smooth};
@@ -25,8 +26,8 @@ pub(crate) struct Given<'a> {
     /// Means of rows, with their forces.
     pub(crate) record: &'a Record,
     pub(crate) whitening: &'a Whitening,
-    /// Degrees of freedom of the noise law.
-    pub(crate) freedom: f64,
+    /// The noise of the means.
+    pub(crate) law: &'a NoiseLaw,
     pub(crate) seed: u64,
 }
 
@@ -49,6 +50,8 @@ pub(crate) struct Scene {
     pub(crate) space: Space,
     /// Number of priors, the last rows of every column.
     pub(crate) priors: usize,
+    /// One standard deviation of the offset of each sweep, in coordinates; none if the law has no offsets.
+    pub(crate) offsets: Vec<Vec<f64>>,
     /// The misfit in coordinates.
     pub(crate) z: Vec<f64>,
     /// Number of directions that the model's own numbers take.
@@ -114,16 +117,30 @@ impl Given<'_> {
         let candidates = Candidate::all(&showings, &mut space, &whiten);
         let smooth = self.directions(&raw, &tangents, &mut space, &whiten);
         let z = space.coordinates(&misfit);
+        let offsets = self.offsets(&space, &whiten);
         Ok(Scene {
             showings,
             candidates,
             smooth,
             space,
+            offsets,
             priors: priors.len(),
             z,
             taken,
             force: prediction.force,
         })
+    }
+
+    fn offsets(&self, space: &Space, whiten: &dyn Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
+        if self.law.offset_n <= 0.0 {
+            return Vec::new();
+        }
+        let of = |sweep: &std::ops::Range<usize>| {
+            let mut column = vec![0.0; self.record.len()];
+            column[sweep.clone()].fill(self.law.offset_n);
+            space.coordinates(&whiten(&column))
+        };
+        self.record.sweeps().iter().map(of).collect()
     }
 
     /// Smooth functions, the smoothest first, each without those before it and without what the model's own numbers can do; `raw` are the model's tangents
@@ -189,7 +206,13 @@ impl Scene {
     pub(crate) fn chance(&self, given: &Given<'_>) -> (Statistics, Null, [f64; 2]) {
         let units = self.units();
         let found = Statistics::of(&self.z, &self.candidates, &units);
-        let null = Null::of(self.z.len(), &self.candidates, &units, given.freedom, given.seed);
+        let chance = Chance {
+            coordinates: self.z.len(),
+            freedom: given.law.degrees_of_freedom,
+            offsets: &self.offsets,
+            offset_freedom: given.law.offset_freedom,
+        };
+        let null = Null::of(&chance, &self.candidates, &units, given.seed);
         let chance = null.chance(&found);
         (found, null, chance)
     }
