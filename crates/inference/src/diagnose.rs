@@ -14,7 +14,9 @@ use crate::diagnosis::{
     CandidateResult, DiagnosedData, DiagnosedNoise, Diagnosis, LadderStep, Missing, ParameterResult,
     Remaining, RivalResult, Verdict,
 };
+use crate::diagnosis::ExplainedStep;
 use crate::error::InferenceError;
+use crate::explained::{explained, surface};
 use crate::law_of_record::Source;
 use crate::misfit::{located, misfit};
 use crate::noise_law::NoiseLaw;
@@ -152,16 +154,28 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
         ladder,
         noise_floor_n: sd,
         r#where: located(&search.stages[0].scene),
+        explained: steps_explained(&record, &search),
         remaining: Remaining {
             structured: !last.adequacy.holds(),
             misfit_n,
             misfit_interval_n,
             hints: Vec::new(),
+            surface: surface(&record, &last.scene),
         },
         next_experiment: None,
         warnings: comparison.warnings.clone(),
         comparison,
     })
+}
+
+/// Each step of the search with what it explained.
+fn steps_explained(record: &bulge_model::Record, search: &Search) -> Vec<ExplainedStep> {
+    let step = |pair: &[Stage]| {
+        let new = &pair[1].added[pair[0].added.len().min(pair[1].added.len())..];
+        let names: Vec<&str> = new.iter().map(|effect| effect.card().name).collect();
+        explained(&names.join(" + "), record, &pair[0].scene.force, &pair[1].scene.force)
+    };
+    search.stages.windows(2).map(step).collect()
 }
 
 /// Standard deviation of a single row: the law of the means, and what the means have averaged.

@@ -31,6 +31,8 @@ pub struct Diagnosis {
     pub noise_floor_n: f64,
     /// On what the misfit of the base depends.
     pub r#where: Vec<Located>,
+    /// What each added effect explains of the misfit before it: curves to plot.
+    pub explained: Vec<ExplainedStep>,
     /// What is left.
     pub remaining: Remaining,
     /// What to measure next, if that would decide something.
@@ -189,6 +191,47 @@ pub struct Remaining {
     pub misfit_interval_n: [f64; 2],
     /// What it looks like, in words.
     pub hints: Vec<String>,
+    /// The systematic misfit over pressure, contraction and direction, where there is structure.
+    pub surface: Vec<SurfaceCurve>,
+}
+
+/// What an effect explains, when it is added.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExplainedStep {
+    /// The effect.
+    pub effect: String,
+    /// One curve for each pressure level and direction.
+    pub curves: Vec<ExplainedCurve>,
+}
+
+/// Misfit over contraction, at one pressure and in one direction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExplainedCurve {
+    /// Mean pressure of the level \[Pa\].
+    pub pressure_pa: f64,
+    /// +1 shortening, -1 lengthening, 0 at rest.
+    pub direction: f64,
+    /// Bin centres.
+    pub contraction: Vec<f64>,
+    /// Mean misfit of the model before the effect was added, measured - model \[N\].
+    pub before_n: Vec<f64>,
+    /// What the effect (and the refit of all numbers) changes \[N\].
+    pub explained_n: Vec<f64>,
+}
+
+/// Systematic misfit over contraction, at one pressure and in one direction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SurfaceCurve {
+    /// Mean pressure of the level \[Pa\].
+    pub pressure_pa: f64,
+    /// +1 shortening, -1 lengthening, 0 at rest.
+    pub direction: f64,
+    /// Bin centres.
+    pub contraction: Vec<f64>,
+    /// Misfit, smoothed \[N\].
+    pub misfit_n: Vec<f64>,
+    /// Its standard deviation \[N\].
+    pub sd_n: Vec<f64>,
 }
 
 /// What to measure next.

@@ -23,10 +23,6 @@ const MOST: usize = 160;
 const NEW: f64 = 1e-4;
 /// Degrees of freedom below which data sheets are better than what is left.
 const FEWEST: f64 = 8.0;
-/// Degrees of freedom from which offsets of sweeps are told from physics.
-const ENOUGH_OFFSETS: f64 = 2.0;
-/// Offsets of sweeps where they can't be told, as a part of the other noise.
-const ASSUMED_OFFSETS: f64 = 0.5;
 /// Degrees of freedom from which repeats of a static map are the noise.
 const ENOUGH_REPEATS: f64 = 15.0;
 
@@ -77,26 +73,12 @@ impl Source<'_> {
                 NoiseLaw::estimate(self.record, &vec![true; n], self.input_variances, &rows, &residual).ok()
             })
             .flatten();
-        let found = found.map(|law| self.with_offsets(law));
         Ok(found.or_else(|| {
             (stated > 0.0).then(|| {
                 let says = "the data sheet of the load cell: these rows are too few to say".to_owned();
                 NoiseLaw::white(stated, NoiseSource::Instruments, 0.0, says)
             })
         }))
-    }
-}
-
-impl Source<'_> {
-    /// Offsets of sweeps that these data can't tell from physics are there all the same, in most rigs: then they are assumed.
-    fn with_offsets(&self, law: NoiseLaw) -> NoiseLaw {
-        let told = law.offset_n > 0.0 || law.offset_freedom >= ENOUGH_OFFSETS;
-        if told || !self.record.is_path() || self.record.sweeps().len() < 2 {
-            return law;
-        }
-        let offset_n = ASSUMED_OFFSETS * law.white_n.hypot(law.correlated_n);
-        let says = format!("{}; assumed are offsets of half the other noise: repeat sweeps to know them", law.says);
-        NoiseLaw { offset_n, offset_freedom: law.offset_freedom.max(1.0), says, ..law }
     }
 }
 

@@ -5,6 +5,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::noise_error::NoiseError;
 use crate::noise_law::{CorrelationTime, NoiseLaw, NoiseSource};
+use crate::offset_belief::{offset_beliefs, rms};
 use crate::orthonormal::Basis;
 use crate::restricted_likelihood::RestrictedLikelihood;
 use crate::simplex::{Search, minimise};
@@ -152,6 +153,8 @@ struct Estimate<'a> {
     times: Option<(f64, f64)>,
     /// What can be told.
     parts: Parts,
+    /// Whether there may be offsets, told or not.
+    asks_for_offsets: bool,
     /// Why not more.
     limits: Vec<&'static str>,
 }
@@ -184,7 +187,8 @@ impl<'a> Estimate<'a> {
             .then(|| likelihood.on(&leading(layout, FIRST_ROWS)))
             .flatten()
             .filter(|first| first.freedom() > 0.5 * first.layout.rows.len() as f64);
-        Self { likelihood, first, times, parts, limits }
+        let asks_for_offsets = is_path && sweeps >= 2 && likelihood.freedom() >= ENOUGH;
+        Self { likelihood, first, times, parts, asks_for_offsets, limits }
     }
 
     /// Bounds of the coordinates: logarithms of the white variance (if the scale is fixed), of the correlated one and its time, of the offsets'.
@@ -324,6 +328,12 @@ impl<'a> Estimate<'a> {
             |found| (found.components, found.factor),
         );
         let sd = |variance: f64| (variance * factor).sqrt();
+        let beliefs = if self.asks_for_offsets {
+            let [white, correlated] = [components.white, components.correlated].map(|variance| variance * factor);
+            offset_beliefs(self.likelihood, &Components { white, correlated, ..components })
+        } else {
+            Vec::new()
+        };
         let time = match unit {
             CorrelationTime::Seconds(_) => CorrelationTime::Seconds(components.time),
             CorrelationTime::Rows(_) => CorrelationTime::Rows(components.time),
@@ -332,7 +342,8 @@ impl<'a> Estimate<'a> {
             white_n: sd(components.white),
             correlated_n: sd(components.correlated),
             time: (components.correlated > 0.0).then_some(time),
-            offset_n: sd(components.offset),
+            offset_n: if beliefs.is_empty() { sd(components.offset) } else { rms(&beliefs) },
+            offset_beliefs: beliefs,
             source: NoiseSource::Saturated,
             degrees_of_freedom: self.likelihood.freedom(),
             offset_freedom: self.likelihood.offset_freedom(),

@@ -3,6 +3,7 @@
 use bulge_model::Record;
 use serde::Serialize;
 
+use crate::offset_belief::OffsetBelief;
 use crate::random::Random;
 use crate::whitening::{gap, moment_of};
 
@@ -27,6 +28,8 @@ pub struct NoiseLaw {
     pub source: NoiseSource,
     /// Rows less independent columns that it was found from; 0 for a data sheet.
     pub degrees_of_freedom: f64,
+    /// How large the offsets of the sweeps may be; `offset_n` is the root of the mean square. Empty where there are none.
+    pub offset_beliefs: Vec<OffsetBelief>,
     /// Sweeps less what the saturated model can follow from sweep to sweep: degrees of freedom of the offsets.
     pub offset_freedom: f64,
     /// In words: what it was found from, and what was left out, and why.
@@ -76,6 +79,7 @@ impl NoiseLaw {
             offset_n: 0.0,
             source,
             degrees_of_freedom,
+            offset_beliefs: Vec::new(),
             offset_freedom: 0.0,
             says,
         }

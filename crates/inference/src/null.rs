@@ -10,11 +10,10 @@
 use rayon::prelude::*;
 
 use crate::candidates::Candidate;
+use crate::offset_belief::OffsetBelief;
 use crate::random::Random;
 use crate::space::dot;
 
-/// Largest ratio of the true to the estimated variance that is drawn.
-const MOST_RATIO: f64 = 50.0;
 /// Draws.
 const DRAWS: usize = 2000;
 /// Draws from one stream of random numbers.
@@ -40,8 +39,10 @@ pub(crate) struct Chance<'a> {
     pub(crate) freedom: f64,
     /// One standard deviation of the offset of each sweep, in coordinates.
     pub(crate) offsets: &'a [Vec<f64>],
-    /// Degrees of freedom of the offsets.
-    pub(crate) offset_freedom: f64,
+    /// That standard deviation \[N\].
+    pub(crate) offset_n: f64,
+    /// How large it may be in truth.
+    pub(crate) beliefs: &'a [OffsetBelief],
 }
 
 impl Chance<'_> {
@@ -52,7 +53,13 @@ impl Chance<'_> {
         if self.offsets.is_empty() {
             return z;
         }
-        let excess = (noise_ratio(random, self.offset_freedom).powi(2).min(MOST_RATIO) - 1.0).max(0.0).sqrt();
+        let mut left = random.uniform();
+        let drawn = self.beliefs.iter().find(|belief| {
+            left -= belief.weight;
+            left <= 0.0
+        });
+        let ratio = drawn.map_or(1.0, |belief| belief.sd_n / self.offset_n);
+        let excess = (ratio * ratio - 1.0).max(0.0).sqrt();
         for offset in self.offsets {
             let size = excess * random.normal();
             for (value, o) in z.iter_mut().zip(offset) {
@@ -171,7 +178,7 @@ mod tests {
     }
 
     fn white(freedom: f64) -> Chance<'static> {
-        Chance { coordinates: 10, freedom, offsets: &[], offset_freedom: 0.0 }
+        Chance { coordinates: 10, freedom, offsets: &[], offset_n: 0.0, beliefs: &[] }
     }
 
     #[test]

@@ -69,6 +69,11 @@ impl RestrictedLikelihood {
         self.layout.blocks.iter().map(left).sum()
     }
 
+    /// Mean of what noise of the inputs makes of the force \[N^2\].
+    pub(crate) fn mean_input_variance(&self) -> f64 {
+        self.layout.known.iter().sum::<f64>() / self.layout.known.len().max(1) as f64
+    }
+
     /// The likelihood of some of the rows, with the columns that are independent there.
     pub(crate) fn on(&self, keep: &[bool]) -> Option<Self> {
         let width = self.rank + 1;

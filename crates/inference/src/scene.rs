@@ -210,7 +210,8 @@ impl Scene {
             coordinates: self.z.len(),
             freedom: given.law.degrees_of_freedom,
             offsets: &self.offsets,
-            offset_freedom: given.law.offset_freedom,
+            offset_n: given.law.offset_n,
+            beliefs: &given.law.offset_beliefs,
         };
         let null = Null::of(&chance, &self.candidates, &units, given.seed);
         let chance = null.chance(&found);
