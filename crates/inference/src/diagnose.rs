@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use crate::averaged::Averaged;
 use crate::classes::{Class, Rival};
+use crate::confidence::{Confidence, confidence};
 use crate::compare::{Analysis, Options, compare};
 use crate::diagnosis::{
     CandidateResult, DiagnosedData, DiagnosedNoise, Diagnosis, LadderStep, Missing, ParameterResult,
@@ -17,6 +18,7 @@ use crate::diagnosis::{
 use crate::diagnosis::ExplainedStep;
 use crate::error::InferenceError;
 use crate::explained::{explained, surface};
+use crate::hints::hints;
 use crate::law_of_record::Source;
 use crate::misfit::{located, misfit};
 use crate::noise_law::NoiseLaw;
@@ -99,11 +101,12 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
     };
     let model = analysis.base_with_effects().map_err(about)?;
     let search = given.search(&model).map_err(about)?;
-    let mut classes: Vec<Class> = Vec::new();
+    let mut classes: Vec<(Class, Confidence)> = Vec::new();
     let last = &search.stages[search.stages.len() - 1];
     for place in 0..last.added.len() {
-        let (class, _) = given.class(&model, last, place).map_err(about)?;
-        classes.push(class);
+        let (class, without) = given.class(&model, last, place).map_err(about)?;
+        let confidence = confidence(&given, &without.scene, &without.adequacy.null, &class);
+        classes.push((class, confidence));
     }
     let mut compared = options.base.clone();
     compared.effects.extend(last.added.iter().map(Arc::clone));
@@ -123,7 +126,7 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
             added: if i == options.base.effects.len() { None } else { rung.added.clone() },
             rmse_n: rung.rmse_n,
             held_out_rmse_n: rung.held_out_rmse_n,
-            adequate: i + 1 == steps && last.adequacy.holds(),
+            adequate: i + 1 == steps && last.adequate,
         })
         .collect();
     Ok(Diagnosis {
@@ -149,17 +152,17 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
             verdict,
             search.stages.iter().map(|s| s.adequacy.chance).collect::<Vec<_>>()
         ),
-        missing: classes.iter().map(|class| missing(class, last)).collect(),
+        missing: classes.iter().map(|(class, confidence)| missing(class, *confidence, last)).collect(),
         candidates: candidates(&search, &classes),
         ladder,
         noise_floor_n: sd,
         r#where: located(&search.stages[0].scene),
         explained: steps_explained(&record, &search),
         remaining: Remaining {
-            structured: !last.adequacy.holds(),
+            structured: !last.adequate,
             misfit_n,
             misfit_interval_n,
-            hints: Vec::new(),
+            hints: if last.adequate { Vec::new() } else { hints(&record, &last.scene, &located(&last.scene)) },
             surface: surface(&record, &last.scene),
         },
         next_experiment: None,
@@ -187,7 +190,7 @@ fn row_sd(law: &NoiseLaw, averaged: &Averaged, residual: &[f64]) -> f64 {
 
 fn verdict(search: &Search) -> Verdict {
     let last = &search.stages[search.stages.len() - 1];
-    if last.adequacy.holds() {
+    if last.adequate {
         return if last.added.is_empty() { Verdict::Adequate } else { Verdict::Missing };
     }
     Verdict::Unknown
@@ -197,7 +200,7 @@ fn family_name(effect: &Arc<dyn Effect>) -> String {
     effect.card().family.to_owned()
 }
 
-fn missing(class: &Class, last: &Stage) -> Missing {
+fn missing(class: &Class, confidence: Confidence, last: &Stage) -> Missing {
     let name = class.effect.card().name.to_owned();
     let own = family_name(&class.effect);
     let mut names = vec![name.clone()];
@@ -210,7 +213,8 @@ fn missing(class: &Class, last: &Stage) -> Missing {
     Missing {
         effect: name.clone(),
         class: names,
-        confidence: confidence(class),
+        confidence: confidence.named,
+        simulated: confidence,
         parameters: parameters(last, &name),
         plausible: plausible(last, &name),
         detectability: class.detectability,
@@ -224,16 +228,6 @@ fn rival_result(rival: &Rival, class: &Class) -> RivalResult {
         behind: class.log_evidence - rival.log_evidence,
         separation: rival.separation,
     }
-}
-
-fn confidence(class: &Class) -> f64 {
-    let best = class.rivals.iter().map(|r| r.log_evidence).fold(class.log_evidence.max(0.0), f64::max);
-    let own = (class.log_evidence - best).exp();
-    let in_class: f64 =
-        class.rivals.iter().filter(|r| r.in_class).map(|r| (r.log_evidence - best).exp()).sum();
-    let all: f64 =
-        class.rivals.iter().map(|r| (r.log_evidence - best).exp()).sum::<f64>() + own + (-best).exp();
-    (own + in_class) / all
 }
 
 fn parameters(last: &Stage, effect: &str) -> BTreeMap<String, ParameterResult> {
@@ -277,7 +271,7 @@ fn plausible(last: &Stage, effect: &str) -> bool {
         .all(|(p, value)| *value >= p.plausible.0 - 1e-9 && *value <= p.plausible.1 + 1e-9)
 }
 
-fn candidates(search: &Search, classes: &[Class]) -> Vec<CandidateResult> {
+fn candidates(search: &Search, classes: &[(Class, Confidence)]) -> Vec<CandidateResult> {
     let stage = &search.stages[0];
     let scene = &stage.scene;
     let limit = stage.adequacy.null.score_at(0.05).sqrt();
@@ -287,9 +281,9 @@ fn candidates(search: &Search, classes: &[Class]) -> Vec<CandidateResult> {
         let card = screened.effect.card();
         let linear = singles.iter().find(|h| h.effects == [place]);
         let tried: Option<&Tried> = stage.tried.iter().find(|t| t.hypothesis.effects == [place]);
-        let named = classes.iter().any(|c| c.effect.card().name == card.name);
+        let named = classes.iter().any(|(c, _)| c.effect.card().name == card.name);
         let rival =
-            classes.iter().any(|c| c.rivals.iter().any(|r| r.in_class && r.effect.card().name == card.name));
+            classes.iter().any(|(c, _)| c.rivals.iter().any(|r| r.in_class && r.effect.card().name == card.name));
         let status = if named {
             "confirmed"
         } else if rival {

@@ -4,6 +4,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 use crate::comparison::Comparison;
+use crate::confidence::Confidence;
 use crate::noise_law::NoiseLaw;
 
 /// What is missing in the model of a muscle, by the data.
@@ -97,6 +98,8 @@ pub struct Missing {
     pub class: Vec<String>,
     /// How often such a claim is right on data like these.
     pub confidence: f64,
+    /// The same with its interval, and how often the class holds the right one.
+    pub simulated: Confidence,
     /// Its numbers with 95 % intervals.
     pub parameters: BTreeMap<String, ParameterResult>,
     /// Whether a muscle or rig can have these numbers.

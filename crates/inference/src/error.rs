@@ -85,4 +85,14 @@ pub enum InferenceError {
         /// What it says.
         source: Box<ModelError>,
     },
+    /// The noise of a record can't be described or whitened.
+    #[error("the noise: {0}")]
+    Noise(#[from] crate::noise_error::NoiseError),
+}
+
+impl From<ModelError> for InferenceError {
+    /// Of something planned: there are no lines of a file to name.
+    fn from(source: ModelError) -> Self {
+        Self::Model { what: String::new(), source: Box::new(source) }
+    }
 }

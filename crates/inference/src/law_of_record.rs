@@ -21,6 +21,8 @@ const ALL_PART: f64 = 0.4;
 const MOST: usize = 160;
 /// A column of which less than this part is new adds nothing.
 const NEW: f64 = 1e-4;
+/// Part of a column that is rounding.
+const ROUNDING: f64 = 1e-9;
 /// Degrees of freedom below which data sheets are better than what is left.
 const FEWEST: f64 = 8.0;
 /// Degrees of freedom from which repeats of a static map are the noise.
@@ -143,6 +145,10 @@ fn within(record: &Record, column: &[f64]) -> Vec<f64> {
             *value -= mean;
         }
     }
+    if norm(&left) <= ROUNDING * norm(column) {
+        // What is the same all along each sweep leaves only rounding: a direction of its own, and the wrong one.
+        left.fill(0.0);
+    }
     left
 }
 
@@ -169,7 +175,8 @@ fn between(record: &Record) -> Vec<Vec<f64>> {
 }
 
 fn enter_new(space: &mut Space, column: &[f64]) {
-    if space.outside(column).sqrt() > NEW * norm(column) {
+    let whole = norm(column);
+    if whole > 0.0 && space.outside(column).sqrt() > NEW * whole {
         space.enter(column);
     }
 }

@@ -60,7 +60,6 @@ pub(crate) fn misfit(scene: &Scene, seed: u64) -> (f64, [f64; 2]) {
 /// On which variables the misfit depends: share of the excess over chance, and how often chance alone gives as much (Holm 1979), the largest share
 /// first.
 pub(crate) fn located(scene: &Scene) -> Vec<Located> {
-    for d in scene.smooth.iter() { eprintln!("DBG {:?} {:.2} {:.3}", d.variable, dot(&d.unit, &scene.z), d.values.iter().map(|v| v.abs()).fold(0.0,f64::max)); }
     let mut found: Vec<(Variable, f64, f64, f64)> = Vec::new();
     for variable in Variable::ALL {
         let squares: Vec<f64> = scene

@@ -7,11 +7,10 @@ use crate::whitening::Components;
 
 /// Offsets as parts of the other noise.
 const PARTS: [f64; 14] = [0.03, 0.05, 0.08, 0.12, 0.18, 0.26, 0.38, 0.55, 0.8, 1.2, 1.8, 2.7, 4.0, 8.0];
-/// Parts that most rigs have, each as likely as the next; others are less likely by the factor.
+/// Parts that most rigs have, each as likely as the next; smaller and larger ones are less likely.
 const USUAL: (f64, f64) = (0.1, 1.3);
-const UNUSUAL: f64 = 0.15;
 /// Chance that there are no offsets.
-const NONE: f64 = 0.5;
+const NONE: f64 = 0.75;
 
 /// One size of the offsets.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -27,7 +26,7 @@ pub(crate) fn offset_beliefs(likelihood: &RestrictedLikelihood, others: &Compone
     let other = others.white + others.correlated;
     let mean_input = likelihood.mean_input_variance();
     let scale = other + mean_input;
-    let usual = |part: f64| if (USUAL.0..=USUAL.1).contains(&part) { 1.0 } else { UNUSUAL };
+    let usual = |part: f64| (part / USUAL.0).min(1.0) * (USUAL.1 / part).powi(4).min(1.0);
     let all: f64 = PARTS.iter().map(|part| usual(*part)).sum();
     let mut found: Vec<(f64, f64)> = Vec::with_capacity(PARTS.len() + 1);
     for part in std::iter::once(0.0).chain(PARTS) {

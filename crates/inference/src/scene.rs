@@ -202,17 +202,22 @@ impl Scene {
         self.smooth.iter().map(|direction| direction.unit.clone()).collect()
     }
 
-    /// The statistics of the misfit, and how often chance alone gives as much: of the screen and of the smooth test.
-    pub(crate) fn chance(&self, given: &Given<'_>) -> (Statistics, Null, [f64; 2]) {
-        let units = self.units();
-        let found = Statistics::of(&self.z, &self.candidates, &units);
-        let chance = Chance {
+    /// What the misfit of a right model would be drawn from.
+    pub(crate) fn chance_of<'a>(&'a self, given: &'a Given<'_>) -> Chance<'a> {
+        Chance {
             coordinates: self.z.len(),
             freedom: given.law.degrees_of_freedom,
             offsets: &self.offsets,
             offset_n: given.law.offset_n,
             beliefs: &given.law.offset_beliefs,
-        };
+        }
+    }
+
+    /// The statistics of the misfit, and how often chance alone gives as much: of the screen and of the smooth test.
+    pub(crate) fn chance(&self, given: &Given<'_>) -> (Statistics, Null, [f64; 2]) {
+        let units = self.units();
+        let found = Statistics::of(&self.z, &self.candidates, &units);
+        let chance = self.chance_of(given);
         let null = Null::of(&chance, &self.candidates, &units, given.seed);
         let chance = null.chance(&found);
         (found, null, chance)

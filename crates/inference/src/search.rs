@@ -11,7 +11,7 @@ use crate::null::{Null, Statistics};
 use crate::scene::{Given, Scene};
 
 /// Chance with which the screen may raise a false alarm, and the smooth test.
-pub(crate) const ALARM: [f64; 2] = [0.035, 0.015];
+pub(crate) const ALARM: [f64; 2] = [0.05, 0.015];
 /// Effects that are added at most, one step after the other.
 const STEPS: usize = 4;
 /// Hypotheses whose linear evidence is this much below the best are not fitted.
@@ -78,6 +78,8 @@ pub(crate) struct Stage {
     pub(crate) confirmed: Confirmed,
     pub(crate) scene: Scene,
     pub(crate) adequacy: Adequacy,
+    /// Whether the model explains the data.
+    pub(crate) adequate: bool,
     /// What was tried from here.
     pub(crate) tried: Vec<Tried>,
 }
@@ -97,7 +99,7 @@ impl Given<'_> {
         let scene = self.scene(&confirmed.prepared, &confirmed.theta)?;
         let (statistics, null, chance) = scene.chance(self);
         let adequacy = Adequacy { statistics, null, chance };
-        Ok(Stage { added, confirmed, scene, adequacy, tried: Vec::new() })
+        Ok(Stage { added, confirmed, scene, adequate: adequacy.holds(), adequacy, tried: Vec::new() })
     }
 
     /// From the base model to the set of effects that explains the data, or to where nothing more helps.
@@ -110,13 +112,11 @@ impl Given<'_> {
                 break;
             }
             stage.tried = self.tried(base, stage);
-            if !stage.adequacy.screen_fails() {
+            let Some((best, confirmed)) = best(&stage.tried).filter(|(best, _)| best.log_evidence > 0.0) else {
+                // The screen alone, and no effect that is worth its price: chance.
+                stage.adequate = !stage.adequacy.smooth_fails();
                 break;
-            }
-            let Some((best, confirmed)) = best(&stage.tried) else { break };
-            if best.log_evidence <= 0.0 && step > 0 {
-                break;
-            }
+            };
             let mut added = stage.added.clone();
             added.extend(
                 best.hypothesis.effects.iter().map(|i| Arc::clone(&stage.scene.showings.effects[*i].effect)),
