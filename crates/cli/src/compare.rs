@@ -8,7 +8,6 @@ use bulge_muscles::Muscle;
 use bulge_report::comparison::{html, plots};
 use clap::Args;
 use std::fmt::Write;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -121,18 +120,10 @@ pub(crate) fn report(
     // Everything is made before anything is written.
     let page = html(comparison)?;
     let plots = plots(comparison)?;
-    files::folder(folder)?;
     let [numbers, first] = [folder.join("compare.json"), folder.join("report.html")];
     let mut contents = vec![(numbers.clone(), document), (first.clone(), page.as_str())];
     contents.extend(plots.iter().map(|plot| (folder.join(format!("{}.svg", plot.name)), plot.svg.as_str())));
-    // Nothing is written where one of them can't be.
-    if let Some((path, _)) = contents.iter().find(|(path, _)| path.is_dir()) {
-        let source = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; move it away");
-        return Err(Failure::Output { path: path.clone(), source });
-    }
-    for (path, content) in &contents {
-        files::write(path, content.as_bytes())?;
-    }
+    files::write_all(folder, &contents)?;
     Ok([first, numbers])
 }
 

@@ -1,13 +1,22 @@
 //! `bulge diagnose`: which physical effect is missing.
 
+mod progress;
+mod text;
+
 use bulge_effects::known;
-use bulge_inference::{DiagnoseOptions, Options, diagnose};
+use bulge_inference::{DiagnoseOptions, Diagnosis, Options, diagnose};
 use bulge_measurements::Data;
+
+use bulge_muscles::{Force, Muscle, Quantity};
+use bulge_report::diagnosis::{html, plots};
 use clap::Args;
-use std::path::PathBuf;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 use crate::arguments;
 use crate::failure::Failure;
+use crate::files;
+use progress::Progress;
 
 /// Which physical effect is missing: compares, looks for what the model lacks, adds it, and says how sure that is.
 #[derive(Debug, Args)]
@@ -24,9 +33,15 @@ pub(crate) struct DiagnoseCommand {
     /// Your own effects, as expressions in a TOML file: they are looked for too
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// Seed of the random numbers
+    /// RMS misfit that doesn't matter: `--tolerance "5 N"` [default: the accuracy of the instruments]
+    #[arg(long, value_name = "FORCE")]
+    tolerance: Option<String>,
+    /// Seed of the random numbers: the same seed gives the same answer
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Folder for report.html, the plots as SVG files, and diagnosis.json
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// One JSON document on standard output
     #[arg(long)]
     json: bool,
@@ -34,14 +49,63 @@ pub(crate) struct DiagnoseCommand {
 
 impl DiagnoseCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
+        let tolerance_n = self.tolerance.as_deref().map(tolerance).transpose()?;
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = Data::read(&self.data)?;
         let known = known(&muscle, &catalogue)?;
         let base = Options { known, ..Options::new(catalogue, effects) };
-        let options = DiagnoseOptions { base, tolerance_n: None, seed: self.seed };
-        let found = diagnose(&data, &muscle, &options)?;
-        Ok(serde_json::to_string_pretty(&found)? + "\n")
+        let options = DiagnoseOptions { tolerance_n, seed: self.seed, ..DiagnoseOptions::new(base) };
+        let found = self.look(&data, &muscle, &options)?;
+        let document = serde_json::to_string_pretty(&found)? + "\n";
+        let mut wrote = String::new();
+        if let Some(folder) = &self.out {
+            for path in report(folder, &found, &document)? {
+                let _ = writeln!(wrote, "  wrote {}", path.display());
+            }
+        }
+        if self.json { Ok(document) } else { Ok(text::text(&found, &self.call()) + &wrote) }
     }
+
+    /// The diagnosis, with a bar for whoever waits at a terminal.
+    fn look(&self, data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<Diagnosis, Failure> {
+        let progress = Progress::new(self.json);
+        let tell = progress.listener();
+        tell(0.0, "diagnosing");
+        Ok(diagnose(data, muscle, options)?)
+    }
+
+    /// The command line as far as the next step takes it over.
+    fn call(&self) -> text::Call {
+        text::Call {
+            data: self.data.iter().map(|path| path.display().to_string()).collect(),
+            muscle: self.muscle.clone(),
+            with: self.with.iter().map(|name| name.trim().to_owned()).collect(),
+            effects: self.effects.as_ref().map(|path| path.display().to_string()),
+        }
+    }
+}
+
+/// A misfit that doesn't matter \[N\].
+fn tolerance(text: &str) -> Result<f64, Failure> {
+    let tolerance_n = arguments::quantity::<Force>("--tolerance", text)?.si();
+    if tolerance_n < 0.0 {
+        let what =
+            format!("{text} is less than nothing; give the RMS misfit that doesn't matter, such as `5 N`");
+        return Err(Failure::Value { option: "--tolerance", what });
+    }
+    Ok(tolerance_n)
+}
+
+/// Writes the report: a page, its plots one by one, and the numbers. Returns what to look at first.
+fn report(folder: &Path, diagnosis: &Diagnosis, document: &str) -> Result<[PathBuf; 2], Failure> {
+    // Everything is made before anything is written.
+    let page = html(diagnosis)?;
+    let plots = plots(diagnosis)?;
+    let [numbers, first] = [folder.join("diagnosis.json"), folder.join("report.html")];
+    let mut contents = vec![(numbers.clone(), document), (first.clone(), page.as_str())];
+    contents.extend(plots.iter().map(|plot| (folder.join(format!("{}.svg", plot.name)), plot.svg.as_str())));
+    files::write_all(folder, &contents)?;
+    Ok([first, numbers])
 }

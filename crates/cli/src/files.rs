@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
@@ -33,6 +33,16 @@ fn publish(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.as_file().sync_all()?;
     file.persist(path).map_err(|error| error.error)?;
     Ok(())
+}
+
+/// Writes files into a folder, which is created if it isn't there; none of them if one of the names is that of a folder.
+pub(crate) fn write_all(into: &Path, contents: &[(PathBuf, &str)]) -> Result<(), Failure> {
+    folder(into)?;
+    if let Some((path, _)) = contents.iter().find(|(path, _)| path.is_dir()) {
+        let source = io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; move it away");
+        return Err(Failure::Output { path: path.clone(), source });
+    }
+    contents.iter().try_for_each(|(path, content)| write(path, content.as_bytes()))
 }
 
 /// Creates a folder with its parents, if it isn't there.

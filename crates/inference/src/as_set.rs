@@ -7,6 +7,8 @@ use bulge_model::Record;
 
 use crate::levels::Levels;
 
+/// Widest range of a level that is kept, as a part of the largest pressure.
+const KEPT: f64 = 0.04;
 /// Neighbours on either side of a row.
 const NEIGHBOURS: usize = 4;
 /// A reading further from its neighbours than this many standard deviations is taken as it is: there the path bends.
@@ -16,13 +18,24 @@ const BEND: f64 = 4.0;
 pub(crate) fn as_set(record: &Record) -> Record {
     let levels = Levels::of(record, &vec![true; record.len()]);
     let pressures: Vec<f64> = record.moments().iter().map(|m| m.pressure).collect();
-    let pressure = if levels.is_cut() {
-        by_neighbours(record, &pressures)
-    } else {
+    let pressure = if is_kept(&pressures, &levels) {
         levels.of.iter().map(|level| levels.mean[*level]).collect()
+    } else {
+        by_neighbours(record, &pressures)
     };
     let contractions: Vec<f64> = record.moments().iter().map(|m| m.contraction).collect();
     record.clone().at(&pressure, &by_neighbours(record, &contractions))
+}
+
+/// Whether pressures were kept at levels, and don't only lie in heaps.
+fn is_kept(pressures: &[f64], levels: &Levels) -> bool {
+    let largest = pressures.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
+    let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; levels.len()];
+    for (pressure, level) in pressures.iter().zip(&levels.of) {
+        let [low, high] = &mut ranges[*level];
+        (*low, *high) = (low.min(*pressure), high.max(*pressure));
+    }
+    !levels.is_cut() && ranges.iter().all(|[low, high]| high - low <= KEPT * largest)
 }
 
 /// Each value by a parabola through its neighbours in the sweep, itself left out.

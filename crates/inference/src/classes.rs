@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::confirm::Confirmed;
 use crate::scene::{Given, Scene};
-use crate::search::{Hypothesis, Stage, Tried, singles};
+use crate::search::{Hypothesis, Stage, Tried, singles, tempered};
 use crate::space::dot;
 
 /// Rivals whose log evidence is less than this below stay in the class.
@@ -45,27 +45,37 @@ pub(crate) struct Class {
     pub(crate) log_evidence: f64,
     /// Its length in sigmas beside the others.
     pub(crate) detectability: f64,
+    /// How much more than chance the misfit of the whole model scatters, as a ratio of variances.
+    pub(crate) scatter: f64,
     pub(crate) rivals: Vec<Rival>,
 }
 
+impl Class {
+    /// An effect without which there is no model at all.
+    pub(crate) fn alone(stage: &Stage, place: usize) -> Self {
+        let effect = Arc::clone(&stage.added[place]);
+        let (log_evidence, detectability) = (f64::MAX, f64::MAX);
+        Self { effect, log_evidence, detectability, scatter: stage.scatter(), rivals: Vec::new() }
+    }
+}
+
 impl Given<'_> {
-    /// The class of one of the added effects, all others staying; and the stage without it.
-    pub(crate) fn class(
-        &self,
-        base: &Model,
-        stage: &Stage,
-        place: usize,
-    ) -> Result<(Class, Stage), ModelError> {
+    /// The class of one of the added effects, all others staying, and the stage without it; none if there is no model without it that these data could come
+    /// from.
+    pub(crate) fn class(&self, base: &Model, stage: &Stage, place: usize) -> Option<(Class, Stage)> {
         let effect = Arc::clone(&stage.added[place]);
         let others: Vec<Arc<dyn Effect>> =
             stage.added.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, e)| Arc::clone(e)).collect();
-        let without = self.confirm(base, &others, Some(&stage.confirmed), &[])?;
-        let without = self.stage(others, without)?;
-        let signal = self.signal(&stage.confirmed, &without)?;
+        let without = self.refitted(base, stage, &others).ok()?;
+        let without = self.stage(others, without).ok()?;
+        let signal = self.signal(&stage.confirmed, &without).ok()?;
         let name = effect.card().name;
         let own = without.scene.showings.effects.iter().position(|s| s.effect.card().name == name);
         let ticket = own.map_or(0.0, |own| crate::search::ticket(&without.scene, own));
-        let log_evidence = stage.confirmed.log_evidence - without.confirmed.log_evidence + ticket;
+        let scatter = stage.scatter();
+        let gain = without.confirmed.cost() - stage.confirmed.cost();
+        let log_evidence =
+            tempered(stage.confirmed.log_evidence - without.confirmed.log_evidence + ticket, gain, scatter);
         let list = singles(&without.scene, &without.confirmed.prepared.model);
         let best = list.iter().map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let mut fitted = 0;
@@ -73,8 +83,8 @@ impl Given<'_> {
             .into_iter()
             .filter(|h| Some(h.effects[0]) != own)
             .map(|h| {
-                let separation = separation(&without.scene, h.effects[0], &signal);
-                let near = (h.log_evidence > best - FITTED || separation < SEPARATION) && fitted < MOST;
+                let separation = separation(&without.scene, h.effects[0], &signal) / scatter.sqrt();
+                let near = (h.log_evidence > best - FITTED * scatter || separation < SEPARATION) && fitted < MOST;
                 fitted += usize::from(near);
                 (h, separation, near)
             })
@@ -82,31 +92,54 @@ impl Given<'_> {
         let rivals = rivals
             .into_par_iter()
             .map(|(hypothesis, separation, near)| {
-                let linear = hypothesis.log_evidence;
+                let (linear, gain_of) = (hypothesis.log_evidence, hypothesis.gain);
                 let place = hypothesis.effects[0];
                 let tried = near.then(|| self.fitted(base, &without, hypothesis));
-                self.rival(&without.scene, place, linear, separation, tried, log_evidence)
+                self.rival(&without, place, tempered(linear, gain_of, scatter), separation, tried, (log_evidence, scatter))
             })
             .collect();
-        let detectability = dot(&signal, &signal).sqrt();
-        Ok((Class { effect, log_evidence, detectability, rivals }, without))
+        let detectability = dot(&signal, &signal).sqrt() / scatter.sqrt();
+        Some((Class { effect, log_evidence, detectability, scatter, rivals }, without))
+    }
+
+    /// A stage with fewer effects: from where it was, else from usual numbers; what was best with the effect may not even have an equilibrium
+    /// without it.
+    fn refitted(&self, base: &Model, stage: &Stage, others: &[Arc<dyn Effect>]) -> Result<Confirmed, ModelError> {
+        let carried = self.confirm(base, others, Some(&stage.confirmed), &[]);
+        let mut best = carried;
+        for part in [1.0, 0.1] {
+            if best.as_ref().is_ok_and(|found| found.converged) {
+                break;
+            }
+            let usual = self.usual(base, others, part);
+            let other = self.confirm(base, others, None, &[usual]);
+            best = match (best, other) {
+                (Ok(a), Ok(b)) => Ok(if b.cost() < a.cost() { b } else { a }),
+                (Err(_), Ok(b)) => Ok(b),
+                (best, Err(_)) => best,
+            };
+        }
+        best
     }
 
     fn rival(
         &self,
-        scene: &Scene,
+        without: &Stage,
         place: usize,
         linear: f64,
         separation: f64,
         tried: Option<Tried>,
-        named: f64,
+        (named, scatter): (f64, f64),
     ) -> Rival {
-        let log_evidence = tried.as_ref().map_or(linear, |tried| tried.log_evidence);
+        let log_evidence = tried.as_ref().map_or(linear, |tried| {
+            let gain = tried.confirmed.as_ref().map_or(0.0, |c| without.confirmed.cost() - c.cost());
+            tempered(tried.log_evidence, gain, scatter)
+        });
         let in_class = tried.is_some()
             && log_evidence.is_finite()
             && log_evidence > 0.0
             && (log_evidence > named - EVIDENCE || separation < SEPARATION);
-        let effect = Arc::clone(&scene.showings.effects[place].effect);
+        let effect = Arc::clone(&without.scene.showings.effects[place].effect);
         Rival { effect, log_evidence, separation, in_class, fit: tried.and_then(|tried| tried.confirmed) }
     }
 

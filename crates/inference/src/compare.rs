@@ -107,6 +107,12 @@ fn compared(data: &Data, muscle: &Muscle, options: &Options) -> Result<Compariso
         (first, _) => first,
     };
     let forces = [&rungs[0].force, &last.force];
+    let mut warnings = analysis.warnings(&ladder);
+    // With the last fit's numbers the muscle may not even pull before all effects are in.
+    let contributions = stack::contributions(&analysis, last).unwrap_or_else(|error| {
+        warnings.push(format!("what each effect contributes can't be shown one by one: {error}"));
+        Vec::new()
+    });
     Ok(Comparison {
         schema: "bulge.comparison/1",
         muscle: muscle.name().to_owned(),
@@ -120,10 +126,10 @@ fn compared(data: &Data, muscle: &Muscle, options: &Options) -> Result<Compariso
         loops: loops::gaps(&analysis, forces),
         maps: residuals::maps(&analysis, forces),
         curves: residuals::curves(&analysis, forces),
-        contributions: stack::contributions(&analysis, last)?,
+        contributions,
         scatter: residuals::scatter(&analysis, forces),
         rivals: if options.rivals { rivals::laws(&analysis) } else { Vec::new() },
-        warnings: analysis.warnings(&ladder),
+        warnings,
         ladder,
     })
 }
@@ -386,7 +392,8 @@ impl<'a> Analysis<'a> {
         let found: Vec<_> = (0..folds.count).into_par_iter().map(of_fold).collect();
         let mut sums = (0.0, 0_usize);
         for fold in found {
-            let Some((square, count)) = fold.map_err(|error| self.about(error))? else { return Ok(None) };
+            // Numbers that suit the other rows may leave these without an equilibrium: there is no error to state then.
+            let Some((square, count)) = fold.ok().flatten() else { return Ok(None) };
             sums = (sums.0 + square, sums.1 + count);
         }
         Ok((sums.1 > 0).then(|| (sums.0 / sums.1 as f64).sqrt()))

@@ -36,6 +36,13 @@ pub struct Confidence {
     pub claims: usize,
 }
 
+impl Confidence {
+    /// Of an effect without which there is no model at all.
+    pub(crate) const fn certain() -> Self {
+        Self { named: 1.0, class: 1.0, interval: [1.0, 1.0], claims: 0 }
+    }
+}
+
 /// A truth that is possible: an effect at one of its forms, or nothing.
 struct Truth<'a> {
     candidate: Option<&'a Candidate>,
@@ -45,13 +52,17 @@ struct Truth<'a> {
 }
 
 /// The confidence of a claim, in the scene of the model without the named effect.
+///
+/// Where something unknown remains, its scatter counts as noise: misfits are then in units of that.
 pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &Class) -> Confidence {
+    let unit = 1.0 / class.scatter.sqrt();
+    let found: Vec<f64> = scene.z.iter().map(|z| z * unit).collect();
     let place = |name: &str| scene.showings.effects.iter().position(|s| s.effect.card().name == name);
     let Some(named) = place(class.effect.card().name) else {
         return Confidence { named: 0.0, class: 0.0, interval: [0.0, 1.0], claims: 0 };
     };
     let tickets: Vec<f64> = (0..scene.showings.effects.len()).map(|i| ticket(scene, i)).collect();
-    let truths = truths(scene, &tickets, class, named);
+    let truths = truths(scene, &found, &tickets, class, named);
     let counted: Vec<[usize; 3]> = (0..DRAWS / PER_STREAM)
         .into_par_iter()
         .map(|stream| {
@@ -82,10 +93,10 @@ pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &
 }
 
 /// Everything that the data leave possible, with weights that add up to 1.
-fn truths<'a>(scene: &'a Scene, tickets: &[f64], class: &Class, named: usize) -> Vec<Truth<'a>> {
+fn truths<'a>(scene: &'a Scene, z: &[f64], tickets: &[f64], class: &Class, named: usize) -> Vec<Truth<'a>> {
     let mut found = vec![Truth { candidate: None, effect: None, weight: 0.0, sizes: Vec::new() }];
     for candidate in &scene.candidates {
-        let explained = candidate.explains(&scene.z);
+        let explained = candidate.explains(z);
         if explained.gain <= 0.0 {
             continue;
         }

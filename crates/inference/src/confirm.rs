@@ -19,6 +19,8 @@ use crate::showing::{Showing, Sign, Size, sizes};
 
 /// Tolerance of the fits, as a part of what the residuals are.
 const TOLERANCE: f64 = 1e-5;
+/// What a size costs that is twice as large as plausible.
+const IMPLAUSIBLE: f64 = 8.0;
 const EVALUATIONS: usize = 120;
 
 /// A model with its effects at their best numbers.
@@ -189,6 +191,7 @@ fn log_evidence(prepared: &Prepared, theta: &[f64], minimum: &Minimum) -> f64 {
             curvature[column] = 1.0 / (wide * wide);
             let sd = 1.0 / (column_square(minimum, k, column).max(curvature[column])).sqrt() * jacobian;
             log += log_prior(&size, deviation.abs().max(sd)) + jacobian.ln();
+            log -= IMPLAUSIBLE * (deviation.abs() / size.plausible - 1.0).max(0.0);
         } else {
             let (low, high) = (p.plausible.0.max(p.low), p.plausible.1.min(p.high));
             let width = if p.logarithmic { (high / low.max(f64::MIN_POSITIVE)).ln() } else { high - low };

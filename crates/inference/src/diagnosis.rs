@@ -40,7 +40,7 @@ pub struct Diagnosis {
     pub next_experiment: Option<NextExperiment>,
     /// What a reader should know before trusting the verdict.
     pub warnings: Vec<String>,
-    /// The comparison with the effects that were found, for curves and plots.
+    /// The comparison with the effects that were found, for curves and plots; its ladder is empty where there were too few rows.
     #[serde(skip)]
     pub comparison: Comparison,
 }

@@ -85,6 +85,17 @@ pub enum InferenceError {
         /// What it says.
         source: Box<ModelError>,
     },
+    /// Measured and computed forces differ by one large factor.
+    #[error(
+        "the muscle doesn't match the data: the measured forces are {factor:.3} times those of the model at all pressures and contractions, which no \
+         physical effect does; check {check}"
+    )]
+    OtherScale {
+        /// Measured over computed.
+        factor: f64,
+        /// What to check.
+        check: String,
+    },
     /// The noise of a record can't be described or whitened.
     #[error("the noise: {0}")]
     Noise(#[from] crate::noise_error::NoiseError),

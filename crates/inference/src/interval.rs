@@ -36,6 +36,16 @@ impl Scale {
     }
 }
 
+impl Scale {
+    /// For noise that is known: whitened residuals have this variance, the law so many degrees of freedom.
+    pub(crate) fn known(variance: f64, freedom: f64) -> Self {
+        let quantile = StudentsT::new(0.0, 1.0, freedom.max(1.0))
+            .map_or(1.959_964, |t| t.inverse_cdf(0.975))
+            .clamp(1.959_964, 12.71);
+        Self { variance, quantile }
+    }
+}
+
 /// Rows up to which a profile is affordable: each is some forty fits more.
 const MOST_ROWS: usize = 20_000;
 

@@ -16,6 +16,8 @@ pub(crate) const ALARM: [f64; 2] = [0.05, 0.015];
 const STEPS: usize = 4;
 /// Hypotheses whose linear evidence is this much below the best are not fitted.
 const FITTED: f64 = 12.0;
+/// A fall of the square of the misfit beyond which tangents say little: then usual numbers are starts too, and the best of each kind are fitted.
+const FAR: f64 = 200.0;
 /// Most single effects and most pairs that are fitted.
 const MOST: [usize; 2] = [8, 6];
 /// Forms from which a fit of an effect starts.
@@ -84,6 +86,23 @@ pub(crate) struct Stage {
     pub(crate) tried: Vec<Tried>,
 }
 
+impl Stage {
+    /// How much more than chance the misfit scatters over the smooth functions, as a ratio of variances: 1 if the model explains the data.
+    pub(crate) fn scatter(&self) -> f64 {
+        let smooth = &self.scene.smooth;
+        if self.adequate || smooth.is_empty() {
+            return 1.0;
+        }
+        let square: f64 = smooth.iter().map(|d| crate::space::dot(&d.unit, &self.scene.z).powi(2)).sum();
+        (square / smooth.len() as f64).max(1.0)
+    }
+}
+
+/// A log evidence when the noise is larger by the ratio `scatter` of variances than the law says; `gain` is the fall of the square of the misfit in it.
+pub(crate) fn tempered(log_evidence: f64, gain: f64, scatter: f64) -> f64 {
+    log_evidence - 0.5 * gain * (1.0 - 1.0 / scatter)
+}
+
 /// A whole search: the base first, then each model that was accepted.
 pub(crate) struct Search {
     pub(crate) stages: Vec<Stage>,
@@ -112,19 +131,34 @@ impl Given<'_> {
                 break;
             }
             stage.tried = self.tried(base, stage);
-            let Some((best, confirmed)) = best(&stage.tried).filter(|(best, _)| best.log_evidence > 0.0) else {
+            let next = ranked(&stage.tried).into_iter().find_map(|(best, confirmed)| self.step(stage, best, confirmed));
+            let Some((next, stands_out)) = next else {
                 // The screen alone, and no effect that is worth its price: chance.
                 stage.adequate = !stage.adequacy.smooth_fails();
                 break;
             };
-            let mut added = stage.added.clone();
-            added.extend(
-                best.hypothesis.effects.iter().map(|i| Arc::clone(&stage.scene.showings.effects[*i].effect)),
-            );
-            let confirmed = confirmed.clone();
-            stages.push(self.stage(added, confirmed)?);
+            if !stands_out {
+                break;
+            }
+            stages.push(next);
         }
         Ok(Search { stages })
+    }
+
+    /// The stage that a hypothesis leads to, and whether the step stands out of what remains; none if it isn't worth its price, or nothing can be seen
+    /// from there.
+    fn step(&self, stage: &Stage, tried: &Tried, confirmed: &Confirmed) -> Option<(Stage, bool)> {
+        if tried.log_evidence <= 0.0 {
+            return None;
+        }
+        let mut added = stage.added.clone();
+        let effects = &stage.scene.showings.effects;
+        added.extend(tried.hypothesis.effects.iter().map(|i| Arc::clone(&effects[*i].effect)));
+        let gain = stage.confirmed.cost() - confirmed.cost();
+        let next = self.stage(added, confirmed.clone()).ok()?;
+        // Where something unknown remains, its scatter counts as noise: a step must stand out of that too.
+        let stands_out = tempered(tried.log_evidence, gain, next.scatter()) > 0.0;
+        Some((next, stands_out))
     }
 
     /// The best hypotheses of a stage, each fitted.
@@ -137,17 +171,45 @@ impl Given<'_> {
     pub(crate) fn fitted(&self, base: &Model, stage: &Stage, hypothesis: Hypothesis) -> Tried {
         let effects: Vec<Arc<dyn Effect>> =
             hypothesis.effects.iter().map(|i| Arc::clone(&stage.scene.showings.effects[*i].effect)).collect();
-        let names = effects.iter().map(|effect| effect.card().name.to_owned()).collect();
+        let names: Vec<String> = effects.iter().map(|effect| effect.card().name.to_owned()).collect();
         let all: Vec<Arc<dyn Effect>> = stage.added.iter().chain(&effects).cloned().collect();
         let before = self.numbers_of(base, stage);
         let starts: Vec<Vec<f64>> =
             hypothesis.starts.iter().map(|start| before.iter().chain(start).copied().collect()).collect();
-        let confirmed = self.confirm(base, &all, Some(&stage.confirmed), &starts).ok();
+        let mut confirmed = self.confirm(base, &all, Some(&stage.confirmed), &starts).ok();
+        if confirmed.is_none() || hypothesis.gain > FAR {
+            // Far from where the tangents hold: usual numbers, and nearly none of them.
+            let further: Vec<Vec<f64>> = [1.0, 0.1]
+                .iter()
+                .map(|part| before.iter().copied().chain(self.usual(base, &effects, *part)).collect())
+                .collect();
+            let other = self.confirm(base, &all, Some(&stage.confirmed), &further).ok();
+            confirmed = match (confirmed, other) {
+                (Some(a), Some(b)) => Some(if b.cost() < a.cost() { b } else { a }),
+                (a, b) => a.or(b),
+            };
+        }
         let tickets: f64 = hypothesis.effects.iter().map(|i| ticket(&stage.scene, *i)).sum();
         let log_evidence = confirmed
             .as_ref()
             .map_or(f64::NEG_INFINITY, |c| c.log_evidence - stage.confirmed.log_evidence + tickets);
         Tried { hypothesis, names, confirmed, log_evidence }
+    }
+
+    /// A part of the way from `off` to the usual numbers of effects.
+    pub(crate) fn usual(&self, base: &Model, effects: &[Arc<dyn Effect>], part: f64) -> Vec<f64> {
+        let specimens = base.specimens().len();
+        let of = |effect: &Arc<dyn Effect>| {
+            let copies = if effect.card().group == bulge_effects::Group::Specimen { specimens } else { 1 };
+            let own: Vec<f64> = effect
+                .parameters()
+                .into_iter()
+                .map(|card| card.of(base.muscle()))
+                .map(|card| card.off + part * (card.typical - card.off))
+                .collect();
+            (0..copies).flat_map(move |_| own.clone()).collect::<Vec<f64>>()
+        };
+        effects.iter().flat_map(of).collect()
     }
 
     /// Numbers of the effects that a stage has added, in order.
@@ -163,20 +225,13 @@ impl Given<'_> {
     }
 }
 
-/// The hypothesis with the largest evidence among those whose fit converged; a pair only if it is clearly better than the best single effect.
-fn best(tried: &[Tried]) -> Option<(&Tried, &Confirmed)> {
-    let of = |count: usize| {
-        tried
-            .iter()
-            .filter(|t| t.hypothesis.effects.len() == count)
-            .filter_map(|t| Some((t, t.confirmed.as_ref()?)))
-            .max_by(|a, b| a.0.log_evidence.total_cmp(&b.0.log_evidence))
-    };
-    match (of(1), of(2)) {
-        (Some(single), Some(pair)) if pair.0.log_evidence > single.0.log_evidence + PAIR => Some(pair),
-        (Some(single), _) => Some(single),
-        (None, pair) => pair,
-    }
+/// Hypotheses that could be fitted, the best first; a pair counts for less, so that it is only taken if it is clearly better than a single effect.
+fn ranked(tried: &[Tried]) -> Vec<(&Tried, &Confirmed)> {
+    let mut list: Vec<(&Tried, &Confirmed)> =
+        tried.iter().filter_map(|t| Some((t, t.confirmed.as_ref()?))).collect();
+    let worth = |t: &Tried| t.log_evidence - PAIR * (t.hypothesis.effects.len() as f64 - 1.0);
+    list.sort_by(|a, b| worth(b.0).total_cmp(&worth(a.0)));
+    list
 }
 
 /// Log of the prior chance of an effect: families are equally likely; the head of a family has half of its chance, the other members share the rest.
@@ -207,7 +262,7 @@ pub(crate) fn hypotheses(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
     let pairs = pairs(scene, model);
     let best = singles.iter().chain(&pairs).map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
     let near = |list: Vec<Hypothesis>, most: usize| {
-        list.into_iter().filter(|h| h.log_evidence > best - FITTED).take(most).collect::<Vec<_>>()
+        list.into_iter().filter(|h| h.log_evidence > best - FITTED || best > FAR).take(most).collect::<Vec<_>>()
     };
     let mut all = near(singles, MOST[0]);
     all.extend(near(pairs, MOST[1]));
@@ -275,15 +330,16 @@ fn pairs(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
     found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)).then(a.3.cmp(&b.3)));
     let mut kept: Vec<Hypothesis> = Vec::new();
     for (log_evidence, gain, i, j) in found {
-        let mut places = vec![all[i].effect, all[j].effect];
-        places.sort_unstable();
+        let places = [all[i].effect, all[j].effect];
         if kept.len() >= MOST[1] {
             break;
         }
-        if kept.iter().any(|h| h.effects == places) {
+        if kept.iter().any(|h| places.iter().all(|place| h.effects.contains(place))) {
             continue;
         }
-        let (first, second) = if all[i].effect < all[j].effect { (i, j) } else { (j, i) };
+        // What explains more alone comes first.
+        let alone = |place: usize| all[place].explains(&scene.z).gain;
+        let (first, second) = if alone(i) >= alone(j) { (i, j) } else { (j, i) };
         let chosen = [&all[first], &all[second]];
         let together = explained(&chosen, &scene.z);
         let (a, b) = together.sizes.split_at(chosen[0].columns.len());
@@ -293,7 +349,8 @@ fn pairs(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
             .iter()
             .flat_map(|a| starts_b.iter().map(move |b| a.iter().chain(b).copied().collect()))
             .collect();
-        kept.push(Hypothesis { effects: places, log_evidence, gain, starts });
+        let effects = vec![all[first].effect, all[second].effect];
+        kept.push(Hypothesis { effects, log_evidence, gain, starts });
     }
     kept
 }

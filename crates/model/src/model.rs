@@ -146,6 +146,12 @@ impl Model {
         self
     }
 
+    /// Names of the specimens.
+    #[must_use]
+    pub fn specimens(&self) -> &[String] {
+        &self.specimens
+    }
+
     /// The same on a finer lattice: its steps are divided by `refinement` >= 1.
     #[must_use]
     pub fn refined(mut self, refinement: f64) -> Self {

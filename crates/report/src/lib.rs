@@ -1,13 +1,15 @@
-//! Plots of pneumatic muscle characteristics, and the report of a comparison of model and measurement.
+//! Plots of pneumatic muscle characteristics, and the reports of comparisons and diagnoses.
 //!
 //! [`characteristics_svg`] draws force and volume against contraction, one curve for every pressure, as an SVG that stands for itself.
-//! [`comparison`] turns a [`bulge_inference::Comparison`] into one page with plots and tables. Letters stay letters: no font is needed to draw.
+//! [`comparison`] turns a [`bulge_inference::Comparison`] into one page with plots and tables, [`diagnosis`] a
+//! [`bulge_inference::Diagnosis`]. Letters stay letters: no font is needed to draw.
 //! The same input gives the same bytes.
 //!
 //! This crate computes no equilibrium, fits nothing and writes no file: a picture is a function of its numbers.
 mod axis;
 mod characteristics;
 pub mod comparison;
+pub mod diagnosis;
 mod error;
 mod interval;
 mod palette;

@@ -8,7 +8,7 @@ use crate::PlotError;
 ///
 /// # Errors
 /// [`PlotError::Value`] and [`PlotError::Lengths`].
-pub(super) fn check(comparison: &Comparison) -> Result<(), PlotError> {
+pub(crate) fn check(comparison: &Comparison) -> Result<(), PlotError> {
     numbers(comparison)?;
     series(comparison)?;
     for map in &comparison.maps {
@@ -81,14 +81,16 @@ fn series(comparison: &Comparison) -> Result<(), PlotError> {
     finite("a predicted force", comparison.scatter.iter().flatten().copied())
 }
 
-fn finite(what: &str, mut values: impl Iterator<Item = f64>) -> Result<(), PlotError> {
+/// Refuses a value that is infinite or not a number.
+pub(crate) fn finite(what: &str, mut values: impl Iterator<Item = f64>) -> Result<(), PlotError> {
     match values.find(|value| !value.is_finite()) {
         Some(value) => Err(PlotError::Value { quantity: what.to_owned(), value }),
         None => Ok(()),
     }
 }
 
-fn lengths(what: &'static str, expected: usize, found: &[usize]) -> Result<(), PlotError> {
+/// Refuses lists that are not as long as they should be.
+pub(crate) fn lengths(what: &'static str, expected: usize, found: &[usize]) -> Result<(), PlotError> {
     match found.iter().find(|found| **found != expected) {
         Some(found) => Err(PlotError::Lengths { what, expected, found: *found }),
         None => Ok(()),

@@ -32,7 +32,7 @@ struct Share {
 ///
 /// # Errors
 /// If the forces span more than an axis.
-pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
+pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let stacks: Vec<&Stack> = usable(comparison).collect();
     let shares = shares(&stacks);
     if shares.is_empty() {
@@ -177,7 +177,7 @@ fn draw(svg: &mut Svg, panel: &Panel, stack: &Stack, shares: &[Share]) {
 }
 
 /// The sentence above the plot.
-pub(super) fn says(comparison: &Comparison) -> String {
+pub(crate) fn says(comparison: &Comparison) -> String {
     let stacks: Vec<&Stack> = usable(comparison).collect();
     let ranked = ranked(&stacks);
     let Some((name, size)) = ranked.first() else {

@@ -22,7 +22,7 @@ const SPECIMENS: usize = 6;
 ///
 /// # Errors
 /// If the forces span more than an axis.
-pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
+pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let curves: Vec<&Curve> = comparison.curves.iter().filter(|curve| !curve.points.is_empty()).collect();
     if curves.is_empty() {
         return Ok(None);
@@ -141,7 +141,7 @@ fn mean_errors(curve: &Curve) -> [f64; 2] {
 }
 
 /// The sentence above the plot.
-pub(super) fn says(comparison: &Comparison) -> String {
+pub(crate) fn says(comparison: &Comparison) -> String {
     let worst = |rung: usize| {
         let errors = comparison.curves.iter().map(|curve| (curve, mean_errors(curve)[rung]));
         errors.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))

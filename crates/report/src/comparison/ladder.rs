@@ -22,7 +22,7 @@ const MUCH_WORSE: f64 = 1.2;
 ///
 /// # Errors
 /// If the errors span more than an axis.
-pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
+pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let rungs = &comparison.ladder;
     if rungs.is_empty() {
         return Ok(None);
@@ -110,7 +110,7 @@ fn draw_rung(svg: &mut Svg, panel: &Panel, rung: &Rung, (y, row): (f64, f64)) {
 }
 
 /// The sentence above the plot.
-pub(super) fn says(comparison: &Comparison) -> String {
+pub(crate) fn says(comparison: &Comparison) -> String {
     let (Some(first), Some(last)) = (comparison.ladder.first(), comparison.ladder.last()) else {
         return "No model was compared with these data.".to_owned();
     };

@@ -6,7 +6,7 @@ use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, width};
 
 /// What stands before the words.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Mark {
+pub(crate) enum Mark {
     /// A line.
     Line(Stroke),
     /// A dot.
@@ -39,12 +39,12 @@ fn places(entries: &[(Mark, String)], room: f64) -> (Vec<(f64, f64)>, f64) {
 }
 
 /// Height that the legend needs in `room`.
-pub(super) fn height(entries: &[(Mark, String)], room: f64) -> f64 {
+pub(crate) fn height(entries: &[(Mark, String)], room: f64) -> f64 {
     places(entries, room).1
 }
 
 /// Draws the entries from the upper left corner on.
-pub(super) fn draw(svg: &mut Svg, (left, top): (f64, f64), room: f64, entries: &[(Mark, String)]) {
+pub(crate) fn draw(svg: &mut Svg, (left, top): (f64, f64), room: f64, entries: &[(Mark, String)]) {
     for ((x, y), (mark, words)) in places(entries, room).0.into_iter().zip(entries) {
         let (x, y) = (left + x, top + y + 0.5 * ROW);
         match *mark {

@@ -6,7 +6,7 @@ use crate::comparison::number::bar;
 use crate::palette;
 
 /// Indices of at most `most` of `count`, evenly spread, the first and the last among them.
-pub(super) fn spread(count: usize, most: usize) -> Vec<usize> {
+pub(crate) fn spread(count: usize, most: usize) -> Vec<usize> {
     if count <= most {
         return (0..count).collect();
     }
@@ -17,7 +17,7 @@ pub(super) fn spread(count: usize, most: usize) -> Vec<usize> {
 }
 
 /// The pressures that occur, rising, each once (to 0.1 %).
-pub(super) fn distinct(pressures: impl Iterator<Item = f64>) -> Vec<f64> {
+pub(crate) fn distinct(pressures: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut found: Vec<f64> = pressures.collect();
     found.sort_by(f64::total_cmp);
     found.dedup_by(|a, b| same(*a, *b));
@@ -25,12 +25,12 @@ pub(super) fn distinct(pressures: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 /// Whether two pressures are the same level.
-pub(super) fn same(a: f64, b: f64) -> bool {
+pub(crate) fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-3 * a.abs().max(b.abs())
 }
 
 /// The specimens that occur, each once, in order.
-pub(super) fn specimens<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
+pub(crate) fn specimens<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
     let mut found: Vec<&str> = Vec::new();
     for name in names {
         if !found.contains(&name.as_str()) {
@@ -41,33 +41,33 @@ pub(super) fn specimens<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a 
 }
 
 /// The levels of a plot that are shown, with their colours.
-pub(super) struct Shown {
+pub(crate) struct Shown {
     levels: Vec<f64>,
     /// How many there are in all.
-    pub(super) of: usize,
+    pub(crate) of: usize,
 }
 
 impl Shown {
     /// At most `most` of the pressures.
-    pub(super) fn new(pressures: impl Iterator<Item = f64>, most: usize) -> Self {
+    pub(crate) fn new(pressures: impl Iterator<Item = f64>, most: usize) -> Self {
         let all = distinct(pressures);
         let levels = spread(all.len(), most).into_iter().map(|i| all[i]).collect();
         Self { levels, of: all.len() }
     }
 
     /// Colour of a pressure; none if it isn't shown.
-    pub(super) fn colour(&self, pressure_pa: f64) -> Option<RGBColor> {
+    pub(crate) fn colour(&self, pressure_pa: f64) -> Option<RGBColor> {
         let place = self.levels.iter().position(|level| same(*level, pressure_pa))?;
         Some(palette::colour(place, self.levels.len()))
     }
 
     /// Levels with their colours and names, highest first as the curves mostly lie.
-    pub(super) fn named(&self) -> Vec<(RGBColor, String)> {
+    pub(crate) fn named(&self) -> Vec<(RGBColor, String)> {
         self.levels.iter().rev().filter_map(|p| Some((self.colour(*p)?, bar(*p)))).collect()
     }
 
     /// What a caption says about levels that aren't shown.
-    pub(super) fn caption(&self) -> String {
+    pub(crate) fn caption(&self) -> String {
         if self.levels.len() < self.of {
             format!(" Shown are {} of {} pressure levels.", self.levels.len(), self.of)
         } else {

@@ -24,7 +24,7 @@ const HEAD: f64 = 30.0;
 ///
 /// # Errors
 /// If the forces span more than an axis.
-pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
+pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let loops: Vec<&LoopGap> = comparison.loops.iter().filter(|gap| !gap.contraction.is_empty()).collect();
     if loops.is_empty() {
         return Ok(None);
@@ -111,7 +111,7 @@ fn draw(svg: &mut Svg, panel: &Panel, gap: &LoopGap, kind: usize, shown: &Shown,
 }
 
 /// The sentence above the plot.
-pub(super) fn says(comparison: &Comparison) -> String {
+pub(crate) fn says(comparison: &Comparison) -> String {
     let mean = |kind: usize, which: usize| {
         let all: Vec<f64> =
             comparison.loops.iter().flat_map(|gap| values(gap, kind)[which]).copied().collect();

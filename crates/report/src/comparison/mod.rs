@@ -8,28 +8,28 @@
 //! means that the model pulls too weakly.
 
 mod breakdown;
-mod check;
+pub(crate) mod check;
 mod contributions;
 mod convergence;
 mod correlations;
 mod data;
 mod force;
 mod headline;
-mod ladder;
+pub(crate) mod ladder;
 mod ladder_table;
-mod legend;
-mod levels;
+pub(crate) mod legend;
+pub(crate) mod levels;
 mod loops;
-mod number;
-mod page;
-mod panel;
+pub(crate) mod number;
+pub(crate) mod page;
+pub(crate) mod panel;
 mod parameters;
 mod parameters_table;
 mod residual_map;
 mod rivals;
 mod scatter;
-mod svg;
-mod wording;
+pub(crate) mod svg;
+pub(crate) mod wording;
 
 use bulge_inference::Comparison;
 use serde::Serialize;
@@ -37,7 +37,7 @@ use serde::Serialize;
 use crate::PlotError;
 
 /// Width of every plot \[px\].
-const WIDTH: f64 = 920.0;
+pub(crate) const WIDTH: f64 = 920.0;
 
 /// One plot of a comparison.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

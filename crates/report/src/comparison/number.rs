@@ -3,7 +3,7 @@
 /// Three significant digits.
 ///
 /// Beyond 10^6 and below 10^-4 as a power of ten; an end that isn't finite is `unbounded`.
-pub(super) fn three(value: f64) -> String {
+pub(crate) fn three(value: f64) -> String {
     if !value.is_finite() {
         return "unbounded".to_owned();
     }
@@ -26,7 +26,7 @@ pub(super) fn three(value: f64) -> String {
 }
 
 /// A share of variance: near 1, where three digits tell nothing, four decimals.
-pub(super) fn share(value: f64) -> String {
+pub(crate) fn share(value: f64) -> String {
     if (0.99..1.0).contains(&value) { format!("{value:.4}") } else { three(value) }
 }
 
@@ -46,28 +46,28 @@ fn raised(exponent: &str) -> String {
 }
 
 /// A force: `12.3 N`.
-pub(super) fn newton(force_n: f64) -> String {
+pub(crate) fn newton(force_n: f64) -> String {
     format!("{} N", three(force_n))
 }
 
 /// A force with its sign: `+12.3 N`.
-pub(super) fn signed_newton(force_n: f64) -> String {
+pub(crate) fn signed_newton(force_n: f64) -> String {
     let text = newton(force_n);
     if text.starts_with(['−', '0', 'u']) { text } else { format!("+{text}") }
 }
 
 /// A pressure in bar: three digits without trailing zeros, as on a gauge.
-pub(super) fn bar(pressure_pa: f64) -> String {
+pub(crate) fn bar(pressure_pa: f64) -> String {
     format!("{} bar", level(pressure_pa / 1e5))
 }
 
 /// A contraction: `12.5 %`.
-pub(super) fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     format!("{} %", level(100.0 * share))
 }
 
 /// Three digits without trailing zeros.
-pub(super) fn level(value: f64) -> String {
+pub(crate) fn level(value: f64) -> String {
     let text = three(value);
     let (digits, power) = text.split_once(' ').map_or((text.as_str(), None), |(d, p)| (d, Some(p)));
     let digits =
@@ -76,7 +76,7 @@ pub(super) fn level(value: f64) -> String {
 }
 
 /// Labels of evenly spaced values: as few decimals as show each to a twentieth of the distance to its neighbour.
-pub(super) fn ticks(values: &[f64]) -> Vec<String> {
+pub(crate) fn ticks(values: &[f64]) -> Vec<String> {
     let gaps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let gap = gaps.filter(|gap| *gap > 0.0).fold(f64::INFINITY, f64::min);
     let shown = |decimals: usize| -> Vec<String> {
@@ -94,12 +94,12 @@ pub(super) fn ticks(values: &[f64]) -> Vec<String> {
 }
 
 /// `1 row`, `2 rows`.
-pub(super) fn count(number: usize, one: &str) -> String {
+pub(crate) fn count(number: usize, one: &str) -> String {
     if number == 1 { format!("1 {one}") } else { format!("{number} {one}s") }
 }
 
 /// `a`, `a and b`, `a, b and c`.
-pub(super) fn and(words: &[String]) -> String {
+pub(crate) fn and(words: &[String]) -> String {
     match words {
         [] => String::new(),
         [one] => one.clone(),

@@ -13,11 +13,13 @@ use crate::comparison::{
 };
 
 const TEMPLATE: &str = include_str!("report.html");
-const NAME: &str = "report.html";
+/// What every page is made of: its look, and macros for plots and tables.
+const PIECES: [(&str, &str); 2] =
+    [("style.css", include_str!("style.css")), ("pieces.html", include_str!("pieces.html"))];
 
 /// A plot with the sentence above it.
-#[derive(Serialize)]
-struct Figure {
+#[derive(Debug, Serialize)]
+pub(crate) struct Figure {
     says: String,
     name: &'static str,
     title: String,
@@ -27,7 +29,8 @@ struct Figure {
 }
 
 impl Figure {
-    fn new(plot: Plot, says: String) -> Self {
+    /// A plot, and what is to be seen in it.
+    pub(crate) fn new(plot: Plot, says: String) -> Self {
         let Plot { name, title, caption, svg } = plot;
         Self { says, name, title, caption, svg: Value::from_safe_string(svg) }
     }
@@ -78,17 +81,44 @@ struct Page<'a> {
 /// # Errors
 /// If a plot can't be drawn, or the template not be filled in.
 pub(super) fn render(comparison: &Comparison) -> Result<String, PlotError> {
+    filled("report.html", TEMPLATE, &page(comparison)?)
+}
+
+/// A template with its values put in. It may use the pieces that every page has, and the filter `code`.
+///
+/// # Errors
+/// If the template can't be filled in.
+pub(crate) fn filled(name: &str, template: &str, values: &impl Serialize) -> Result<String, PlotError> {
     let failed = |error: minijinja::Error| PlotError::Page { reason: format!("{error:#}") };
     let mut environment = Environment::new();
     environment.set_auto_escape_callback(|_| AutoEscape::Html);
     let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
     environment.set_syntax(syntax.map_err(failed)?);
     environment.add_filter("code", code);
-    environment.add_template(NAME, TEMPLATE).map_err(failed)?;
-    let template = environment.get_template(NAME).map_err(failed)?;
-    let html = template.render(Value::from(Serde(page(comparison)?))).map_err(failed)?;
+    for (name, piece) in PIECES {
+        environment.add_template(name, piece).map_err(failed)?;
+    }
+    environment.add_template(name, template).map_err(failed)?;
+    let template = environment.get_template(name).map_err(failed)?;
+    let html = template.render(Value::from(Serde(values))).map_err(failed)?;
     // Control characters are allowed neither in HTML nor in XML.
     Ok(html.replace(|c: char| (c.is_control() && c != '\n') || matches!(c, '\u{FFFE}' | '\u{FFFF}'), " "))
+}
+
+/// The plots that show model and measurement themselves, for the page of a diagnosis: curves, errors over pressure and contraction, loops,
+/// contributions, fitted numbers.
+///
+/// # Errors
+/// If a plot can't be drawn.
+pub(crate) fn model_and_measurement(comparison: &Comparison) -> Result<Vec<Figure>, PlotError> {
+    let figures = [
+        (force::plot(comparison)?, force::says(comparison)),
+        (residual_map::plot(comparison)?, residual_map::says(comparison)),
+        (loops::plot(comparison)?, loops::says(comparison)),
+        (contributions::plot(comparison)?, contributions::says(comparison)),
+        (parameters::plot(comparison), parameters::says(comparison)),
+    ];
+    Ok(figures.into_iter().filter_map(|(plot, says)| Some(Figure::new(plot?, says))).collect())
 }
 
 /// A text in which `commands` stand between backticks, as markup.

@@ -5,55 +5,55 @@ use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, width};
 use crate::palette::{GRID, INK, SOFT_INK};
 
 /// Room left of a panel for tick labels and the name of its axis.
-pub(super) const LEFT: f64 = 64.0;
+pub(crate) const LEFT: f64 = 64.0;
 /// Room below it.
-pub(super) const BELOW: f64 = 46.0;
+pub(crate) const BELOW: f64 = 46.0;
 
 /// A panel: axes and the rectangle that they span.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Panel {
+pub(crate) struct Panel {
     /// Across.
-    pub(super) x: Axis,
+    pub(crate) x: Axis,
     /// Upwards.
-    pub(super) y: Axis,
+    pub(crate) y: Axis,
     /// Left edge.
-    pub(super) left: f64,
+    pub(crate) left: f64,
     /// Upper edge.
-    pub(super) top: f64,
+    pub(crate) top: f64,
     /// Width without the labels.
-    pub(super) width: f64,
+    pub(crate) width: f64,
     /// Height without the labels.
-    pub(super) height: f64,
+    pub(crate) height: f64,
 }
 
 impl Panel {
     /// Where a value lies across.
-    pub(super) fn across(&self, value: f64) -> f64 {
+    pub(crate) fn across(&self, value: f64) -> f64 {
         self.left + self.width * self.x.share(value)
     }
 
     /// Where a value lies upwards.
-    pub(super) fn up(&self, value: f64) -> f64 {
+    pub(crate) fn up(&self, value: f64) -> f64 {
         self.top + self.height * (1.0 - self.y.share(value))
     }
 
     /// Where a pair lies.
-    pub(super) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+    pub(crate) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (self.across(x), self.up(y))
     }
 
     /// Lower edge.
-    pub(super) fn bottom(&self) -> f64 {
+    pub(crate) fn bottom(&self) -> f64 {
         self.top + self.height
     }
 
     /// Right edge.
-    pub(super) fn right(&self) -> f64 {
+    pub(crate) fn right(&self) -> f64 {
         self.left + self.width
     }
 
     /// Grid, ticks, their labels, names of the axes and a heading above.
-    pub(super) fn draw(&self, svg: &mut Svg, heading: &str, x_name: &str, y_name: &str) {
+    pub(crate) fn draw(&self, svg: &mut Svg, heading: &str, x_name: &str, y_name: &str) {
         self.draw_heading(svg, heading);
         self.draw_upwards(svg, y_name);
         let labels: Vec<_> = self.x.labels().into_iter().map(|(v, label)| (self.across(v), label)).collect();
@@ -64,14 +64,14 @@ impl Panel {
     }
 
     /// The heading, left-aligned with the panel.
-    pub(super) fn draw_heading(&self, svg: &mut Svg, heading: &str) {
+    pub(crate) fn draw_heading(&self, svg: &mut Svg, heading: &str) {
         if !heading.is_empty() {
             svg.text((self.left, self.top - 14.0), heading, Style::new(Anchor::Start).bold());
         }
     }
 
     /// The axis upwards with its grid.
-    pub(super) fn draw_upwards(&self, svg: &mut Svg, name: &str) {
+    pub(crate) fn draw_upwards(&self, svg: &mut Svg, name: &str) {
         for (value, label) in self.y.labels() {
             let y = self.up(value);
             let line = if value == 0.0 { Stroke::solid(SOFT_INK, 1.0) } else { Stroke::solid(GRID, 1.0) };
@@ -83,7 +83,7 @@ impl Panel {
     }
 
     /// The axis across with labels at places of its own, as many of them as there is room for.
-    pub(super) fn draw_across(&self, svg: &mut Svg, labels: &[(f64, String)], name: &str) {
+    pub(crate) fn draw_across(&self, svg: &mut Svg, labels: &[(f64, String)], name: &str) {
         let bottom = self.bottom();
         svg.line((self.left, bottom), (self.right(), bottom), Stroke::solid(INK, 1.0));
         for (x, label) in with_room(labels) {
@@ -109,7 +109,7 @@ fn with_room(labels: &[(f64, String)]) -> impl Iterator<Item = &(f64, String)> {
 }
 
 /// Panels side by side: left edge and width of each of `count` across `total`.
-pub(super) fn columns(count: usize, total: f64) -> Vec<(f64, f64)> {
+pub(crate) fn columns(count: usize, total: f64) -> Vec<(f64, f64)> {
     let gap = 16.0;
     let each = total / count.max(1) as f64;
     (0..count).map(|i| (i as f64 * each + LEFT, each - LEFT - gap)).collect()

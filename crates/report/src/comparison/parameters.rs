@@ -20,7 +20,7 @@ const SHADE: RGBColor = RGBColor(222, 235, 222);
 const BEYOND: f64 = 2.0;
 
 /// The plot; none if nothing was fitted.
-pub(super) fn plot(comparison: &Comparison) -> Option<Plot> {
+pub(crate) fn plot(comparison: &Comparison) -> Option<Plot> {
     let parameters = &last_fit(comparison)?.parameters;
     if parameters.is_empty() {
         return None;
@@ -108,7 +108,7 @@ fn draw(svg: &mut Svg, parameter: &Fitted, (y, row): (f64, f64)) {
 }
 
 /// The sentence above the plot.
-pub(super) fn says(comparison: &Comparison) -> String {
+pub(crate) fn says(comparison: &Comparison) -> String {
     let Some(fit) = last_fit(comparison).filter(|fit| !fit.parameters.is_empty()) else {
         return "Nothing was fitted: all numbers are those of the muscle file and of the literature."
             .to_owned();

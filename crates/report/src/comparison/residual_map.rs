@@ -23,7 +23,7 @@ const SCALE: f64 = 56.0;
 /// # Errors
 /// None at present; kept like that of the other plots.
 #[expect(clippy::unnecessary_wraps, reason = "all plots are called alike")]
-pub(super) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
+pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let maps: Vec<&ResidualMap> = comparison.maps.iter().filter(|map| !map.first_n.is_empty()).collect();
     if maps.is_empty() {
         return Ok(None);
@@ -182,7 +182,7 @@ fn draw_scale(svg: &mut Svg, (start, top): (f64, f64), width: f64, most: f64) {
 }
 
 /// The sentence above the plot.
-pub(super) fn says(comparison: &Comparison) -> String {
+pub(crate) fn says(comparison: &Comparison) -> String {
     let worst = |last: bool| {
         let cells = comparison.maps.iter().flat_map(move |map| {
             let values = if last { &map.last_n } else { &map.first_n };

@@ -13,13 +13,13 @@ use crate::palette::{INK, hex};
 const FONTS: &str = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif";
 
 /// Size of usual text.
-pub(super) const TEXT: f64 = 12.0;
+pub(crate) const TEXT: f64 = 12.0;
 
 /// Size of usual text by which the width of a heading is judged: bold letters are wider.
-pub(super) const BOLD: f64 = 1.12 * TEXT;
+pub(crate) const BOLD: f64 = 1.12 * TEXT;
 
 /// A drawing in progress.
-pub(super) struct Svg {
+pub(crate) struct Svg {
     name: &'static str,
     width: f64,
     height: f64,
@@ -29,7 +29,7 @@ pub(super) struct Svg {
 
 /// Where a text stands relative to its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Anchor {
+pub(crate) enum Anchor {
     /// It begins there.
     Start,
     /// Its middle is there.
@@ -40,58 +40,58 @@ pub(super) enum Anchor {
 
 /// How a text looks.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Style {
+pub(crate) struct Style {
     /// Relative to its point.
-    pub(super) anchor: Anchor,
+    pub(crate) anchor: Anchor,
     /// Height of the font.
-    pub(super) size: f64,
+    pub(crate) size: f64,
     /// Colour.
-    pub(super) colour: RGBColor,
+    pub(crate) colour: RGBColor,
     /// Whether it is a heading.
-    pub(super) bold: bool,
+    pub(crate) bold: bool,
 }
 
 impl Style {
     /// Usual text.
-    pub(super) const fn new(anchor: Anchor) -> Self {
+    pub(crate) const fn new(anchor: Anchor) -> Self {
         Self { anchor, size: TEXT, colour: INK, bold: false }
     }
 
     /// The same as a heading.
-    pub(super) const fn bold(self) -> Self {
+    pub(crate) const fn bold(self) -> Self {
         Self { bold: true, ..self }
     }
 
     /// The same in another colour.
-    pub(super) const fn colour(self, colour: RGBColor) -> Self {
+    pub(crate) const fn colour(self, colour: RGBColor) -> Self {
         Self { colour, ..self }
     }
 
     /// The same in another size.
-    pub(super) const fn size(self, size: f64) -> Self {
+    pub(crate) const fn size(self, size: f64) -> Self {
         Self { size, ..self }
     }
 }
 
 /// How a line looks.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stroke {
+pub(crate) struct Stroke {
     /// Colour.
-    pub(super) colour: RGBColor,
+    pub(crate) colour: RGBColor,
     /// Width.
-    pub(super) width: f64,
+    pub(crate) width: f64,
     /// Lengths of dashes and gaps; none for a solid line.
-    pub(super) dashes: Option<&'static str>,
+    pub(crate) dashes: Option<&'static str>,
 }
 
 impl Stroke {
     /// A solid line.
-    pub(super) const fn solid(colour: RGBColor, width: f64) -> Self {
+    pub(crate) const fn solid(colour: RGBColor, width: f64) -> Self {
         Self { colour, width, dashes: None }
     }
 
     /// A dashed line.
-    pub(super) const fn dashed(colour: RGBColor, width: f64) -> Self {
+    pub(crate) const fn dashed(colour: RGBColor, width: f64) -> Self {
         Self { colour, width, dashes: Some("5 3") }
     }
 
@@ -103,7 +103,7 @@ impl Stroke {
 
 impl Svg {
     /// An empty drawing; `name` keeps the ids of several drawings on one page apart.
-    pub(super) fn new(name: &'static str, width: f64, height: f64) -> Self {
+    pub(crate) fn new(name: &'static str, width: f64, height: f64) -> Self {
         Self { name, width, height, body: String::new(), hatched: false }
     }
 
@@ -114,12 +114,12 @@ impl Svg {
     }
 
     /// A text whose middle line is at `y`.
-    pub(super) fn text(&mut self, (x, y): (f64, f64), words: &str, style: Style) {
+    pub(crate) fn text(&mut self, (x, y): (f64, f64), words: &str, style: Style) {
         self.words(words, style, &format!(r#"x="{}" y="{}""#, short(x), short(y)));
     }
 
     /// A text that reads upwards, its middle at the point.
-    pub(super) fn text_upwards(&mut self, (x, y): (f64, f64), words: &str, style: Style) {
+    pub(crate) fn text_upwards(&mut self, (x, y): (f64, f64), words: &str, style: Style) {
         let (x, y) = (short(x), short(y));
         self.words(words, style, &format!(r#"x="{x}" y="{y}" transform="rotate(-90 {x} {y})""#));
     }
@@ -140,7 +140,7 @@ impl Svg {
     }
 
     /// A straight line.
-    pub(super) fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), stroke: Stroke) {
+    pub(crate) fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), stroke: Stroke) {
         self.put(format_args!(
             "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>\n",
             short(x1),
@@ -152,7 +152,7 @@ impl Svg {
     }
 
     /// A line through points.
-    pub(super) fn polyline(&mut self, points: &[(f64, f64)], stroke: Stroke) {
+    pub(crate) fn polyline(&mut self, points: &[(f64, f64)], stroke: Stroke) {
         if points.len() < 2 {
             return;
         }
@@ -164,19 +164,31 @@ impl Svg {
     }
 
     /// A filled area.
-    pub(super) fn polygon(&mut self, points: &[(f64, f64)], fill: RGBColor) {
+    pub(crate) fn polygon(&mut self, points: &[(f64, f64)], fill: RGBColor) {
         if points.len() >= 3 {
             self.put(format_args!("<polygon points=\"{}\" fill=\"{}\"/>\n", listed(points), hex(fill)));
         }
     }
 
+    /// A filled area through which one sees what lies below.
+    pub(crate) fn veil(&mut self, points: &[(f64, f64)], fill: RGBColor, opacity: f64) {
+        if points.len() >= 3 {
+            self.put(format_args!(
+                "<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"{}\"/>\n",
+                listed(points),
+                hex(fill),
+                short(opacity)
+            ));
+        }
+    }
+
     /// A filled rectangle; a negative size extends to the other side.
-    pub(super) fn rect(&mut self, corner: (f64, f64), size: (f64, f64), fill: RGBColor) {
+    pub(crate) fn rect(&mut self, corner: (f64, f64), size: (f64, f64), fill: RGBColor) {
         self.rectangle(corner, size, &hex(fill));
     }
 
     /// A hatched rectangle.
-    pub(super) fn hatch(&mut self, corner: (f64, f64), size: (f64, f64)) {
+    pub(crate) fn hatch(&mut self, corner: (f64, f64), size: (f64, f64)) {
         self.hatched = true;
         let fill = format!("url(#{}-hatch)", self.name);
         self.rectangle(corner, size, &fill);
@@ -193,7 +205,7 @@ impl Svg {
     }
 
     /// Round dots, all in one element: lines of no length with round caps.
-    pub(super) fn dots(&mut self, points: &[(f64, f64)], radius: f64, colour: RGBColor, opacity: f64) {
+    pub(crate) fn dots(&mut self, points: &[(f64, f64)], radius: f64, colour: RGBColor, opacity: f64) {
         if points.is_empty() {
             return;
         }
@@ -209,7 +221,7 @@ impl Svg {
     }
 
     /// A diamond with a light edge, which stands out on bars.
-    pub(super) fn diamond(&mut self, (x, y): (f64, f64), radius: f64, colour: RGBColor) {
+    pub(crate) fn diamond(&mut self, (x, y): (f64, f64), radius: f64, colour: RGBColor) {
         let points = [(x - radius, y), (x, y - radius), (x + radius, y), (x, y + radius)];
         self.put(format_args!(
             "<polygon points=\"{}\" fill=\"{}\" stroke=\"#FFFFFF\" stroke-width=\"1\"/>\n",
@@ -219,7 +231,7 @@ impl Svg {
     }
 
     /// The document.
-    pub(super) fn finish(self, title: &str) -> String {
+    pub(crate) fn finish(self, title: &str) -> String {
         let Self { name, width, height, body, hatched } = self;
         let (width, height) = (short(width), short(height));
         let hatch = if hatched {
@@ -269,7 +281,7 @@ fn escape(words: &str) -> String {
 }
 
 /// About how wide a text is, with the widest of the usual fonts in mind.
-pub(super) fn width(words: &str, size: f64) -> f64 {
+pub(crate) fn width(words: &str, size: f64) -> f64 {
     let letter = |c: char| match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '|' | '\'' | '!' | ' ' | 'I' => 0.36,
         'f' | 't' | 'r' | '(' | ')' | '[' | ']' | '-' | '/' => 0.42,
@@ -283,7 +295,7 @@ pub(super) fn width(words: &str, size: f64) -> f64 {
 }
 
 /// The text, or as much of its beginning as fits into `room`, with an ellipsis.
-pub(super) fn fitted(words: &str, size: f64, room: f64) -> String {
+pub(crate) fn fitted(words: &str, size: f64, room: f64) -> String {
     if width(words, size) <= room {
         return words.to_owned();
     }
@@ -298,7 +310,7 @@ pub(super) fn fitted(words: &str, size: f64, room: f64) -> String {
 }
 
 /// The name, or its beginning and its end with an ellipsis between them: names of a series differ at the end.
-pub(super) fn name_fitted(name: &str, size: f64, room: f64) -> String {
+pub(crate) fn name_fitted(name: &str, size: f64, room: f64) -> String {
     if width(name, size) <= room {
         return name.to_owned();
     }

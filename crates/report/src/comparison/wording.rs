@@ -5,7 +5,7 @@ use bulge_inference::{Comparison, Fit};
 use crate::comparison::number::newton;
 
 /// Whether effects were added, so that there is a before and an after.
-pub(super) fn has_effects(comparison: &Comparison) -> bool {
+pub(crate) fn has_effects(comparison: &Comparison) -> bool {
     comparison.ladder.len() > 1
 }
 
@@ -46,13 +46,13 @@ pub(super) fn named(what: &str, name: &str) -> String {
 }
 
 /// The title of an effect, or its name if it is on no rung.
-pub(super) fn effect_title<'a>(comparison: &'a Comparison, effect: &'a str) -> &'a str {
+pub(crate) fn effect_title<'a>(comparison: &'a Comparison, effect: &'a str) -> &'a str {
     let rung = comparison.ladder.iter().find(|rung| rung.added.as_deref() == Some(effect));
     rung.map_or(effect, |rung| &rung.title)
 }
 
 /// A first letter as at the beginning of a sentence.
-pub(super) fn sentence(words: &str) -> String {
+pub(crate) fn sentence(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

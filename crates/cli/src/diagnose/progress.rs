@@ -1,0 +1,71 @@
+//! A bar on standard error for whoever waits at a terminal.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{IsTerminal, stderr, stdout};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Hears how far the work is, 0 to 1, and what is being done.
+pub(super) type Listener = Arc<dyn Fn(f64, &str) + Send + Sync>;
+
+/// Steps of the bar.
+const STEPS: u32 = 1000;
+
+/// The bar; it goes away with this value.
+pub(super) struct Progress(ProgressBar);
+
+impl Progress {
+    /// A bar, if standard error is a terminal; none beside JSON that goes elsewhere.
+    pub(super) fn new(json: bool) -> Self {
+        if !stderr().is_terminal() || (json && !stdout().is_terminal()) {
+            return Self(ProgressBar::hidden());
+        }
+        let bar = ProgressBar::with_draw_target(Some(u64::from(STEPS)), ProgressDrawTarget::stderr());
+        if let Ok(style) = ProgressStyle::with_template("  {spinner} [{bar:30}] {percent:>3} %  {msg}") {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        bar.enable_steady_tick(Duration::from_millis(120));
+        Self(bar)
+    }
+
+    /// What moves the bar.
+    pub(super) fn listener(&self) -> Listener {
+        let bar = self.0.clone();
+        Arc::new(move |share, what| {
+            bar.set_position(position(share));
+            bar.set_message(what.to_owned());
+        })
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// Step of a share; what is no share is at the nearer end.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and STEPS")]
+fn position(share: f64) -> u64 {
+    (f64::from(STEPS) * share.clamp(0.0, 1.0)) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_is_a_step_of_the_bar() {
+        assert_eq!([-1.0, 0.0, 0.25, 1.0, 7.0, f64::NAN].map(position), [0, 0, 250, 1000, 1000, 0]);
+    }
+
+    #[test]
+    fn a_hidden_bar_hears_from_any_thread() {
+        let progress = Progress(ProgressBar::hidden());
+        let listener = progress.listener();
+        std::thread::scope(|scope| {
+            scope.spawn(|| listener(0.5, "trying"));
+        });
+        assert_eq!((progress.0.position(), progress.0.message().as_str()), (500, "trying"));
+    }
+}

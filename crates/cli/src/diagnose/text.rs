@@ -1,0 +1,440 @@
+//! A diagnosis for people: the verdict first, then what it rests on, in about forty lines.
+
+use bulge_inference::{CandidateResult, Diagnosis, LadderStep, Missing, Verdict};
+use bulge_report::diagnosis::{
+    base_name, chance, headlines, is_significant, noise_says, once_in, others_in_class, remains_says,
+};
+use std::fmt::Write;
+
+use crate::text::{significant, with_interval};
+
+/// Lines of a kind that are shown; JSON has all.
+const MOST_NUMBERS: usize = 6;
+const MOST_PLACES: usize = 4;
+const MOST_HINTS: usize = 3;
+const MOST_RIVALS: usize = 3;
+const MOST_LIMITS: usize = 5;
+const MOST_WARNINGS: usize = 6;
+/// Width of running text.
+const WIDTH: usize = 108;
+
+/// The command line that led to the diagnosis, as far as the next step takes it over.
+#[derive(Debug)]
+pub(super) struct Call {
+    /// Data files.
+    pub(super) data: Vec<String>,
+    /// Muscle as given.
+    pub(super) muscle: String,
+    /// Effects that the base had.
+    pub(super) with: Vec<String>,
+    /// File of the user's own effects.
+    pub(super) effects: Option<String>,
+}
+
+/// The diagnosis for people.
+pub(super) fn text(diagnosis: &Diagnosis, call: &Call) -> String {
+    let mut out = String::new();
+    measured(&mut out, diagnosis);
+    verdict(&mut out, diagnosis);
+    ladder(&mut out, diagnosis);
+    places(&mut out, diagnosis);
+    let _ = writeln!(out, "\n  what remains: {}", remains_says(diagnosis));
+    for hint in diagnosis.remaining.hints.iter().take(MOST_HINTS) {
+        paragraph(&mut out, "    ", hint);
+    }
+    paragraph(&mut out, "  ", &format!("noise: {}", noise_says(diagnosis)));
+    rivals(&mut out, diagnosis);
+    limits(&mut out, diagnosis);
+    next(&mut out, diagnosis);
+    for warning in diagnosis.warnings.iter().take(MOST_WARNINGS) {
+        let _ = writeln!(out, "  ! {warning}");
+    }
+    if let Some(more) = diagnosis.warnings.len().checked_sub(MOST_WARNINGS).filter(|more| *more > 0) {
+        let _ = writeln!(out, "  ! {more} more: see --json");
+    }
+    accept(&mut out, diagnosis, call);
+    out
+}
+
+fn measured(out: &mut String, diagnosis: &Diagnosis) {
+    let data = &diagnosis.comparison.data;
+    let _ = writeln!(out, "{} diagnosed on {}\n", diagnosis.muscle, data.files.join(", "));
+    let sweeps =
+        if data.is_path { format!(" in {} sweeps", data.sweeps) } else { " in a static map".to_owned() };
+    let _ = writeln!(
+        out,
+        "  {} rows{sweeps}: {} to {} bar, contraction {} to {} %, force {} to {} N",
+        data.rows,
+        three(data.pressure_pa[0] / 1e5),
+        three(data.pressure_pa[1] / 1e5),
+        three(100.0 * data.contraction[0]),
+        three(100.0 * data.contraction[1]),
+        three(data.force_n[0]),
+        three(data.force_n[1])
+    );
+}
+
+/// The verdict in plain words, and each effect with its class and numbers.
+fn verdict(out: &mut String, diagnosis: &Diagnosis) {
+    out.push('\n');
+    let claims = headlines(diagnosis);
+    let is_claim = |line: &&String| line.starts_with("missing: ") || line.starts_with("nearest: ");
+    for line in claims.iter().filter(|line| !is_claim(line)) {
+        let _ = writeln!(out, "  {line}");
+    }
+    for (line, missing) in claims.iter().filter(is_claim).zip(&diagnosis.missing) {
+        let _ = writeln!(out, "  {line}");
+        found(out, missing, diagnosis.verdict == Verdict::Missing);
+    }
+    if !diagnosis.says.trim().is_empty() {
+        paragraph(out, "  ", diagnosis.says.trim());
+    }
+}
+
+fn found(out: &mut String, missing: &Missing, is_claimed: bool) {
+    let others: Vec<&str> = others_in_class(missing).collect();
+    if !others.is_empty() {
+        let right = match missing.simulated.claims {
+            claims if claims == 0 || !is_claimed => String::new(),
+            _ => format!(" (the class holds the right one {} of the time)", chance(missing.simulated.class)),
+        };
+        paragraph(out, "    ", &format!("these data cannot tell it from: {}{right}", others.join(", ")));
+    }
+    let width = missing.parameters.keys().map(String::len).max().unwrap_or(0);
+    for (name, p) in missing.parameters.iter().take(MOST_NUMBERS) {
+        let [value, low, high] = with_interval(p.value, p.low, p.high);
+        let unit = if p.unit == "1" { "" } else { &p.unit };
+        let _ = writeln!(
+            out,
+            "    {name:<width$}  {} (95 %: {low} to {high})",
+            format!("{value} {unit}").trim_end()
+        );
+    }
+    if let Some(more) = missing.parameters.len().checked_sub(MOST_NUMBERS).filter(|more| *more > 0) {
+        let _ = writeln!(out, "    and {more} more numbers: see --json");
+    }
+    if !missing.plausible {
+        let _ = writeln!(out, "    ! IMPLAUSIBLE numbers: a wrong cure, even if the error falls");
+    }
+}
+
+/// Errors from the base to the last effect, as `bulge compare` prints them.
+fn ladder(out: &mut String, diagnosis: &Diagnosis) {
+    let base = base_name(diagnosis);
+    let name = |step: &LadderStep| step.added.clone().unwrap_or_else(|| base.clone());
+    let width = diagnosis.ladder.iter().map(|step| name(step).len()).max().unwrap_or(0).max(14);
+    let percent =
+        |error_n: f64| 100.0 * error_n / diagnosis.comparison.data.full_scale_n.max(f64::MIN_POSITIVE);
+    let _ = writeln!(
+        out,
+        "\n    {:<width$}  {:>9}  {:>10}  {:>9}  adequate",
+        "model", "error", "full scale", "held out"
+    );
+    for step in &diagnosis.ladder {
+        let sign = if step.added.is_some() { "+" } else { " " };
+        let held = step.held_out_rmse_n.map_or_else(|| "-".to_owned(), |v| format!("{} N", three(v)));
+        let _ = writeln!(
+            out,
+            "  {sign} {:<width$}  {:>7} N  {:>8.2} %  {held:>9}  {}",
+            name(step),
+            three(step.rmse_n),
+            percent(step.rmse_n),
+            if step.adequate { "yes" } else { "no" }
+        );
+    }
+    let _ = writeln!(
+        out,
+        "    {:<width$}  {:>7} N  {:>8.2} %  ({})",
+        "noise floor",
+        three(diagnosis.noise_floor_n),
+        percent(diagnosis.noise_floor_n),
+        diagnosis.noise.source
+    );
+}
+
+/// On what the misfit of the base depends, beyond chance.
+fn places(out: &mut String, diagnosis: &Diagnosis) {
+    let found: Vec<_> = diagnosis.r#where.iter().filter(|located| is_significant(located.p)).collect();
+    if found.is_empty() {
+        out.push_str("\n  the misfit of the base depends on nothing that stands out of the noise\n");
+        return;
+    }
+    out.push_str("\n  on what the misfit of the base depends\n");
+    let width = found.iter().map(|located| located.variable.len()).max().unwrap_or(0);
+    for located in found.iter().take(MOST_PLACES) {
+        let _ = writeln!(
+            out,
+            "    {:<width$}  {:>3.0} %  {:<11}  {}",
+            located.variable,
+            100.0 * located.share,
+            once_in(located.p),
+            located.says
+        );
+    }
+}
+
+/// The nearest rivals of each effect that was found.
+fn rivals(out: &mut String, diagnosis: &Diagnosis) {
+    let mut lines = Vec::new();
+    for missing in &diagnosis.missing {
+        let mut nearest: Vec<_> = missing.rivals.iter().collect();
+        nearest.sort_by(|a, b| a.separation.total_cmp(&b.separation));
+        let named = nearest.iter().take(MOST_RIVALS).map(|r| format!("{} {}", r.effect, three(r.separation)));
+        let named: Vec<String> = named.collect();
+        if !named.is_empty() {
+            lines.push(format!("    {}: {}", missing.effect, named.join(", ")));
+        }
+    }
+    if !lines.is_empty() {
+        let _ = writeln!(
+            out,
+            "  nearest rivals, by sigmas between them (told apart from 3.29 on)\n{}",
+            lines.join("\n")
+        );
+    }
+}
+
+/// What of some effects these data would have shown.
+fn limits(out: &mut String, diagnosis: &Diagnosis) {
+    let is_absent = |c: &&CandidateResult| c.status == "rejected" && c.detection_limit.is_some();
+    let absent: Vec<&CandidateResult> = diagnosis.candidates.iter().filter(is_absent).collect();
+    let named = absent.iter().take(MOST_LIMITS).filter_map(|c| {
+        let unit = if c.unit == "1" { "" } else { &c.unit };
+        let force = c.detection_limit_n.map_or_else(String::new, |n| format!(" ({} N)", three(n)));
+        Some(format!("{} {}{force}", c.effect, format!("{} {unit}", three(c.detection_limit?)).trim_end()))
+    });
+    let named: Vec<String> = named.collect();
+    if !named.is_empty() {
+        let all = absent.len();
+        let of_all = if all > named.len() { format!("; all {all}: --json") } else { String::new() };
+        paragraph(out, "  ", &format!("not found, and would show from: {}{of_all}", named.join(", ")));
+    }
+    let of = |status: &str| -> Vec<&str> {
+        diagnosis.candidates.iter().filter(|c| c.status == status).map(|c| c.effect.as_str()).collect()
+    };
+    for (status, words) in [
+        ("not-converged", "did not converge, so neither found nor rejected"),
+        ("not-testable", "could not be looked for in these data"),
+    ] {
+        let names = of(status);
+        if !names.is_empty() {
+            paragraph(out, "  ", &format!("{words}: {}", names.join(", ")));
+        }
+    }
+}
+
+fn next(out: &mut String, diagnosis: &Diagnosis) {
+    let Some(next) = &diagnosis.next_experiment else { return };
+    paragraph(out, "  ", &format!("next experiment: {}", next.says.trim()));
+    if !next.separates.is_empty() {
+        let times = if next.repeats == 1 { "once" } else { "times" };
+        let repeats = if next.repeats == 1 { times.to_owned() } else { format!("{} {times}", next.repeats) };
+        let _ = writeln!(
+            out,
+            "    it separates {} by {} sigma, done {repeats}",
+            next.separates.join(" and "),
+            three(next.sigma)
+        );
+    }
+}
+
+/// How to go on with what was found.
+fn accept(out: &mut String, diagnosis: &Diagnosis, call: &Call) {
+    if diagnosis.missing.is_empty() || diagnosis.verdict != Verdict::Missing {
+        return;
+    }
+    let missing = diagnosis.missing.iter().map(|missing| missing.effect.as_str());
+    let with: Vec<&str> = call.with.iter().map(String::as_str).chain(missing).collect();
+    let data: Vec<String> = call.data.iter().map(|path| quoted(path)).collect();
+    let own = call.effects.as_ref().map_or_else(String::new, |file| format!(" --effects {}", quoted(file)));
+    let rest = format!(
+        "{} --muscle {}{own} --with {}",
+        data.join(" "),
+        quoted(&call.muscle),
+        quoted(&with.join(","))
+    );
+    let _ = writeln!(
+        out,
+        "\n  to accept this step:\n    bulge diagnose {rest}\n    bulge fit {rest} --out learnt.toml"
+    );
+}
+
+/// A word of a command line, in quotes if a shell would take it for more than one.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./,:=+@\\".contains(c);
+    if !word.is_empty() && word.chars().all(plain) { word.to_owned() } else { format!("\"{word}\"") }
+}
+
+/// Keeps a number and its unit on one line.
+const TIE: char = '\u{a0}';
+
+/// Running text, broken at spaces (not before a per cent sign); lines after the first are set in a little more.
+fn paragraph(out: &mut String, indent: &str, words: &str) {
+    let mut line = indent.to_owned();
+    let mut is_empty = true;
+    let tied = words.replace(" %", &format!("{TIE}%"));
+    for word in tied.split([' ', '\n']).filter(|word| !word.is_empty()) {
+        if !is_empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            let _ = writeln!(out, "{line}");
+            line = format!("{indent}  ");
+            is_empty = true;
+        }
+        if !is_empty {
+            line.push(' ');
+        }
+        line.push_str(&word.replace(TIE, " "));
+        is_empty = false;
+    }
+    let _ = writeln!(out, "{line}");
+}
+
+fn three(value: f64) -> String {
+    significant(value, 3)
+}
+
+#[cfg(test)]
+#[path = "../../../report/tests/diagnosed/mod.rs"]
+mod diagnosed;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::Catalogue;
+    use bulge_inference::{Comparison, Options, compare};
+    use bulge_measurements::Data;
+    use bulge_muscles::from_toml;
+
+    const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data");
+
+    /// The shipped loops against the textbook cylinder with friction.
+    fn comparison() -> Comparison {
+        let muscle =
+            from_toml(&std::fs::read_to_string(format!("{FOLDER}/braid.toml")).unwrap(), "braid").unwrap();
+        let data = Data::read(&[format!("{FOLDER}/braid-loops.csv")]).unwrap();
+        let catalogue = Catalogue::builtin();
+        let effects = ["bladder-elasticity", "coulomb-friction"]
+            .map(|name| std::sync::Arc::clone(catalogue.find(name).unwrap()));
+        compare(&data, &muscle, &Options::new(catalogue, effects.to_vec())).unwrap()
+    }
+
+    fn call() -> Call {
+        Call {
+            data: vec!["my loops.csv".to_owned(), "b.csv".to_owned()],
+            muscle: "braid.toml".to_owned(),
+            with: vec!["end-taper".to_owned()],
+            effects: Some("own.toml".to_owned()),
+        }
+    }
+
+    fn lines(diagnosis: &Diagnosis) -> Vec<String> {
+        let text = text(diagnosis, &call());
+        assert!(text.lines().count() <= 42 && !text.contains("NaN"), "{text}");
+        text.lines().map(str::to_owned).collect()
+    }
+
+    fn place(lines: &[String], part: &str) -> usize {
+        lines
+            .iter()
+            .position(|line| line.contains(part))
+            .unwrap_or_else(|| panic!("no {part:?} in {lines:#?}"))
+    }
+
+    #[test]
+    fn what_is_missing_comes_first_with_class_and_numbers() {
+        let diagnosis = diagnosed::missing(comparison());
+        let lines = lines(&diagnosis);
+        let order = [
+            "20 mm braid, textbook diagnosed on ",
+            "  missing: bladder-elasticity (on data like these such a claim is right 97 % of the time)",
+            "    these data cannot tell it from: wall-thickness (the class holds the right one 99 % of the time)",
+            "    modulus  0.310 MPa (95 %: 0.280 to 0.330)",
+            "  missing: coulomb-friction (on data like these such a claim is right more than 99 % of the time)",
+            "    friction  14 N (95 %: 8 to 20)",
+            "    ! IMPLAUSIBLE numbers",
+            "  Two things are missing.",
+            "    equilibrium",
+            "  + bladder-elasticity",
+            "  + coulomb-friction",
+            "    noise floor",
+            "    direction   71 %  p < 0.001    flips sign with direction",
+            "  what remains: 0.4 N of systematic misfit (RMS; 95 % interval 0.0 to 1.2 N): no structure",
+            "    grows with the pressure",
+            "  noise: a single reading scatters by 4.10 N, 1.00 N of it correlated over 5.00 s",
+            "    bladder-elasticity: wall-thickness 1.20, hoop-elasticity 7.50",
+            "  not found, and would show from: creep 0.220 N/decade (0.500 N), end-slip 0.0500 um/N",
+            "  did not converge, so neither found nor rejected: bouc-wen",
+            "  could not be looked for in these data: temperature",
+            "  next experiment: Hold at 3 bar for an hour.",
+            "    it separates bladder-elasticity and wall-thickness by 4.90 sigma, done 2 times",
+            "  ! one warning",
+            "  to accept this step:",
+            "    bulge diagnose \"my loops.csv\" b.csv --muscle braid.toml --effects own.toml --with end-taper,bladder-elasticity,coulomb-friction",
+            "    bulge fit \"my loops.csv\" b.csv --muscle braid.toml --effects own.toml --with end-taper,bladder-elasticity,coulomb-friction --out learnt.toml",
+        ];
+        let places = order.map(|part| place(&lines, part));
+        assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{places:?} in {lines:#?}");
+        assert!(places[1] <= 4, "the verdict is in the first lines");
+    }
+
+    #[test]
+    fn the_ladder_says_which_step_is_adequate() {
+        let diagnosis = diagnosed::missing(comparison());
+        let lines = lines(&diagnosis);
+        let words = |part: &str| -> Vec<String> {
+            lines[place(&lines, part)].split_whitespace().map(str::to_owned).collect()
+        };
+        let base = words("    equilibrium");
+        assert_eq!([&base[1], &base[2], &base[5], &base[6], &base[7]], ["31.0", "N", "33.0", "N", "no"]);
+        let percent = 100.0 * 31.0 / diagnosis.comparison.data.full_scale_n;
+        assert_eq!(base[3], format!("{percent:.2}"));
+        assert_eq!(words("  + coulomb-friction").last().unwrap(), "yes");
+        assert_eq!(words("noise floor")[2..4], ["4.10", "N"]);
+    }
+
+    #[test]
+    fn every_verdict_has_its_words() {
+        let comparison = comparison();
+        let adequate = lines(&diagnosed::adequate(comparison.clone()));
+        place(&adequate, "  adequate: the model explains these data within noise and tolerance");
+        place(&adequate, "  the misfit of the base depends on nothing that stands out of the noise");
+        let unknown = lines(&diagnosed::unknown(comparison.clone()));
+        place(&unknown, "  unknown: these data hold a structure that no effect of the catalogue explains");
+        place(&unknown, "  nearest: bladder-elasticity (it lowers the error and leaves the structure)");
+        place(&unknown, "it has a structure beyond chance");
+        let cannot_tell = lines(&diagnosed::cannot_tell(comparison.clone()));
+        place(&cannot_tell, "  cannot tell: these data are too few or too noisy for a verdict");
+        for lines in [&adequate, &unknown, &cannot_tell] {
+            let claims = |part: &str| lines.iter().any(|line| line.contains(part));
+            assert!(
+                !claims("such a claim") && !claims("to accept") && !claims("holds the right one"),
+                "{lines:#?}"
+            );
+        }
+        let mut more = diagnosed::missing(comparison);
+        more.remaining.structured = true;
+        place(&lines(&more), "  unknown: what is left then has a structure");
+    }
+
+    #[test]
+    fn words_of_a_shell_are_quoted() {
+        assert_eq!(["a.csv", "my file", ""].map(quoted), ["a.csv", "\"my file\"", "\"\""]);
+    }
+
+    #[test]
+    fn running_text_keeps_its_words_and_its_width() {
+        let words = "bladder-elasticity and more ".repeat(20);
+        let mut out = String::new();
+        paragraph(&mut out, "    ", &words);
+        assert!(
+            out.lines().count() > 4
+                && out.lines().all(|line| line.len() <= WIDTH && line.starts_with("    "))
+        );
+        assert!(out.split_whitespace().eq(words.split_whitespace()));
+        let mut out = String::new();
+        paragraph(&mut out, "", &"right 99 % ".repeat(40));
+        assert!(
+            out.lines().count() > 3 && !out.contains("\n  %") && out.matches("99 %").count() == 40,
+            "{out}"
+        );
+    }
+}

@@ -1,0 +1,183 @@
+//! `diagnose` as a user sees it: hidden effects are named, documents and reports are whole, messages for bad input.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod support;
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use support::{Folder, bulge, failure, json};
+
+const MUSCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid.toml");
+const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml");
+
+/// Simulated measurements: data file and muscle file.
+fn simulated(folder: &Folder, hidden: &str) -> [String; 2] {
+    let out = folder.path("trial");
+    let mut arguments = vec!["simulate", MUSCLE, "--protocol", PROTOCOL, "--out", &out, "--seed", "7"];
+    if !hidden.is_empty() {
+        arguments.extend(["--with", hidden]);
+    }
+    let output = bulge(&arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    [folder.path("trial/data.csv"), folder.path("trial/muscle.toml")]
+}
+
+fn has(value: &Value, keys: &[&str]) {
+    let object = value.as_object().unwrap();
+    for key in keys {
+        assert!(object.contains_key(*key), "no `{key}` in {value:.300}");
+    }
+}
+
+#[test]
+fn a_hidden_effect_is_named_and_the_document_has_all_keys() {
+    let folder = Folder::new("diagnose-hidden");
+    let [data, muscle] = simulated(&folder, "bladder-elasticity=0.31 MPa");
+    let out = folder.path("report");
+    let found = json(&["diagnose", &data, "--muscle", &muscle, "--seed", "3", "--out", &out, "--json"]);
+    assert_eq!(
+        (found["schema"].as_str(), found["verdict"].as_str()),
+        (Some("bulge.diagnosis/1"), Some("missing"))
+    );
+    has(
+        &found,
+        &[
+            "schema",
+            "data",
+            "noise",
+            "verdict",
+            "missing",
+            "candidates",
+            "ladder",
+            "noise_floor_n",
+            "where",
+            "remaining",
+            "next_experiment",
+        ],
+    );
+    has(&found["data"], &["rows", "sha256", "sweeps"]);
+    has(&found["noise"], &["sd_n", "correlated", "source"]);
+    let named = &found["missing"][0];
+    has(named, &["effect", "class", "confidence", "parameters", "plausible"]);
+    assert_eq!(named["effect"], "bladder-elasticity", "{named}");
+    assert_eq!((&named["class"][0], &named["plausible"]), (&"bladder-elasticity".into(), &true.into()));
+    for number in named["parameters"].as_object().unwrap().values() {
+        has(number, &["value", "unit", "low", "high"]);
+        let [low, value, high] = ["low", "value", "high"].map(|key| number[key].as_f64().unwrap());
+        assert!(low < value && value < high && (value - 0.31).abs() < 0.003, "{number}");
+    }
+    has(&found["candidates"][0], &["effect", "log_evidence", "score", "status"]);
+    for step in found["ladder"].as_array().unwrap() {
+        has(step, &["added", "rmse_n", "held_out_rmse_n", "adequate"]);
+    }
+    assert!(found["ladder"][0]["added"].is_null() && found["ladder"][0]["adequate"] == false);
+    has(&found["where"][0], &["variable", "share", "p", "says"]);
+    assert_eq!(found["where"][0]["variable"], "contraction");
+    has(&found["remaining"], &["structured", "misfit_n", "hints"]);
+    // The report holds the same.
+    let read = |name: &str| fs::read_to_string(Path::new(&out).join(name)).unwrap();
+    assert_eq!(serde_json::from_str::<Value>(&read("diagnosis.json")).unwrap(), found);
+    let page = read("report.html");
+    assert!(page.starts_with("<!DOCTYPE html>") && page.contains("Missing: bladder-elasticity"));
+    for name in ["ladder", "explained-1", "candidates", "rivals", "where", "remaining", "force"] {
+        assert!(Path::new(&out).join(format!("{name}.svg")).is_file(), "{name}.svg");
+    }
+    let parts = fs::read_dir(&out)
+        .unwrap()
+        .filter(|e| e.as_ref().unwrap().file_name().to_string_lossy().ends_with(".part"));
+    assert_eq!(parts.count(), 0);
+}
+
+#[test]
+fn people_read_the_verdict_first_and_how_to_go_on() {
+    let folder = Folder::new("diagnose-text");
+    let [data, muscle] = simulated(&folder, "bladder-elasticity=0.31 MPa");
+    let output = bulge(&["diagnose", &data, "--muscle", &muscle]);
+    assert!(
+        output.status.success() && output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let text = String::from_utf8(output.stdout).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines.len() <= 42, "{text}");
+    let place = |part: &str| {
+        lines.iter().position(|line| line.contains(part)).unwrap_or_else(|| panic!("{part}: {text}"))
+    };
+    assert!(place("  missing: bladder-elasticity (on data like these") < 6);
+    assert!(place("+ bladder-elasticity") < place("noise floor"));
+    let accept = format!("bulge diagnose {data} --muscle {muscle} --with bladder-elasticity");
+    assert!(place("noise: a single reading") < place(&accept));
+    // What is accepted is not found again.
+    let next = json(&["diagnose", &data, "--muscle", &muscle, "--with", "bladder-elasticity", "--json"]);
+    assert_eq!(next["verdict"], "adequate", "{}", next["says"]);
+    assert_eq!(next["missing"].as_array().unwrap().len(), 0);
+    let learnt = folder.path("learnt.toml");
+    let fit = bulge(&["fit", &data, "--muscle", &muscle, "--with", "bladder-elasticity", "--out", &learnt]);
+    assert!(
+        fit.status.success() && fs::read_to_string(&learnt).unwrap().contains("[effects.bladder-elasticity]")
+    );
+}
+
+#[test]
+fn nothing_is_named_where_nothing_is_hidden() {
+    let folder = Folder::new("diagnose-null");
+    let [data, muscle] = simulated(&folder, "");
+    let arguments = ["diagnose", &data, "--muscle", &muscle, "--tolerance", "5 N", "--seed", "3", "--json"];
+    let first = bulge(&arguments);
+    let found: Value = serde_json::from_slice(&first.stdout).unwrap();
+    assert_eq!(found["verdict"], "adequate", "{}", found["says"]);
+    // The same seed gives the same bytes.
+    assert_eq!(bulge(&arguments).stdout, first.stdout);
+}
+
+#[test]
+fn bad_input_gets_one_clear_message() {
+    let folder = Folder::new("diagnose-bad");
+    let data = folder.write("data.csv", "pressure [bar],contraction [%],force [N]\n1,5,100\n1,6,90\n");
+    let file = folder.write("taken", "");
+    let call = |more: &[&str]| {
+        let mut arguments = vec!["diagnose", &data, "--muscle", MUSCLE];
+        arguments.extend(more);
+        failure(&arguments)
+    };
+    for (more, expected, parts) in [
+        (&["--tolerance", "5 mm"][..], 1, &["--tolerance", "mm"][..]),
+        (&["--tolerance", "5"], 1, &["--tolerance", "unit"]),
+        (&["--tolerance=-5 N"], 1, &["--tolerance", "less than nothing", "`5 N`"]),
+        (&["--tolerance", "much"], 1, &["--tolerance", "much"]),
+        (&["--with", "fibre-strech"], 1, &["did you mean `fibre-stretch`"]),
+        (&["--effects", "nowhere.toml"], 1, &["nowhere.toml"]),
+        (&["--seed", "x"], 2, &["--seed", "invalid"]),
+        (&["--tolerence", "5 N"], 2, &["--tolerance"]),
+    ] {
+        let (status, message) = call(more);
+        assert_eq!(status, expected, "{message}");
+        for part in parts {
+            assert!(message.contains(part), "{message:?} does not say {part:?}");
+        }
+        assert!(message.starts_with("error: ") && message.lines().count() < 12, "{message}");
+    }
+    let (status, message) = failure(&["diagnose", "--muscle", MUSCLE]);
+    assert!(status == 2 && message.contains("DATA"), "{message}");
+    let (status, message) = failure(&["diagnose", "nowhere.csv", "--muscle", MUSCLE]);
+    assert!(status == 1 && message.contains("nowhere.csv"), "{message}");
+    // Nothing is left behind.
+    assert!(Path::new(&file).is_file());
+    assert_eq!(folder.names(), ["data.csv", "taken"]);
+}
+
+#[test]
+fn a_report_that_has_no_place_is_refused_and_nothing_is_written() {
+    let folder = Folder::new("diagnose-place");
+    let [data, muscle] = simulated(&folder, "bladder-elasticity=0.31 MPa");
+    let file = folder.write("taken", "");
+    let (status, message) = failure(&["diagnose", &data, "--muscle", &muscle, "--out", &file]);
+    assert!(status == 1 && message.contains("it is a file"), "{message}");
+    fs::create_dir_all(folder.0.join("out/where.svg")).unwrap();
+    let (status, message) = failure(&["diagnose", &data, "--muscle", &muscle, "--out", &folder.path("out")]);
+    assert!(status == 1 && message.contains("where.svg") && message.contains("move it away"), "{message}");
+    assert_eq!(fs::read_dir(folder.0.join("out")).unwrap().count(), 1);
+}

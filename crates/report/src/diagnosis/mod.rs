@@ -1,0 +1,73 @@
+//! The report of a diagnosis: one page that stands for itself, each of its plots, and the sentences that it shares with the command line.
+//!
+//! ```text
+//! html(&diagnosis)?      -> report.html, without scripts, network or fonts of its own
+//! plots(&diagnosis)?     -> NAME.svg for each plot
+//! headlines(&diagnosis)  -> the verdict in plain words
+//! ```
+//! Numbers come from the diagnosis alone: nothing is fitted or predicted here. A misfit is measured - model throughout.
+
+mod candidates;
+mod check;
+mod explained;
+mod headline;
+mod limits;
+mod located;
+mod multiples;
+mod page;
+mod remaining;
+mod rivals;
+mod steps;
+mod words;
+
+use bulge_inference::Diagnosis;
+
+use crate::PlotError;
+use crate::comparison::Plot;
+
+pub use headline::{headlines, others_in_class};
+pub use words::{base_name, chance, found_by, is_significant, noise_says, once_in, remains_says};
+
+/// The page: one HTML document with the verdict, all plots and tables, readable on screen and on paper.
+///
+/// # Errors
+/// A number that isn't finite, lists of different lengths that belong together, or values too far apart for an axis.
+///
+/// # Examples
+/// ```
+/// use bulge_inference::Diagnosis;
+/// use bulge_report::diagnosis::{headlines, html, plots};
+///
+/// /// The verdict on the screen, the page and its plots as files.
+/// fn write(diagnosis: &Diagnosis, folder: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
+///     println!("{}", headlines(diagnosis).join("\n"));
+///     std::fs::write(folder.join("report.html"), html(diagnosis)?)?;
+///     for plot in plots(diagnosis)? {
+///         std::fs::write(folder.join(plot.name).with_extension("svg"), plot.svg)?;
+///     }
+///     Ok(())
+/// }
+/// ```
+pub fn html(diagnosis: &Diagnosis) -> Result<String, PlotError> {
+    check::check(diagnosis)?;
+    page::render(diagnosis)
+}
+
+/// The plots for which there are numbers, in the order of the page: those of the diagnosis, then those of its comparison.
+///
+/// # Errors
+/// As [`html`].
+pub fn plots(diagnosis: &Diagnosis) -> Result<Vec<Plot>, PlotError> {
+    check::check(diagnosis)?;
+    let mut plots: Vec<Plot> = Vec::new();
+    plots.extend(steps::plot(diagnosis)?);
+    plots.extend(explained::plots(diagnosis)?);
+    plots.extend(candidates::plot(diagnosis)?);
+    plots.extend(rivals::plot(diagnosis)?);
+    plots.extend(located::plot(diagnosis)?);
+    plots.extend(remaining::plot(diagnosis)?);
+    // The ladder of the comparison is that of the diagnosis.
+    let shown = crate::comparison::plots(&diagnosis.comparison)?;
+    plots.extend(shown.into_iter().filter(|plot| plot.name != "ladder"));
+    Ok(plots)
+}

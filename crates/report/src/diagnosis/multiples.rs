@@ -1,0 +1,118 @@
+//! Small panels over the contraction, one for each pressure level, with a colour and a dash for each direction of movement.
+
+use plotters::style::RGBColor;
+
+use crate::PlotError;
+use crate::axis::Axis;
+use crate::comparison::WIDTH;
+use crate::comparison::legend::{self, Mark};
+use crate::comparison::levels::{distinct, same, spread};
+use crate::comparison::number::bar;
+use crate::comparison::panel::{BELOW, Panel, columns};
+use crate::comparison::svg::{Stroke, Svg};
+use crate::palette::{CATEGORIES, INK};
+
+/// Panels at most.
+const LEVELS: usize = 6;
+const HEIGHT: f64 = 190.0;
+const HEAD: f64 = 34.0;
+
+/// A curve at one pressure and in one direction.
+pub(super) struct Piece<'a> {
+    /// Pressure \[Pa\].
+    pub(super) pressure_pa: f64,
+    /// +1 shortening, -1 lengthening, 0 at rest.
+    pub(super) direction: f64,
+    /// Contractions.
+    pub(super) contraction: &'a [f64],
+}
+
+impl Piece<'_> {
+    /// Points of a quantity on a panel.
+    pub(super) fn points(&self, panel: &Panel, values: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
+        self.contraction.iter().zip(values).map(|(c, value)| panel.at((100.0 * c, value))).collect()
+    }
+}
+
+/// Colour of a direction.
+pub(super) fn colour(direction: f64) -> RGBColor {
+    if direction > 0.0 {
+        CATEGORIES[0]
+    } else if direction < 0.0 {
+        CATEGORIES[5]
+    } else {
+        INK
+    }
+}
+
+/// Line of a direction: lengthening is dashed, so that it is told apart in grey too.
+pub(super) fn stroke(direction: f64) -> Stroke {
+    if direction < 0.0 {
+        Stroke::dashed(colour(direction), 2.0)
+    } else {
+        Stroke::solid(colour(direction), 2.0)
+    }
+}
+
+/// Directions that occur, with their names.
+pub(super) fn directions(pieces: &[Piece<'_>]) -> Vec<(f64, &'static str)> {
+    let named = [(1.0, "shortening"), (-1.0, "lengthening"), (0.0, "at rest")];
+    named
+        .into_iter()
+        .filter(|(of, _)| pieces.iter().any(|piece| colour(piece.direction) == colour(*of)))
+        .collect()
+}
+
+/// What is drawn, besides the curves themselves.
+pub(super) struct Frame<'a> {
+    /// Keeps the ids of drawings apart.
+    pub(super) name: &'static str,
+    /// What is seen.
+    pub(super) title: &'a str,
+    /// Name of the axis upwards, with its unit.
+    pub(super) quantity: &'static str,
+    /// The legend.
+    pub(super) entries: &'a [(Mark, String)],
+}
+
+/// The drawing, and what its caption says about levels that aren't shown.
+///
+/// # Errors
+/// If the values span more than an axis.
+pub(super) fn draw(
+    frame: &Frame<'_>,
+    pieces: &[Piece<'_>],
+    values: impl Iterator<Item = f64> + Clone,
+    mut draw_piece: impl FnMut(&mut Svg, &Panel, usize),
+) -> Result<(String, String), PlotError> {
+    let levels = distinct(pieces.iter().map(|piece| piece.pressure_pa));
+    let shown: Vec<f64> = spread(levels.len(), LEVELS).into_iter().map(|i| levels[i]).collect();
+    let across = || pieces.iter().flat_map(|piece| piece.contraction.iter().map(|c| 100.0 * c));
+    let x =
+        Axis::with_intervals(across(), 4.0).ok_or_else(|| PlotError::span("contraction [%]", across()))?;
+    let upwards = values.chain([0.0]);
+    let y =
+        Axis::with_intervals(upwards.clone(), 5.0).ok_or_else(|| PlotError::span(frame.quantity, upwards))?;
+    let side_by_side = if shown.len() == 4 { 2 } else { shown.len().clamp(1, 3) };
+    let columns = columns(side_by_side, WIDTH);
+    let top = legend::height(frame.entries, WIDTH - 20.0) + 4.0;
+    let row = HEAD + HEIGHT + BELOW;
+    let rows = shown.len().div_ceil(side_by_side) as f64;
+    let mut svg = Svg::new(frame.name, WIDTH, top + rows * row);
+    legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, frame.entries);
+    for (i, level) in shown.iter().enumerate() {
+        let (left, width) = columns[i % side_by_side];
+        let top = top + row * (i / side_by_side) as f64 + HEAD;
+        let panel = Panel { x, y, left, top, width, height: HEIGHT };
+        panel.draw(&mut svg, &bar(*level), "contraction [%]", frame.quantity);
+        for (place, _) in pieces.iter().enumerate().filter(|(_, piece)| same(piece.pressure_pa, *level)) {
+            draw_piece(&mut svg, &panel, place);
+        }
+    }
+    let left_out = if shown.len() < levels.len() {
+        format!(" Shown are {} of {} pressure levels.", shown.len(), levels.len())
+    } else {
+        String::new()
+    };
+    Ok((svg.finish(frame.title), left_out))
+}

@@ -1,0 +1,54 @@
+//! The systematic misfit that is left, smoothed, with a band of one standard deviation.
+
+use bulge_inference::Diagnosis;
+
+use crate::PlotError;
+use crate::comparison::Plot;
+use crate::comparison::legend::Mark;
+use crate::comparison::panel::Panel;
+use crate::comparison::svg::Svg;
+use crate::diagnosis::multiples::{Frame, Piece, colour, directions, draw, stroke};
+
+/// The plot; none without a surface.
+///
+/// # Errors
+/// If the forces span more than an axis.
+pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
+    let curves = &diagnosis.remaining.surface;
+    let pieces: Vec<Piece<'_>> = curves
+        .iter()
+        .map(|c| Piece { pressure_pa: c.pressure_pa, direction: c.direction, contraction: &c.contraction })
+        .collect();
+    if pieces.iter().all(|piece| piece.contraction.is_empty()) {
+        return Ok(None);
+    }
+    let mut entries = Vec::new();
+    for (direction, name) in directions(&pieces) {
+        entries.push((Mark::Line(stroke(direction)), format!("{name}, with one standard deviation")));
+    }
+    let title = "Systematic misfit that is left";
+    let frame = Frame { name: "remaining", title, quantity: "misfit [N]", entries: &entries };
+    let ends = |sign: f64| {
+        curves.iter().flat_map(move |c| c.misfit_n.iter().zip(&c.sd_n).map(move |(m, sd)| m + sign * sd))
+    };
+    let each = |svg: &mut Svg, panel: &Panel, place: usize| {
+        let (piece, curve) = (&pieces[place], &curves[place]);
+        let side = |sign: f64| {
+            piece.points(panel, curve.misfit_n.iter().zip(&curve.sd_n).map(move |(m, sd)| m + sign * sd))
+        };
+        let mut band = side(1.0);
+        band.extend(side(-1.0).into_iter().rev());
+        svg.veil(&band, colour(piece.direction), 0.16);
+        svg.polyline(&piece.points(panel, curve.misfit_n.iter().copied()), stroke(piece.direction));
+    };
+    let (svg, left_out) = draw(&frame, &pieces, ends(1.0).chain(ends(-1.0)), each)?;
+    Ok(Some(Plot {
+        name: "remaining",
+        title: title.to_owned(),
+        caption: format!(
+            "What the model with all effects that were found can't follow, smoothed over neighbouring readings. Where the band holds the \
+             line of zero there is nothing to explain.{left_out}"
+        ),
+        svg,
+    }))
+}

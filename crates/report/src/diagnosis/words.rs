@@ -1,0 +1,105 @@
+//! Sentences and numbers of a diagnosis that page and command line share: plain letters, no markup.
+
+use bulge_inference::{CorrelationTime, Diagnosis};
+
+use crate::comparison::number::{count, newton, three};
+use crate::interval::with_interval;
+
+/// A chance in per cent: `97 %`, `more than 99 %`, `less than 1 %`.
+#[must_use]
+pub fn chance(share: f64) -> String {
+    match share {
+        s if s > 0.995 => "more than 99 %".to_owned(),
+        s if s < 0.005 => "less than 1 %".to_owned(),
+        s => format!("{:.0} %", 100.0 * s),
+    }
+}
+
+/// How often chance alone does as much: `p = 0.03`, `p < 0.001`.
+#[must_use]
+pub fn once_in(p: f64) -> String {
+    if p < 0.001 { "p < 0.001".to_owned() } else { format!("p = {}", three(p)) }
+}
+
+/// Whether a probability is one that chance alone seldom gives.
+#[must_use]
+pub fn is_significant(p: f64) -> bool {
+    p < 0.05
+}
+
+/// Where the noise is from.
+#[must_use]
+pub fn found_by(source: &str) -> &str {
+    match source {
+        "repeats" => "from repeated readings",
+        "saturated" => "from what a model that can follow everything smooth leaves",
+        "instruments" => "from the data sheets of the instruments",
+        other => other,
+    }
+}
+
+/// The base of the ladder: `equilibrium`, or `equilibrium + end-taper` with the effects that it has already.
+#[must_use]
+pub fn base_name(diagnosis: &Diagnosis) -> String {
+    let comparison = &diagnosis.comparison;
+    let added = diagnosis.ladder.iter().filter(|step| step.added.is_some()).count();
+    let has = comparison.ladder.len().saturating_sub(added);
+    let effects = comparison.ladder.iter().take(has).filter_map(|rung| rung.added.as_deref());
+    std::iter::once(comparison.base.as_str()).chain(effects).collect::<Vec<_>>().join(" + ")
+}
+
+/// The noise in a sentence: its size, over what it is correlated, where it is from, and how many rows count.
+#[must_use]
+pub fn noise_says(diagnosis: &Diagnosis) -> String {
+    let (noise, law) = (&diagnosis.noise, &diagnosis.noise.law);
+    let scatters = format!("a single reading scatters by {}", newton(noise.sd_n));
+    let part = newton(law.correlated_n);
+    let correlated = match law.time.filter(|_| noise.correlated && law.correlated_n > 0.0) {
+        Some(CorrelationTime::Seconds(time)) => format!(", {part} of it correlated over {} s", three(time)),
+        Some(CorrelationTime::Rows(rows)) => format!(", {part} of it correlated over {} rows", three(rows)),
+        None => String::new(),
+    };
+    let offsets = if law.offset_n > 0.0 {
+        format!(", whole sweeps are off by {}", newton(law.offset_n))
+    } else {
+        String::new()
+    };
+    let independent = if noise.correlated { "" } else { ", readings are independent" };
+    let effective = diagnosis.data.effective_rows;
+    let counted = if effective < 0.95 * diagnosis.data.used as f64 {
+        format!("; {} count as {}", count(diagnosis.data.used, "row"), three(effective))
+    } else {
+        String::new()
+    };
+    format!("{scatters}{correlated}{offsets}{independent}, {}{counted}", found_by(&noise.source))
+}
+
+/// What remains in a sentence: the systematic misfit with its interval, and whether it has structure.
+#[must_use]
+pub fn remains_says(diagnosis: &Diagnosis) -> String {
+    let remaining = &diagnosis.remaining;
+    let ends = remaining.misfit_interval_n;
+    let [value, low, high] = with_interval(remaining.misfit_n, ends)
+        .unwrap_or_else(|| [remaining.misfit_n, ends[0], ends[1]].map(three));
+    let structure =
+        if remaining.structured { "it has a structure beyond chance" } else { "no structure beyond chance" };
+    format!("{value} N of systematic misfit (RMS; 95 % interval {low} to {high} N): {structure}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chances_are_never_certain() {
+        assert_eq!(
+            [1.0, 0.996, 0.97, 0.994, 0.0].map(chance),
+            ["more than 99 %", "more than 99 %", "97 %", "99 %", "less than 1 %"]
+        );
+        assert_eq!(
+            [1e-20, 0.001, 0.0312, 1.0].map(once_in),
+            ["p < 0.001", "p = 0.00100", "p = 0.0312", "p = 1.00"]
+        );
+        assert!(is_significant(0.049) && !is_significant(0.05));
+    }
+}

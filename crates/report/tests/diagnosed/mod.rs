@@ -1,0 +1,216 @@
+//! Diagnoses to show, one of each verdict, around a comparison.
+
+use bulge_inference::{
+    CandidateResult, Comparison, Confidence, CorrelationTime, DiagnosedData, DiagnosedNoise, Diagnosis,
+    ExplainedCurve, ExplainedStep, LadderStep, Located, Missing, NextExperiment, NoiseLaw, NoiseSource,
+    ParameterResult, Remaining, RivalResult, SurfaceCurve, Verdict,
+};
+
+/// Rubber and friction are missing; the second and third rungs of the comparison.
+pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
+    comparison.ladder.truncate(3);
+    Diagnosis {
+        schema: "bulge.diagnosis/1",
+        muscle: comparison.muscle.clone(),
+        data: DiagnosedData {
+            rows: comparison.data.rows,
+            used: comparison.data.used,
+            effective_rows: 0.2 * comparison.data.used as f64,
+            sha256: comparison.data.sha256.clone(),
+            sweeps: comparison.data.sweeps,
+            specimens: comparison.data.specimens.len(),
+        },
+        noise: noise(),
+        verdict: Verdict::Missing,
+        says: "Two things are missing.".to_owned(),
+        missing: vec![bladder(), friction()],
+        candidates: candidates(),
+        ladder: vec![
+            step(None, 31.0, 33.0, false),
+            step(Some("bladder-elasticity"), 12.0, 12.5, false),
+            step(Some("coulomb-friction"), 4.2, 4.4, true),
+        ],
+        noise_floor_n: 4.1,
+        r#where: vec![
+            located("direction", 0.71, 1e-5, "flips sign with direction"),
+            located("time", 0.29, 0.4, "drifts"),
+        ],
+        explained: vec![explained("bladder-elasticity"), explained("coulomb-friction")],
+        remaining: Remaining {
+            structured: false,
+            misfit_n: 0.4,
+            misfit_interval_n: [0.0, 1.2],
+            hints: vec!["grows with the pressure".to_owned()],
+            surface: surface(),
+        },
+        next_experiment: Some(NextExperiment {
+            says: "Hold at 3 bar for an hour.".to_owned(),
+            separates: vec!["bladder-elasticity".to_owned(), "wall-thickness".to_owned()],
+            sigma: 4.9,
+            repeats: 2,
+        }),
+        warnings: vec!["one warning".to_owned()],
+        comparison,
+    }
+}
+
+/// Nothing is missing.
+pub(crate) fn adequate(comparison: Comparison) -> Diagnosis {
+    let mut diagnosis = missing(comparison);
+    diagnosis.verdict = Verdict::Adequate;
+    "Nothing stands out.".clone_into(&mut diagnosis.says);
+    diagnosis.missing.clear();
+    diagnosis.explained.clear();
+    diagnosis.comparison.ladder.truncate(1);
+    diagnosis.ladder = vec![step(None, 4.1, 4.2, true)];
+    diagnosis.r#where.retain(|located| located.p > 0.05);
+    diagnosis.next_experiment = None;
+    for candidate in diagnosis.candidates.iter_mut().filter(|c| matches!(c.status, "confirmed" | "rival")) {
+        candidate.status = "rejected";
+        candidate.log_evidence = -2.5;
+    }
+    diagnosis
+}
+
+/// Something else is missing.
+pub(crate) fn unknown(comparison: Comparison) -> Diagnosis {
+    let mut diagnosis = missing(comparison);
+    diagnosis.verdict = Verdict::Unknown;
+    "A step at 12 % is left.".clone_into(&mut diagnosis.says);
+    diagnosis.missing.truncate(1);
+    diagnosis.remaining.structured = true;
+    for step in &mut diagnosis.ladder {
+        step.adequate = false;
+    }
+    diagnosis
+}
+
+/// The data don't suffice.
+pub(crate) fn cannot_tell(comparison: Comparison) -> Diagnosis {
+    let mut diagnosis = adequate(comparison);
+    diagnosis.verdict = Verdict::CannotTell;
+    "Twelve rows are too few.".clone_into(&mut diagnosis.says);
+    for step in &mut diagnosis.ladder {
+        step.adequate = false;
+    }
+    diagnosis.r#where.clear();
+    diagnosis.remaining.surface.clear();
+    diagnosis
+}
+
+fn noise() -> DiagnosedNoise {
+    let says = "what a saturated model of 40 numbers leaves".to_owned();
+    let mut law = NoiseLaw::white(3.9, NoiseSource::Saturated, 500.0, says);
+    law.correlated_n = 1.0;
+    law.time = Some(CorrelationTime::Seconds(5.0));
+    DiagnosedNoise { sd_n: 4.1, correlated: true, source: "saturated".to_owned(), law }
+}
+
+fn number(value: f64, unit: &str, low: f64, high: f64) -> ParameterResult {
+    ParameterResult { value, unit: unit.to_owned(), low, high }
+}
+
+fn rival(effect: &str, behind: f64, separation: f64) -> RivalResult {
+    RivalResult { effect: effect.to_owned(), behind, separation }
+}
+
+fn bladder() -> Missing {
+    Missing {
+        effect: "bladder-elasticity".to_owned(),
+        class: ["bladder-elasticity", "wall-thickness"].map(str::to_owned).to_vec(),
+        confidence: 0.97,
+        simulated: Confidence { named: 0.97, class: 0.99, interval: [0.95, 0.98], claims: 400 },
+        parameters: [("modulus".to_owned(), number(0.31, "MPa", 0.28, 0.33))].into(),
+        plausible: true,
+        detectability: 9.3,
+        // Not in order.
+        rivals: vec![rival("hoop-elasticity", 25.0, 7.5), rival("wall-thickness", 0.8, 1.2)],
+    }
+}
+
+fn friction() -> Missing {
+    Missing {
+        effect: "coulomb-friction".to_owned(),
+        class: vec!["coulomb-friction".to_owned()],
+        confidence: 0.999,
+        simulated: Confidence { named: 0.999, class: 1.0, interval: [0.0, 1.0], claims: 0 },
+        parameters: [("friction".to_owned(), number(14.0, "N", 8.0, 20.0))].into(),
+        plausible: false,
+        detectability: 40.0,
+        rivals: vec![rival("force-lag", 300.0, 32.0)],
+    }
+}
+
+fn candidate(
+    effect: &str,
+    log_evidence: f64,
+    status: &'static str,
+    limit: f64,
+    unit: &str,
+) -> CandidateResult {
+    CandidateResult {
+        effect: effect.to_owned(),
+        log_evidence,
+        score: 2.0 * log_evidence.max(0.0),
+        status,
+        detection_limit: Some(limit),
+        unit: unit.to_owned(),
+        detection_limit_n: Some(0.5),
+        compensation: 0.3,
+        why: None,
+    }
+}
+
+fn candidates() -> Vec<CandidateResult> {
+    let mut failed = candidate("bouc-wen", f64::NEG_INFINITY, "not-converged", 0.1, "N");
+    failed.detection_limit = None;
+    let mut slip = candidate("end-slip", -60.0, "rejected", 0.05, "um/N");
+    slip.detection_limit_n = None;
+    let mut untested = candidate("temperature", 0.0, "not-testable", 1.0, "1/K");
+    (untested.detection_limit, untested.detection_limit_n) = (None, None);
+    untested.why = Some("needs a column `temperature` that changes".to_owned());
+    vec![
+        candidate("coulomb-friction", 310.0, "confirmed", 0.2, "N"),
+        candidate("bladder-elasticity", 90.2, "confirmed", 0.0014, "MPa"),
+        candidate("wall-thickness", 89.4, "rival", 0.0123, "mm"),
+        candidate("creep", -3.8, "rejected", 0.22, "N/decade"),
+        slip,
+        failed,
+        untested,
+    ]
+}
+
+fn step(added: Option<&str>, rmse_n: f64, held_out: f64, adequate: bool) -> LadderStep {
+    LadderStep { added: added.map(str::to_owned), rmse_n, held_out_rmse_n: Some(held_out), adequate }
+}
+
+fn located(variable: &str, share: f64, p: f64, says: &str) -> Located {
+    Located { variable: variable.to_owned(), share, p, says: says.to_owned() }
+}
+
+/// Half of a misfit of 2 N is explained at each of five pressures.
+fn explained(effect: &str) -> ExplainedStep {
+    let curve = |(pressure_pa, direction): (f64, f64)| ExplainedCurve {
+        pressure_pa,
+        direction,
+        contraction: vec![0.02, 0.1, 0.2],
+        before_n: vec![2.0 * direction; 3],
+        explained_n: vec![direction; 3],
+    };
+    ExplainedStep { effect: effect.to_owned(), curves: grid().map(curve).collect() }
+}
+
+fn surface() -> Vec<SurfaceCurve> {
+    let curve = |(pressure_pa, direction): (f64, f64)| SurfaceCurve {
+        pressure_pa,
+        direction,
+        contraction: vec![0.02, 0.1, 0.2],
+        misfit_n: vec![0.5, -0.5, 0.25 * direction],
+        sd_n: vec![0.4; 3],
+    };
+    grid().map(curve).collect()
+}
+
+fn grid() -> impl Iterator<Item = (f64, f64)> {
+    (1..=5).flat_map(|bar| [1.0, -1.0].map(|direction| (1e5 * f64::from(bar), direction)))
+}

@@ -1,0 +1,332 @@
+//! The report of a diagnosis through the public API: every verdict, around rich, bare, crowded and hostile comparisons.
+
+#![expect(clippy::unwrap_used, reason = "a test that can't be set up fails")]
+
+mod diagnosed;
+mod sample;
+
+use bulge_inference::{Comparison, Diagnosis};
+use bulge_report::PlotError;
+use bulge_report::diagnosis::{base_name, headlines, html, noise_says, plots, remains_says};
+use diagnosed::{adequate, cannot_tell, missing, unknown};
+use roxmltree::{Document, ParsingOptions};
+use sample::{Recipe, bare, crowded, empty, hostile, rich};
+
+/// The comparison of a diagnosis with two effects.
+fn comparison() -> Comparison {
+    let mut comparison = rich(&Recipe::usual());
+    comparison.ladder.truncate(3);
+    for (rung, name) in comparison.ladder[1..].iter_mut().zip(["bladder-elasticity", "coulomb-friction"]) {
+        rung.added = Some(name.to_owned());
+    }
+    comparison
+}
+
+fn samples() -> Vec<(&'static str, Diagnosis)> {
+    vec![
+        ("missing", missing(comparison())),
+        ("adequate", adequate(comparison())),
+        ("unknown", unknown(comparison())),
+        ("cannot tell", cannot_tell(comparison())),
+        ("bare", adequate(bare())),
+        (
+            "empty",
+            cannot_tell({
+                let mut comparison = empty();
+                comparison.ladder = bare().ladder;
+                comparison
+            }),
+        ),
+        ("crowded", missing(crowded())),
+        ("hostile", missing(hostile())),
+    ]
+}
+
+fn parsed(html: &str) -> Document<'_> {
+    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+    Document::parse_with_options(html, options).unwrap()
+}
+
+/// Words of a page, with single spaces.
+fn words(html: &str) -> String {
+    let document = parsed(html);
+    let texts = document.descendants().filter(roxmltree::Node::is_text).filter_map(|node| node.text());
+    texts.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ")
+}
+
+const SECTIONS: [&str; 11] = [
+    "ladder",
+    "explained",
+    "candidates",
+    "rivals",
+    "where",
+    "remaining",
+    "noise",
+    "limits",
+    "next",
+    "warnings",
+    "reading",
+];
+
+#[test]
+fn every_page_has_all_sections_and_asks_for_nothing_from_outside() {
+    for (sample, diagnosis) in samples() {
+        let html = html(&diagnosis).unwrap();
+        assert!(html.starts_with("<!DOCTYPE html>") && html.len() < 3_000_000, "{sample}");
+        let document = parsed(&html);
+        let sections: Vec<&str> = document
+            .descendants()
+            .filter(|n| n.has_tag_name("section"))
+            .filter_map(|n| n.attribute("id"))
+            .filter(|id| *id != "comparison")
+            .collect();
+        assert_eq!(sections, SECTIONS, "{sample}");
+        let drawings = html.matches("<svg ").count();
+        assert_eq!(
+            html.matches("http").count(),
+            drawings + 1,
+            "{sample}: beyond `http-equiv` and namespaces"
+        );
+        assert!(html.contains("default-src 'none'; style-src 'unsafe-inline'; img-src data:"), "{sample}");
+        for node in document.descendants().filter(roxmltree::Node::is_element) {
+            let name = node.tag_name().name();
+            assert!(
+                !["script", "link", "img", "iframe", "object", "use", "image"].contains(&name),
+                "{sample}"
+            );
+            for attribute in node.attributes() {
+                assert!(!attribute.name().starts_with("on") && attribute.name() != "src", "{sample}: {name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn links_and_ids_fit_together_and_sections_begin_with_a_sentence() {
+    for (sample, diagnosis) in samples() {
+        let html = html(&diagnosis).unwrap();
+        let document = parsed(&html);
+        let mut ids: Vec<&str> = document.descendants().filter_map(|n| n.attribute("id")).collect();
+        let all = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), all, "{sample}: an id occurs twice");
+        for target in document.descendants().filter_map(|n| n.attribute("href")) {
+            assert!(ids.contains(&target.strip_prefix('#').unwrap()), "{sample}: {target}");
+        }
+        for section in document.descendants().filter(|n| n.has_tag_name("section")) {
+            let lead = section.descendants().find(|n| n.attribute("class") == Some("lead")).unwrap();
+            assert!(lead.text().unwrap().trim().ends_with('.'), "{sample}: {:?}", lead.text());
+        }
+        let text = words(&html);
+        for none in ["NaN", "nan", "inf", "Infinity", "null", "undefined", "None "] {
+            let is_word = text.split(|c: char| !c.is_alphanumeric()).any(|word| word == none);
+            assert!(!is_word, "{sample}: `{none}`");
+        }
+    }
+}
+
+#[test]
+fn every_plot_is_well_formed_and_within_its_frame() {
+    for (sample, diagnosis) in samples() {
+        for plot in plots(&diagnosis).unwrap() {
+            let document = Document::parse(&plot.svg).unwrap();
+            let size = |name| document.root_element().attribute(name).unwrap().parse::<f64>().unwrap();
+            let within = |value: f64, most: f64| (-1.0..=most + 1.0).contains(&value);
+            for node in document.descendants() {
+                let of = |name: &str| node.attribute(name).and_then(|v| v.parse::<f64>().ok());
+                for name in ["x", "x1", "x2"] {
+                    assert!(of(name).is_none_or(|v| within(v, size("width"))), "{sample}, {}", plot.name);
+                }
+                for name in ["y", "y1", "y2"] {
+                    assert!(of(name).is_none_or(|v| within(v, size("height"))), "{sample}, {}", plot.name);
+                }
+                let points = node.attribute("points").unwrap_or_default().split_whitespace();
+                for point in points {
+                    let (x, y) = point.split_once(',').unwrap();
+                    let inside = within(x.parse().unwrap(), size("width"))
+                        && within(y.parse().unwrap(), size("height"));
+                    assert!(inside, "{sample}, {}: {point}", plot.name);
+                }
+            }
+            assert!(!plot.title.is_empty() && plot.caption.ends_with('.'), "{sample}, {}", plot.name);
+        }
+    }
+}
+
+#[test]
+fn plots_are_those_for_which_there_are_numbers() {
+    let names = |diagnosis: &Diagnosis| plots(diagnosis).unwrap().iter().map(|p| p.name).collect::<Vec<_>>();
+    let own = ["ladder", "explained-1", "explained-2", "candidates", "rivals", "where", "remaining"];
+    let all = names(&missing(comparison()));
+    assert_eq!(all[..7], own);
+    assert!(
+        ["force", "residual-map", "loops", "contributions", "parameters"]
+            .iter()
+            .all(|name| all.contains(name))
+    );
+    let mut sorted = all.clone();
+    sorted.sort_unstable();
+    sorted.dedup();
+    assert_eq!(sorted.len(), all.len(), "each is a file of its own");
+    let few = names(&cannot_tell(comparison()));
+    assert_eq!(few[..2], ["ladder", "candidates"]);
+    assert!(own[1..3].iter().chain(&own[4..]).all(|name| !few.contains(name)), "{few:?}");
+}
+
+#[test]
+fn verdicts_stand_in_the_first_lines() {
+    for (diagnosis, begins) in [
+        (
+            missing(comparison()),
+            &[
+                "missing: bladder-elasticity (on data like these such a claim is right 97 % of the time)",
+                "missing: coulomb-friction (on data like these such a claim is right more than 99 % of the time)",
+            ][..],
+        ),
+        (adequate(comparison()), &["adequate: the model explains these data within noise and tolerance"]),
+        (
+            unknown(comparison()),
+            &[
+                "unknown: these data hold a structure that no effect of the catalogue explains",
+                "nearest: bladder-elasticity (it lowers the error and leaves the structure)",
+            ],
+        ),
+        (cannot_tell(comparison()), &["cannot tell: these data are too few or too noisy for a verdict"]),
+    ] {
+        assert_eq!(headlines(&diagnosis), begins);
+        let page = words(&html(&diagnosis).unwrap());
+        // A capital letter begins a sentence.
+        let shown = page.find(&begins[0][1..]).unwrap();
+        assert!(shown < page.find("The ladder of errors").unwrap());
+        assert!(page.contains(&diagnosis.says));
+        assert_eq!(page.contains("None is confirmed."), diagnosis.missing.is_empty());
+    }
+}
+
+#[test]
+fn the_box_names_class_numbers_and_what_is_implausible() {
+    let page = words(&html(&missing(comparison())).unwrap());
+    for part in [
+        "These data cannot tell it from: wall-thickness .",
+        "modulus 0.310 MPa 95 % interval 0.280 to 0.330",
+        "97 % of the time (400 such claims on simulated data like these: 95 % interval 95 to 98 %); the class holds the right effect 99 % of the time",
+        "No other effect of the catalogue explains these data as well.",
+        "implausible: a wrong cure",
+        "1 warning:",
+        "needs a column temperature that changes",
+        "The fit of one did not converge",
+        "2 are confirmed, 1 is not told apart from them.",
+        "Hold at 3 bar for an hour.",
+        "4.90 sigma",
+    ] {
+        assert!(page.contains(part), "{part:?} in {page}");
+    }
+}
+
+#[test]
+fn what_a_step_explains_is_a_share_of_squares() {
+    let page = words(&html(&missing(comparison())).unwrap());
+    // 1 - (2 - 1)^2/2^2.
+    let says = "With bladder-elasticity the mean misfit (RMS over the dots) goes from 2.00 N to 1.00 N: it explains 75 % of what varied.";
+    assert!(page.contains(says), "{page}");
+}
+
+#[test]
+fn the_ladder_has_every_number_and_the_floor_of_the_diagnosis() {
+    let diagnosis = missing(comparison());
+    let html = html(&diagnosis).unwrap();
+    let document = parsed(&html);
+    let section = document.descendants().find(|n| n.attribute("id") == Some("ladder")).unwrap();
+    let rows: Vec<Vec<String>> = section
+        .descendants()
+        .filter(|n| n.has_tag_name("tr"))
+        .skip(1)
+        .map(|row| {
+            let cells = row.children().filter(roxmltree::Node::is_element);
+            cells
+                .map(|cell| cell.descendants().find_map(|n| n.text()).unwrap_or_default().trim().to_owned())
+                .collect()
+        })
+        .collect();
+    let full_scale = diagnosis.comparison.data.full_scale_n;
+    let percent: f64 = rows[0][2].parse().unwrap();
+    assert!((percent / (100.0 * 31.0 / full_scale) - 1.0).abs() < 6e-3, "{percent}");
+    let shown = |row: &[String]| [row[1].clone(), row[3].clone(), row[4].clone()];
+    assert_eq!(shown(&rows[0]), ["31.0", "33.0", "no"]);
+    assert_eq!(shown(&rows[1]), ["12.0", "12.5", "no"]);
+    assert_eq!(shown(&rows[2]), ["4.20", "4.40", "yes"]);
+    assert!(words(&html).contains("single readings scatter by 4.10 N: no structure is left"));
+}
+
+#[test]
+fn sentences_are_exact() {
+    let diagnosis = missing(comparison());
+    assert_eq!(
+        noise_says(&diagnosis),
+        "a single reading scatters by 4.10 N, 1.00 N of it correlated over 5.00 s, from what a model that can follow everything smooth \
+         leaves; 900 rows count as 180"
+    );
+    assert_eq!(
+        remains_says(&diagnosis),
+        "0.4 N of systematic misfit (RMS; 95 % interval 0.0 to 1.2 N): no structure beyond chance"
+    );
+    assert_eq!(base_name(&diagnosis), "equilibrium");
+    // A base that has an effect already.
+    let mut given = missing(comparison());
+    given.comparison = rich(&Recipe::usual());
+    given.comparison.ladder.truncate(4);
+    given.comparison.ladder[1].added = Some("end-taper".to_owned());
+    assert_eq!(base_name(&given), "equilibrium + end-taper");
+}
+
+#[test]
+fn rivals_are_drawn_with_the_line_beyond_which_they_are_told_apart() {
+    let plots = plots(&missing(comparison())).unwrap();
+    let rivals = plots.iter().find(|plot| plot.name == "rivals").unwrap();
+    let document = Document::parse(&rivals.svg).unwrap();
+    let texts: Vec<&str> = document.descendants().filter_map(|n| n.text()).collect();
+    let place = |word: &str| texts.iter().position(|text| *text == word).unwrap();
+    assert!(place("wall-thickness") < place("hoop-elasticity"), "the nearest first");
+    place("3.29 sigma");
+    place("32.0 sigma");
+    // Bars are as long as the separations: 7.5 is to 1.2 as their widths.
+    let widths: Vec<f64> = document
+        .descendants()
+        .filter(|n| n.has_tag_name("rect") && n.attribute("height") == Some("13.6"))
+        .map(|n| n.attribute("width").unwrap().parse().unwrap())
+        .collect();
+    assert!((widths[1] / widths[0] - 7.5 / 1.2).abs() < 0.02, "{widths:?}");
+}
+
+#[test]
+fn markup_in_names_stays_text_and_the_same_diagnosis_gives_the_same_bytes() {
+    let mut diagnosis = missing(hostile());
+    diagnosis.muscle = "<script>alert(1)</script>".to_owned();
+    diagnosis.says = "<b>`x`".to_owned();
+    let page = html(&diagnosis).unwrap();
+    assert!(!page.contains("<script") && page.contains("&lt;b&gt;<code>x</code>"));
+    assert_eq!(html(&diagnosis), html(&diagnosis));
+    assert_eq!(plots(&diagnosis), plots(&diagnosis));
+}
+
+#[test]
+fn what_can_not_be_drawn_is_refused_with_a_reason() {
+    let refused = |change: fn(&mut Diagnosis)| {
+        let mut diagnosis = missing(comparison());
+        change(&mut diagnosis);
+        let error = html(&diagnosis).unwrap_err();
+        assert_eq!(plots(&diagnosis).unwrap_err().to_string(), error.to_string());
+        error
+    };
+    let error = refused(|d| d.ladder[1].rmse_n = f64::NAN);
+    assert!(error.to_string().starts_with("an error of the ladder is NaN: only finite"), "{error}");
+    let error = refused(|d| d.remaining.surface[0].sd_n.truncate(1));
+    assert_eq!(error.to_string(), "1 values of the misfit that remains where 3 are needed");
+    let error = refused(|d| d.missing[0].rivals[0].separation = f64::INFINITY);
+    assert!(matches!(error, PlotError::Value { .. }), "{error}");
+    let error = refused(|d| d.explained[0].curves[0].before_n = vec![1e308, -1e308, 0.0]);
+    assert!(matches!(error, PlotError::Span { .. }), "{error}");
+    let error = refused(|d| d.comparison.scatter[3][1] = f64::NAN);
+    assert!(matches!(error, PlotError::Value { .. }), "{error}");
+}
