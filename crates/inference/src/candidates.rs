@@ -246,7 +246,7 @@ mod tests {
     use super::*;
 
     fn size(sign: Sign) -> Size {
-        Size { place: 0, scale: 1.0, off: 0.0, sign, plausible: 3.0, secant: None }
+        Size { place: 0, copy: 0, scale: 1.0, off: 0.0, sign, plausible: 3.0, secant: None }
     }
 
     fn candidate(columns: &[&[f64]], sign: Sign, whole: bool) -> Candidate {

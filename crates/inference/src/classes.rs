@@ -68,7 +68,7 @@ impl Given<'_> {
             stage.added.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, e)| Arc::clone(e)).collect();
         let without = self.refitted(base, stage, &others).ok()?;
         let without = self.stage(others, without).ok()?;
-        let signal = self.signal(&stage.confirmed, &without).ok()?;
+        let signal = self.signal(&stage.confirmed, &without.scene).ok()?;
         let name = effect.card().name;
         let own = without.scene.showings.effects.iter().position(|s| s.effect.card().name == name);
         let ticket = own.map_or(0.0, |own| crate::search::ticket(&without.scene, own));
@@ -143,21 +143,20 @@ impl Given<'_> {
         Rival { effect, log_evidence, separation, in_class, fit: tried.and_then(|tried| tried.confirmed) }
     }
 
-    /// What the effect changes, in the coordinates of the scene without it.
-    fn signal(&self, with: &Confirmed, without: &Stage) -> Result<Vec<f64>, ModelError> {
+    /// What an effect changes, in the coordinates of the scene without it.
+    pub(crate) fn signal(&self, with: &Confirmed, without: &Scene) -> Result<Vec<f64>, ModelError> {
         let model = &with.prepared.model;
         let force = model.evaluate_warm(self.record, &with.theta, &Wanted::default(), &Warm::new())?.force;
-        let mut change: Vec<f64> =
-            force.iter().zip(&without.scene.force).map(|(with, without)| with - without).collect();
+        let mut change: Vec<f64> = force.iter().zip(&without.force).map(|(with, without)| with - without).collect();
         // The law was made for this record.
         let _ = self.whitening.apply(&mut change);
-        change.resize(self.record.len() + without.scene.priors, 0.0);
-        Ok(without.scene.space.coordinates(&change))
+        change.resize(self.record.len() + without.priors, 0.0);
+        Ok(without.space.coordinates(&change))
     }
 }
 
 /// What is left of a signal when an effect does its best to stand in for it, in sigmas.
-fn separation(scene: &Scene, effect: usize, signal: &[f64]) -> f64 {
+pub(crate) fn separation(scene: &Scene, effect: usize, signal: &[f64]) -> f64 {
     let whole = dot(signal, signal);
     let most = scene
         .candidates

@@ -260,14 +260,14 @@ pub(crate) fn starts(
     if showing.whole {
         return vec![showing.values.clone()];
     }
-    let copies = showing.sizes.len() / sizes(&cards).len().max(1);
+    let copies =
+        if effect.card().group == bulge_effects::Group::Specimen { model.specimens().len() } else { 1 };
     let mut all: Vec<Vec<f64>> = Vec::new();
     let quadratic = showing.sizes.iter().any(|size| size.secant.is_some());
     for variant in if quadratic { &[0, 1][..] } else { &[0][..] } {
-        let mut values: Vec<f64> = (0..copies.max(1)).flat_map(|_| showing.values.clone()).collect();
-        let per_copy = sizes(&cards).len();
-        for (i, (size, deviation)) in showing.sizes.iter().zip(found).enumerate() {
-            let place = (i / per_copy) * cards.len() + size.place;
+        let mut values: Vec<f64> = (0..copies).flat_map(|_| showing.values.clone()).collect();
+        for (size, deviation) in showing.sizes.iter().zip(found) {
+            let place = size.copy * cards.len() + size.place;
             let card = &cards[size.place];
             let deviation = match size.secant {
                 // F = c v^2 and the secant says c step: v^2 = deviation step.

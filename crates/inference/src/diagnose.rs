@@ -14,6 +14,7 @@ use crate::document::{Findings, cannot_tell, document};
 use crate::error::InferenceError;
 use crate::law_of_record::Source;
 use crate::mismatch::check_scale;
+use crate::next::{Judged, Limits, NextLimits, next_experiment};
 use crate::noise_law::NoiseLaw;
 use crate::progress::Progress;
 use crate::scene::Given;
@@ -32,6 +33,8 @@ pub struct DiagnoseOptions {
     pub tolerance_n: Option<f64>,
     /// Seed of all random numbers.
     pub seed: u64,
+    /// What the next experiment may use; what these data used, where nothing is stated.
+    pub limits: NextLimits,
     /// Who is told how far it is.
     pub progress: Progress,
 }
@@ -40,7 +43,7 @@ impl DiagnoseOptions {
     /// No tolerance, seed 1, nobody to tell.
     #[must_use]
     pub fn new(base: Options) -> Self {
-        Self { base, tolerance_n: None, seed: 1, progress: Progress::default() }
+        Self { base, tolerance_n: None, seed: 1, limits: NextLimits::default(), progress: Progress::default() }
     }
 }
 
@@ -94,27 +97,33 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
         whitening: &whitening,
         law,
         seed: options.seed,
+        only: None,
     };
     let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
     progress.at(0.25, "the catalogue");
     let search = given.search(&model).map_err(|error| analysis.about(error))?;
     progress.at(0.6, "rivals");
-    let classes = classes(&given, &model, &search);
-    progress.at(0.8, "the ladder");
+    let judged = classes(&given, &model, &search);
+    progress.at(0.75, "the next experiment");
+    let next = next_experiment(&given, &judged, &Limits::of(&ground.record, options.limits));
+    progress.at(0.85, "the ladder");
     let last = &search.stages[search.stages.len() - 1];
     let mut compared = options.base.clone();
     compared.effects.extend(last.added.iter().map(Arc::clone));
     let comparison = compare(data, muscle, &compared)?;
     let residual: Vec<f64> =
         analysis.record.force().iter().zip(&base.force).map(|(measured, force)| measured - force).collect();
+    let classes: Vec<(Class, Confidence)> =
+        judged.into_iter().map(|judged| (judged.class, judged.confidence)).collect();
     let found = Findings {
         given: &given,
         search: &search,
         classes: &classes,
-        sd_n: row_sd(law, &ground.averaged, &residual),
+        sd_n: row_sd(law, &ground, &residual),
         effective_rows: whitening.effective_rows(),
         known: options.base.effects.len(),
         tolerance_n: options.tolerance_n,
+        next,
     };
     progress.at(1.0, "done");
     Ok(document(muscle, &found, comparison))
@@ -149,21 +158,24 @@ fn ground(analysis: &Analysis<'_>, base: &Climbed, options: &DiagnoseOptions) ->
 }
 
 /// Each named effect with its rivals, and how often such a claim is right.
-fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<(Class, Confidence)> {
+fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
     let last = &search.stages[search.stages.len() - 1];
     let of = |place: usize| match given.class(model, last, place) {
         Some((class, without)) => {
             let confidence = confidence(given, &without.scene, &without.adequacy.null, &class);
-            (class, confidence)
+            Judged { class, confidence, models: Some((last.confirmed.clone(), without.confirmed)) }
         }
-        None => (Class::alone(last, place), Confidence::certain()),
+        None => Judged { class: Class::alone(last, place), confidence: Confidence::certain(), models: None },
     };
     (0..last.added.len()).map(of).collect()
 }
 
-/// Standard deviation of a single row: the law of the means, and what the means have averaged.
-fn row_sd(law: &NoiseLaw, averaged: &Averaged, residual: &[f64]) -> f64 {
-    let (sum, freedom) = averaged.within(residual);
-    let white = if freedom > 0.0 { (sum / freedom).max(law.white_n.powi(2)) } else { law.white_n.powi(2) };
+/// Standard deviation of a single row: the law of the means, what the means have averaged, and what noise of pressure and contraction makes of it.
+fn row_sd(law: &NoiseLaw, ground: &Ground, residual: &[f64]) -> f64 {
+    let means = ground.input_variances.iter().zip(ground.averaged.counts());
+    let inputs = means.map(|(variance, count)| variance * count).sum::<f64>() / ground.input_variances.len().max(1) as f64;
+    let (sum, freedom) = ground.averaged.within(residual);
+    let own = law.white_n.powi(2) + inputs;
+    let white = if freedom > 0.0 { (sum / freedom).max(own) } else { own };
     (white + law.correlated_n.powi(2) + law.offset_n.powi(2)).sqrt()
 }

@@ -12,7 +12,7 @@ use crate::classes::{Class, Rival};
 use crate::comparison::{Comparison, DataSummary};
 use crate::confidence::Confidence;
 use crate::diagnosis::{
-    CandidateResult, DiagnosedData, DiagnosedNoise, Diagnosis, ExplainedStep, LadderStep, Missing, ParameterResult,
+    CandidateResult, DiagnosedData, DiagnosedNoise, Diagnosis, ExplainedStep, LadderStep, Missing, NextExperiment, ParameterResult,
     Remaining, RivalResult, Verdict,
 };
 use crate::explained::{explained, surface};
@@ -28,8 +28,13 @@ use crate::search::{Search, Stage, singles};
 use crate::space::dot;
 use bulge_numerics::least_squares::Side;
 
+/// The family of hysteresis with a transition after each reversal, and what it is without.
+const HYSTERESIS: &str = "presliding-hysteresis";
+const COULOMB: &str = "coulomb-friction";
+/// A transition shorter than this part of the stroke is none.
+const SHORT: f64 = 0.025;
 /// Part of the square of the misfit that may be left where effects are named though something remains.
-const FORWARD: f64 = 0.1;
+const FORWARD: f64 = 0.02;
 
 /// Everything that was found.
 pub(crate) struct Findings<'a> {
@@ -42,6 +47,7 @@ pub(crate) struct Findings<'a> {
     /// How many effects the base has.
     pub(crate) known: usize,
     pub(crate) tolerance_n: Option<f64>,
+    pub(crate) next: Option<NextExperiment>,
 }
 
 /// The diagnosis.
@@ -73,7 +79,7 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
         says,
         missing: if named { classes.iter().map(|(class, sure)| found.missing(class, *sure)).collect() } else { Vec::new() },
         candidates: candidates(given, search, classes),
-        ladder: ladder(&comparison, found.known, last.adequate),
+        ladder: found.ladder(&comparison),
         noise_floor_n: sd_n,
         r#where: located(&search.stages[0].scene),
         explained: steps_explained(given.record, search),
@@ -84,7 +90,7 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
             hints: if last.adequate { Vec::new() } else { hints(given.record, &last.scene, &left) },
             surface: surface(given.record, &last.scene),
         },
-        next_experiment: None,
+        next_experiment: found.next.clone(),
         warnings: comparison.warnings.clone(),
         comparison,
     }
@@ -175,19 +181,6 @@ const fn source(source: NoiseSource) -> &'static str {
     }
 }
 
-fn ladder(comparison: &Comparison, known: usize, adequate: bool) -> Vec<LadderStep> {
-    let steps = comparison.ladder.len();
-    let rungs = comparison.ladder.iter().enumerate().skip(known);
-    rungs
-        .map(|(i, rung)| LadderStep {
-            added: if i == known { None } else { rung.added.clone() },
-            rmse_n: rung.rmse_n,
-            held_out_rmse_n: rung.held_out_rmse_n,
-            adequate: i + 1 == steps && adequate,
-        })
-        .collect()
-}
-
 /// Each step of the search with what it explained.
 fn steps_explained(record: &Record, search: &Search) -> Vec<ExplainedStep> {
     let step = |pair: &[Stage]| {
@@ -240,7 +233,7 @@ impl Findings<'_> {
                 return (Verdict::CannotTell, says);
             }
         }
-        let names: Vec<&str> = last.added.iter().map(|effect| effect.card().name).collect();
+        let names: Vec<String> = last.added.iter().map(|effect| self.label(effect)).collect();
         if last.adequate && names.is_empty() {
             let says = format!(
                 "the model explains these data: nothing is missing that they could show; its systematic misfit is {size}"
@@ -261,10 +254,49 @@ impl Findings<'_> {
         (Verdict::Unknown, says)
     }
 
+    fn ladder(&self, comparison: &Comparison) -> Vec<LadderStep> {
+        let (steps, last) = (comparison.ladder.len(), self.last());
+        let rungs = comparison.ladder.iter().enumerate().skip(self.known);
+        rungs
+            .map(|(i, rung)| LadderStep {
+                added: i.checked_sub(self.known + 1).and_then(|step| Some(self.label(last.added.get(step)?))),
+                rmse_n: rung.rmse_n,
+                held_out_rmse_n: rung.held_out_rmse_n,
+                adequate: i + 1 == steps && last.adequate,
+            })
+            .collect()
+    }
+
+    /// The name under which an effect is reported: hysteresis whose transition is much shorter than the stroke is Coulomb's friction to all intents, with the
+    /// transition that every real contact has.
+    fn label(&self, effect: &Arc<dyn Effect>) -> String {
+        let card = effect.card();
+        let confirmed = &self.last().confirmed;
+        let distance = confirmed
+            .prepared
+            .model
+            .parameters()
+            .iter()
+            .zip(&confirmed.theta)
+            .find(|(p, _)| p.effect == card.name && p.name == "distance")
+            .map(|(_, value)| *value);
+        let [low, high] = self
+            .given
+            .record
+            .moments()
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], m| [l.min(m.contraction), h.max(m.contraction)]);
+        let is_short = card.family == HYSTERESIS && distance.is_some_and(|d| d < SHORT * (high - low));
+        if is_short { COULOMB.to_owned() } else { card.name.to_owned() }
+    }
+
     fn missing(&self, class: &Class, sure: Confidence) -> Missing {
-        let name = class.effect.card().name.to_owned();
+        let name = self.label(&class.effect);
         let own = class.effect.card().family.to_owned();
         let mut names = vec![name.clone()];
+        if name != class.effect.card().name {
+            names.push(own.clone());
+        }
         for rival in class.rivals.iter().filter(|rival| rival.in_class) {
             let family = rival.effect.card().family.to_owned();
             if family != own && !names.contains(&family) {
@@ -278,7 +310,7 @@ impl Findings<'_> {
             confidence: sure.named,
             simulated: sure,
             parameters: self.parameters(&class.effect),
-            plausible: self.plausible(&name),
+            plausible: self.plausible(class.effect.card().name),
             detectability: class.detectability,
             rivals,
             effect: name,
@@ -342,6 +374,7 @@ fn candidates(given: &Given<'_>, search: &Search, classes: &[(Class, Confidence)
     let stage = &search.stages[0];
     let scene = &stage.scene;
     let linear = singles(scene, &stage.confirmed.prepared.model);
+    let given_muscle = stage.confirmed.prepared.model.muscle();
     let mut found: Vec<CandidateResult> = Vec::new();
     for (place, screened) in scene.showings.effects.iter().enumerate() {
         let name = screened.effect.card().name;
@@ -364,6 +397,8 @@ fn candidates(given: &Given<'_>, search: &Search, classes: &[(Class, Confidence)
         let number = candidate.and_then(|c| numbers.get(c.sizes.first()?.place));
         let per_size = candidate.map_or(0.0, |c| c.detectability(1.0));
         let limit = (per_size > 0.0).then(|| SEEN / per_size);
+        // Beyond the bounds of the number it is no limit: these data can't show the effect.
+        let limit = limit.filter(|l| number.is_none_or(|n| *l <= n.of(given_muscle).high - n.of(given_muscle).low));
         let column = candidate.and_then(|c| scene.showings.showings[c.showing].columns.first());
         let rms = column.map(|c| (dot(c, c) / given.record.len().max(1) as f64).sqrt());
         let fitted = tried.map(|t| t.log_evidence).filter(|evidence| evidence.is_finite());

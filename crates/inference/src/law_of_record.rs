@@ -10,15 +10,17 @@ use crate::levels::Levels;
 use crate::noise_law::{NoiseLaw, NoiseSource};
 use crate::nuisance::Prepared;
 use crate::problem::free;
-use crate::showing::{Showing, Showings};
+use crate::showing::Showings;
 use crate::smooth::smooth;
 use crate::space::{Space, norm};
 
-/// Independent columns of the saturated model, as a part of the rows: of smooth functions, and of all.
-const SMOOTH_PART: f64 = 0.25;
+/// Independent columns of the saturated model, as a part of the rows: of effects, and of all.
+const EFFECTS_PART: f64 = 0.22;
 const ALL_PART: f64 = 0.4;
 /// Most independent columns: with many rows more of them only cost time.
 const MOST: usize = 160;
+/// An effect of which less than this part is new is one of those before.
+const ALIKE: f64 = 0.01;
 /// A column of which less than this part is new adds nothing.
 const NEW: f64 = 1e-4;
 /// Part of a column that is rounding.
@@ -62,8 +64,8 @@ impl Source<'_> {
         let at_levels = prepared.model.evaluate_warm(&kept, theta, &wanted, &Warm::new())?;
         let tangents: Vec<Vec<f64>> =
             (0..k).map(|j| at_levels.jacobian.iter().skip(j).step_by(k).copied().collect()).collect();
-        let showings = Showings::of(self.catalogue, prepared, theta, &kept, &at_levels.force)?;
-        let columns: Vec<&Vec<f64>> = usual(&showings).into_iter().flat_map(|s| &s.columns).collect();
+        let showings = Showings::of(self.catalogue, None, prepared, theta, &kept, &at_levels.force)?;
+        let columns: Vec<&Vec<f64>> = showings.showings.iter().flat_map(|s| &s.columns).collect();
         let design = saturated(self.record, &tangents, &columns);
         let n = self.record.len();
         let stated = self.muscle.instruments().force.map_or(0.0, |force| force.noise());
@@ -84,22 +86,13 @@ impl Source<'_> {
     }
 }
 
-/// One form of each effect, the middle one: all forms of those that go with the clock would follow the sweeps one by one.
-fn usual(showings: &Showings) -> Vec<&Showing> {
-    showings
-        .showings
-        .chunk_by(|a, b| a.effect == b.effect)
-        .filter_map(|forms| forms.get(forms.len() / 2))
-        .collect()
-}
-
 /// The saturated model as orthonormal columns: within the sweeps what the base can do, smooth functions, and what effects could do besides; from sweep
 /// to sweep only what is set: pressure, specimen, temperature, and the clock. More than that from sweep to sweep is an offset of the sweep: with a rich
 /// model there too nothing would be left to find offsets from.
 fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> Vec<Vec<f64>> {
     let n = record.len() as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "numbers of columns")]
-    let [smooth_most, most] = [SMOOTH_PART, ALL_PART].map(|part| (part * n) as usize);
+    let [effects_most, most] = [EFFECTS_PART, ALL_PART].map(|part| (part * n) as usize);
     let mut space = Space::without(&[]);
     for column in between(record) {
         enter_new(&mut space, &column);
@@ -107,26 +100,20 @@ fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> V
     for tangent in tangents {
         enter_new(&mut space, &within(record, tangent));
     }
-    for function in smooth(record) {
-        if space.len() >= smooth_most.max(tangents.len() + 1) {
-            break;
-        }
-        enter_new(&mut space, &within(record, &function.values));
-    }
     // What is least like all before enters first, so that few columns stand for many effects.
-    let mut left: Vec<(f64, Vec<f64>)> = effects
-        .iter()
-        .map(|column| {
-            let column = within(record, column);
-            (space.outside(&column).sqrt() / norm(&column).max(f64::MIN_POSITIVE), column)
-        })
-        .collect();
-    left.sort_by(|a, b| b.0.total_cmp(&a.0));
-    for (_, column) in left {
+    let mut left: Vec<Vec<f64>> = effects.iter().map(|column| within(record, column)).collect();
+    while space.len() < effects_most.clamp(tangents.len() + 1, MOST) {
+        let new = |column: &Vec<f64>| space.outside(column).sqrt() / norm(column).max(f64::MIN_POSITIVE);
+        let best = (0..left.len()).map(|i| (i, new(&left[i]))).max_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((place, _)) = best.filter(|best| best.1 > ALIKE) else { break };
+        let column = left.swap_remove(place);
+        enter_new(&mut space, &column);
+    }
+    for function in smooth(record) {
         if space.len() >= most.clamp(tangents.len() + 1, MOST) {
             break;
         }
-        enter_new(&mut space, &column);
+        enter_new(&mut space, &within(record, &function.values));
     }
     space.into_units()
 }

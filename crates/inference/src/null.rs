@@ -173,7 +173,7 @@ mod tests {
         column[place] = 1.0;
         Candidate::for_test(
             vec![column],
-            Size { place: 0, scale: 1.0, off: 0.0, sign, plausible: 3.0, secant: None },
+            Size { place: 0, copy: 0, scale: 1.0, off: 0.0, sign, plausible: 3.0, secant: None },
         )
     }
 

@@ -178,7 +178,7 @@ impl Planned {
     }
 
     pub(crate) fn given<'a>(&'a self, catalogue: &'a Catalogue) -> Given<'a> {
-        Given { catalogue, record: &self.record, whitening: &self.whitening, law: &self.law, seed: 1 }
+        Given { catalogue, record: &self.record, whitening: &self.whitening, law: &self.law, seed: 1, only: None }
     }
 }
 

@@ -29,6 +29,8 @@ pub(crate) struct Given<'a> {
     /// The noise of the means.
     pub(crate) law: &'a NoiseLaw,
     pub(crate) seed: u64,
+    /// Looks for these effects only.
+    pub(crate) only: Option<&'a [String]>,
 }
 
 /// A smooth function outside what the model's numbers can do.
@@ -113,9 +115,9 @@ impl Given<'_> {
         }
         let mut space = Space::without(&tangents);
         let taken = space.taken();
-        let showings = Showings::of(self.catalogue, prepared, theta, &kept, &at_levels.force)?;
+        let showings = Showings::of(self.catalogue, self.only, prepared, theta, &kept, &at_levels.force)?;
         let candidates = Candidate::all(&showings, &mut space, &whiten);
-        let smooth = self.directions(&raw, &tangents, &mut space, &whiten);
+        let smooth = if self.only.is_some() { Vec::new() } else { self.directions(&raw, &tangents, &mut space, &whiten) };
         let z = space.coordinates(&misfit);
         let offsets = self.offsets(&space, &whiten);
         Ok(Scene {

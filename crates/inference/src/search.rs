@@ -11,9 +11,9 @@ use crate::null::{Null, Statistics};
 use crate::scene::{Given, Scene};
 
 /// Chance with which the screen may raise a false alarm, and the smooth test.
-pub(crate) const ALARM: [f64; 2] = [0.05, 0.015];
-/// Effects that are added at most, one step after the other.
-const STEPS: usize = 4;
+pub(crate) const ALARM: [f64; 2] = [0.05, 0.006];
+/// Effects that are added at most: a misfit that takes more is one that the catalogue doesn't hold.
+const MOST_EFFECTS: usize = 3;
 /// Hypotheses whose linear evidence is this much below the best are not fitted.
 const FITTED: f64 = 12.0;
 /// A fall of the square of the misfit beyond which tangents say little: then usual numbers are starts too, and the best of each kind are fitted.
@@ -22,6 +22,8 @@ const FAR: f64 = 200.0;
 const MOST: [usize; 2] = [8, 6];
 /// Forms from which a fit of an effect starts.
 const FORMS: usize = 2;
+/// Log evidence that an effect of time must bring beyond one of the path alone.
+const SIMPLER: f64 = 0.2;
 /// Log evidence that a second effect must bring at once to be named with the first.
 const PAIR: f64 = 3.0;
 
@@ -125,13 +127,17 @@ impl Given<'_> {
     pub(crate) fn search(&self, base: &Model) -> Result<Search, ModelError> {
         let confirmed = self.confirm(base, &[], None, &[])?;
         let mut stages = vec![self.stage(Vec::new(), confirmed)?];
-        for step in 0..STEPS {
+        for step in 0..MOST_EFFECTS {
             let stage = &mut stages[step];
             if stage.adequacy.holds() {
                 break;
             }
             stage.tried = self.tried(base, stage);
-            let next = ranked(&stage.tried).into_iter().find_map(|(best, confirmed)| self.step(stage, best, confirmed));
+            let room = MOST_EFFECTS - stage.added.len();
+            let next = ranked(&stage.tried)
+                .into_iter()
+                .filter(|(best, _)| best.hypothesis.effects.len() <= room)
+                .find_map(|(best, confirmed)| self.step(stage, best, confirmed));
             let Some((next, stands_out)) = next else {
                 // The screen alone, and no effect that is worth its price: chance.
                 stage.adequate = !stage.adequacy.smooth_fails();
@@ -247,7 +253,10 @@ pub(crate) fn ticket(scene: &Scene, effect: usize) -> f64 {
     let of_family = -(families.len().max(1) as f64).ln();
     let heads = (0..effects.len()).filter(|i| shown(*i) && effects[*i].effect.card().name == own).count();
     let is_head = effects[effect].effect.card().name == own;
+    // Of two that are the same on these data, the one that takes less to be seen.
+    let simple = if effects[effect].effect.card().needs == bulge_effects::Needs::Time { -SIMPLER } else { 0.0 };
     of_family
+        + simple
         + match (members, heads, is_head) {
             (0 | 1, _, _) => 0.0,
             (_, 0, _) => -(members as f64).ln(),

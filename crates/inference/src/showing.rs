@@ -37,6 +37,8 @@ pub(crate) struct Showing {
 pub(crate) struct Size {
     /// Place among the numbers of the effect.
     pub(crate) place: usize,
+    /// Number of the specimen, where each has its own.
+    pub(crate) copy: usize,
     /// Scale of the literature: the usual deviation from `off`, in SI.
     pub(crate) scale: f64,
     /// Value at which it does nothing.
@@ -87,9 +89,10 @@ struct Ground<'a> {
 }
 
 impl Showings {
-    /// Of all effects of the catalogue that the model doesn't have, at the numbers `theta`, where it has the force `force`.
+    /// Of all effects of the catalogue (of some `only`, by name) that the model doesn't have, at the numbers `theta`, where it has the force `force`.
     pub(crate) fn of(
         catalogue: &Catalogue,
+        only: Option<&[String]>,
         prepared: &Prepared,
         theta: &[f64],
         record: &Record,
@@ -101,6 +104,9 @@ impl Showings {
         for effect in catalogue.iter() {
             let card = effect.card();
             if card.kind.is_some_and(|kind| kind != prepared.model.muscle().kind()) {
+                continue;
+            }
+            if only.is_some_and(|names| names.iter().all(|name| name != card.name)) {
                 continue;
             }
             let nuisance = is_nuisance(prepared, card.name);
@@ -174,6 +180,7 @@ fn size(place: usize, card: &ParameterCard<'_>) -> Size {
     };
     Size {
         place,
+        copy: 0,
         scale,
         off: card.off,
         sign,
@@ -234,7 +241,12 @@ impl Ground<'_> {
         let sizes = sizes(&cards);
         let mut found = Vec::new();
         for values in forms(&cards, &sizes) {
-            found.extend(self.at(place, effect, &model, &cards, &sizes, values)?);
+            match self.at(place, effect, &model, &cards, &sizes, values) {
+                Ok(showing) => found.extend(showing),
+                // A number without small values: tried as a whole below.
+                Err(_) if effect.card().stage == Stage::Shape && sizes.len() == 1 => {}
+                Err(error) => return Err(error),
+            }
         }
         if found.is_empty() && sizes.len() == 1 && effect.card().stage == Stage::Shape {
             // Something that is there or not: a cloth between the fibres.
@@ -278,6 +290,7 @@ impl Ground<'_> {
             with.force.iter().zip(self.force).map(|(with, without)| with - without).collect();
         let size = Size {
             place: 0,
+            copy: 0,
             scale: 1.0,
             off: 0.0,
             sign: Sign::Positive,
@@ -319,7 +332,8 @@ impl Ground<'_> {
             .flat_map(|copy| sizes.iter().map(move |size| self.theta.len() + copy * cards.len() + size.place))
             .collect();
         let mut columns = self.derivatives(model, &theta, &parameters)?;
-        let mut sizes: Vec<Size> = (0..copies).flat_map(|_| sizes.iter().copied()).collect();
+        let mut sizes: Vec<Size> =
+            (0..copies).flat_map(|copy| sizes.iter().map(move |size| Size { copy, ..*size })).collect();
         for ((column, size), parameter) in columns.iter_mut().zip(&mut sizes).zip(&parameters) {
             if self.shows(column, size.scale) {
                 continue;
@@ -337,7 +351,13 @@ impl Ground<'_> {
                 with.force.iter().zip(self.force).map(|(with, without)| (with - without) / step).collect();
             size.secant = Some(step);
         }
-        let shows = columns.iter().zip(&sizes).any(|(column, size)| self.shows(column, size.scale));
+        // A modulus of rubber that isn't there does nothing.
+        let visible: Vec<bool> = columns.iter().zip(&sizes).map(|(c, size)| self.shows(c, size.scale)).collect();
+        let mut keep = visible.iter();
+        columns.retain(|_| keep.next().copied().unwrap_or(false));
+        let mut keep = visible.iter();
+        sizes.retain(|_| keep.next().copied().unwrap_or(false));
+        let shows = !columns.is_empty();
         let absent = effect.card().stage == Stage::Shape
             && sizes.iter().any(|size| size.secant.is_some_and(|s| is_absent_below(effect, model, size, s)));
         Ok((shows && !absent).then_some(Showing { effect: place, values, sizes, columns, whole: false }))

@@ -11,7 +11,7 @@ use bulge_model::Record;
 use crate::as_set::as_set;
 
 /// Highest degree over the contraction.
-const CONTRACTION: usize = 9;
+const CONTRACTION: usize = 12;
 /// Highest degree over the pressure.
 const PRESSURE: usize = 4;
 /// Highest degrees of what changes sign with the direction.
@@ -22,6 +22,9 @@ const PRESSURE_WEIGHT: f64 = 1.5;
 const REVERSALS: [f64; 2] = [0.03, 0.12];
 /// Highest degree over the clock.
 const CLOCK: usize = 5;
+
+/// Most turns of a wave over the clock.
+const TURNS: usize = 10;
 
 /// What a function depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -168,6 +171,11 @@ fn in_time(record: &Record) -> Vec<Smooth> {
         }
     };
     let clock = scaled(record, |m| m.clock);
+    for turns in 1..=TURNS {
+        let wave = |shift: f64| clock.iter().map(|c| (std::f64::consts::PI * (c * turns as f64 + shift)).cos()).collect();
+        add(Variable::Time, 4.0 + turns as f64, wave(0.0));
+        add(Variable::Time, 4.0 + turns as f64, wave(0.5));
+    }
     for i in 1..=CLOCK {
         add(Variable::Time, 1.0 + i as f64, clock.iter().map(|c| chebyshev(i, *c)).collect());
     }
@@ -287,8 +295,8 @@ mod tests {
         let record = Record::from_moments(moments, vec![0.0; 60], std::iter::once(0..60).collect()).unwrap();
         let found = smooth(&record);
         assert!(found.iter().all(|f| f.variable <= Variable::Pressure));
-        // Degrees i + 1.5 j <= 9 with j <= 2: 10 + 8 + 7.
-        assert_eq!(found.len(), 25);
+        // Degrees i <= 11 (12 contractions are told apart) and i + 1.5 j <= 12 with j <= 2: 12 + 11 + 10.
+        assert_eq!(found.len(), 33);
         assert!(found[0].values.iter().all(|v| (*v - 1.0).abs() < 1e-15));
     }
 
