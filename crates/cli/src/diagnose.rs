@@ -1,13 +1,14 @@
 //! `bulge diagnose`: which physical effect is missing.
 
-mod progress;
-mod text;
+pub(crate) mod paragraph;
+pub(crate) mod progress;
+pub(crate) mod text;
+pub(crate) mod untested;
 
 use bulge_effects::known;
 use bulge_inference::{DiagnoseOptions, Diagnosis, Options, diagnose};
 use bulge_measurements::Data;
-
-use bulge_muscles::{Force, Muscle, Quantity};
+use bulge_muscles::{Force, Quantity};
 use bulge_report::diagnosis::{html, plots};
 use clap::Args;
 use std::fmt::Write;
@@ -16,7 +17,7 @@ use std::path::{Path, PathBuf};
 use crate::arguments;
 use crate::failure::Failure;
 use crate::files;
-use progress::Progress;
+use progress::Bar;
 
 /// Which physical effect is missing: compares, looks for what the model lacks, adds it, and says how sure that is.
 #[derive(Debug, Args)]
@@ -56,8 +57,11 @@ impl DiagnoseCommand {
         let data = Data::read(&self.data)?;
         let known = known(&muscle, &catalogue)?;
         let base = Options { known, ..Options::new(catalogue, effects) };
-        let options = DiagnoseOptions { tolerance_n, seed: self.seed, ..DiagnoseOptions::new(base) };
-        let found = self.look(&data, &muscle, &options)?;
+        let bar = Bar::new(self.json);
+        let progress = bar.progress();
+        let options = DiagnoseOptions { tolerance_n, seed: self.seed, progress, ..DiagnoseOptions::new(base) };
+        let found = diagnose(&data, &muscle, &options)?;
+        drop(bar);
         let document = serde_json::to_string_pretty(&found)? + "\n";
         let mut wrote = String::new();
         if let Some(folder) = &self.out {
@@ -66,14 +70,6 @@ impl DiagnoseCommand {
             }
         }
         if self.json { Ok(document) } else { Ok(text::text(&found, &self.call()) + &wrote) }
-    }
-
-    /// The diagnosis, with a bar for whoever waits at a terminal.
-    fn look(&self, data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<Diagnosis, Failure> {
-        let progress = Progress::new(self.json);
-        let tell = progress.listener();
-        tell(0.0, "diagnosing");
-        Ok(diagnose(data, muscle, options)?)
     }
 
     /// The command line as far as the next step takes it over.

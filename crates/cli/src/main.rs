@@ -11,6 +11,8 @@ mod failure;
 mod files;
 mod fit;
 mod muscle;
+mod next;
+mod plan;
 mod shape;
 mod simulate;
 mod sketch;
@@ -50,6 +52,10 @@ enum Command {
     Diagnose(diagnose::DiagnoseCommand),
     /// Fit effects to measurements, and write the muscle with what was learnt
     Fit(fit::FitCommand),
+    /// Before measuring: detection limits, and which effects a test could not tell apart
+    Plan(plan::PlanCommand),
+    /// The next experiment, which best separates the effects that measurements leave open
+    Next(next::NextCommand),
     /// Synthetic measurements with chosen (hidden) effects, noise and rig errors
     Simulate(simulate::SimulateCommand),
     /// The catalogue of physical effects, and of the papers' force laws
@@ -81,6 +87,8 @@ fn main() -> ExitCode {
         Command::Compare(command) => command.run(),
         Command::Diagnose(command) => command.run(),
         Command::Fit(command) => command.run(),
+        Command::Plan(command) => command.run(),
+        Command::Next(command) => command.run(),
         Command::Simulate(command) => command.run(),
         Command::Effects(command) => command.run(),
         Command::Muscle(command) => command.run(),

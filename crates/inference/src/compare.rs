@@ -238,6 +238,14 @@ impl<'a> Analysis<'a> {
         with_effects().map_err(|error| self.about(error))
     }
 
+    /// The force of the base with everything as stated, nothing fitted \[N\].
+    pub(crate) fn as_stated(&self) -> Result<Vec<f64>, InferenceError> {
+        let prepared = self.model(0)?;
+        let counting = Warm::of_rows(&self.used.mask);
+        let found = prepared.model.evaluate_warm(&self.record, &prepared.model.start(), &Wanted::default(), &counting);
+        Ok(found.map_err(|error| self.about(error))?.force)
+    }
+
     /// The rung of the first `count` effects: fitted if there is anything to fit.
     pub(crate) fn climb(&self, count: usize, below: Option<&Climbed>) -> Result<Climbed, InferenceError> {
         let prepared = self.model(count)?;

@@ -78,8 +78,8 @@ struct Ground {
 fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<Diagnosis, InferenceError> {
     let progress = &options.progress;
     let mut analysis = Analysis::new(data, muscle, &options.base)?;
+    check_scale(data, &analysis.as_stated()?, &analysis.used.mask)?;
     let first = analysis.climb(0, None)?;
-    check_scale(data, &first.force, &analysis.used.mask)?;
     analysis.check_match(&first)?;
     analysis.measure_noise(&first);
     let base = analysis.climb(options.base.effects.len(), Some(&first))?;

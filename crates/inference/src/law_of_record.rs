@@ -15,10 +15,13 @@ use crate::smooth::smooth;
 use crate::space::{Space, norm};
 
 /// Independent columns of the saturated model, as a part of the rows: of effects, and of all.
-const EFFECTS_PART: f64 = 0.22;
-const ALL_PART: f64 = 0.4;
+/// Along a path fewer: a model with many numbers follows correlated noise, and takes it away.
+const EFFECTS_PART: [f64; 2] = [0.22, 0.08];
+const ALL_PART: [f64; 2] = [0.4, 0.15];
 /// Most independent columns: with many rows more of them only cost time.
 const MOST: usize = 160;
+/// Columns that there are in any case, if there are rows enough.
+const FEW: f64 = 40.0;
 /// An effect of which less than this part is new is one of those before.
 const ALIKE: f64 = 0.01;
 /// A column of which less than this part is new adds nothing.
@@ -92,7 +95,8 @@ impl Source<'_> {
 fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> Vec<Vec<f64>> {
     let n = record.len() as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "numbers of columns")]
-    let [effects_most, most] = [EFFECTS_PART, ALL_PART].map(|part| (part * n) as usize);
+    let [effects_most, most] =
+        [EFFECTS_PART, ALL_PART].map(|part| (part[usize::from(record.is_path())] * n).max(FEW.min(0.4 * n)) as usize);
     let mut space = Space::without(&[]);
     for column in between(record) {
         enter_new(&mut space, &column);

@@ -26,7 +26,7 @@ const ENOUGH_OFFSETS: f64 = 2.0;
 /// Part of the values below which what the model leaves is rounding.
 const EXACT: f64 = 1e-10;
 /// Level of the tests.
-const LEVEL: f64 = 0.01;
+const LEVEL: f64 = 0.05;
 /// Least and largest variance in units of the white one, or of the whole scatter if input variances fix the scale.
 const RATIOS: (f64, f64) = (1e-6, 1e6);
 
@@ -39,7 +39,7 @@ impl NoiseLaw {
     ///
     /// Parts that the data can't tell are left out, and `says` names the reason: correlation along a static map, offsets of fewer than three
     /// sweeps, everything but white noise below 30 degrees of freedom. What is left is kept if it beats white noise in a likelihood-ratio test
-    /// (p < 0.01, chi-squared with one degree for each number: cautious, as variances at 0 make it smaller), and reduced to one part if the
+    /// (p < 0.05, chi-squared with one degree for each number: cautious, as variances at 0 make it smaller), and reduced to one part if the
     /// other isn't needed at the same level. Without time the correlation is over rows. Of more than 5000 rows the beginnings of the sweeps are used.
     ///
     /// # Errors

@@ -1,22 +1,19 @@
 //! A bar on standard error for whoever waits at a terminal.
 
+use bulge_inference::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr, stdout};
-use std::sync::Arc;
 use std::time::Duration;
-
-/// Hears how far the work is, 0 to 1, and what is being done.
-pub(super) type Listener = Arc<dyn Fn(f64, &str) + Send + Sync>;
 
 /// Steps of the bar.
 const STEPS: u32 = 1000;
 
 /// The bar; it goes away with this value.
-pub(super) struct Progress(ProgressBar);
+pub(crate) struct Bar(ProgressBar);
 
-impl Progress {
+impl Bar {
     /// A bar, if standard error is a terminal; none beside JSON that goes elsewhere.
-    pub(super) fn new(json: bool) -> Self {
+    pub(crate) fn new(json: bool) -> Self {
         if !stderr().is_terminal() || (json && !stdout().is_terminal()) {
             return Self(ProgressBar::hidden());
         }
@@ -29,16 +26,16 @@ impl Progress {
     }
 
     /// What moves the bar.
-    pub(super) fn listener(&self) -> Listener {
+    pub(crate) fn progress(&self) -> Progress {
         let bar = self.0.clone();
-        Arc::new(move |share, what| {
+        Progress::to(move |share, what| {
             bar.set_position(position(share));
             bar.set_message(what.to_owned());
         })
     }
 }
 
-impl Drop for Progress {
+impl Drop for Bar {
     fn drop(&mut self) {
         self.0.finish_and_clear();
     }
@@ -57,15 +54,5 @@ mod tests {
     #[test]
     fn a_share_is_a_step_of_the_bar() {
         assert_eq!([-1.0, 0.0, 0.25, 1.0, 7.0, f64::NAN].map(position), [0, 0, 250, 1000, 1000, 0]);
-    }
-
-    #[test]
-    fn a_hidden_bar_hears_from_any_thread() {
-        let progress = Progress(ProgressBar::hidden());
-        let listener = progress.listener();
-        std::thread::scope(|scope| {
-            scope.spawn(|| listener(0.5, "trying"));
-        });
-        assert_eq!((progress.0.position(), progress.0.message().as_str()), (500, "trying"));
     }
 }

@@ -2,10 +2,12 @@
 
 use bulge_inference::{CandidateResult, Diagnosis, LadderStep, Missing, Verdict};
 use bulge_report::diagnosis::{
-    base_name, chance, headlines, is_significant, noise_says, once_in, others_in_class, remains_says,
+    base_name, chance, further, headlines, is_significant, noise_says, once_in, others_in_class, remains_says,
 };
 use std::fmt::Write;
 
+use crate::diagnose::paragraph::{paragraph, quoted};
+use crate::diagnose::untested::reasons;
 use crate::text::{significant, with_interval};
 
 /// Lines of a kind that are shown; JSON has all.
@@ -15,20 +17,20 @@ const MOST_HINTS: usize = 3;
 const MOST_RIVALS: usize = 3;
 const MOST_LIMITS: usize = 5;
 const MOST_WARNINGS: usize = 6;
-/// Width of running text.
-const WIDTH: usize = 108;
+/// What stands before the effects that could not be looked for.
+const UNTESTED: &str = "  could not be looked for ";
 
 /// The command line that led to the diagnosis, as far as the next step takes it over.
 #[derive(Debug)]
-pub(super) struct Call {
+pub(crate) struct Call {
     /// Data files.
-    pub(super) data: Vec<String>,
+    pub(crate) data: Vec<String>,
     /// Muscle as given.
-    pub(super) muscle: String,
+    pub(crate) muscle: String,
     /// Effects that the base had.
-    pub(super) with: Vec<String>,
+    pub(crate) with: Vec<String>,
     /// File of the user's own effects.
-    pub(super) effects: Option<String>,
+    pub(crate) effects: Option<String>,
 }
 
 /// The diagnosis for people.
@@ -77,17 +79,16 @@ fn measured(out: &mut String, diagnosis: &Diagnosis) {
 /// The verdict in plain words, and each effect with its class and numbers.
 fn verdict(out: &mut String, diagnosis: &Diagnosis) {
     out.push('\n');
-    let claims = headlines(diagnosis);
-    let is_claim = |line: &&String| line.starts_with("missing: ") || line.starts_with("nearest: ");
-    for line in claims.iter().filter(|line| !is_claim(line)) {
-        let _ = writeln!(out, "  {line}");
+    let mut missing = diagnosis.missing.iter();
+    for line in headlines(diagnosis) {
+        paragraph(out, "  ", &line);
+        let is_claim = line.starts_with("missing: ") || line.starts_with("nearest: ");
+        if let Some(missing) = is_claim.then(|| missing.next()).flatten() {
+            found(out, missing, diagnosis.verdict == Verdict::Missing);
+        }
     }
-    for (line, missing) in claims.iter().filter(is_claim).zip(&diagnosis.missing) {
-        let _ = writeln!(out, "  {line}");
-        found(out, missing, diagnosis.verdict == Verdict::Missing);
-    }
-    if !diagnosis.says.trim().is_empty() {
-        paragraph(out, "  ", diagnosis.says.trim());
+    if let Some(says) = further(diagnosis) {
+        paragraph(out, "  ", says);
     }
 }
 
@@ -209,24 +210,27 @@ fn limits(out: &mut String, diagnosis: &Diagnosis) {
         let of_all = if all > named.len() { format!("; all {all}: --json") } else { String::new() };
         paragraph(out, "  ", &format!("not found, and would show from: {}{of_all}", named.join(", ")));
     }
-    let of = |status: &str| -> Vec<&str> {
-        diagnosis.candidates.iter().filter(|c| c.status == status).map(|c| c.effect.as_str()).collect()
-    };
-    for (status, words) in [
-        ("not-converged", "did not converge, so neither found nor rejected"),
-        ("not-testable", "could not be looked for in these data"),
-    ] {
-        let names = of(status);
-        if !names.is_empty() {
-            paragraph(out, "  ", &format!("{words}: {}", names.join(", ")));
-        }
+    let failed: Vec<&str> =
+        diagnosis.candidates.iter().filter(|c| c.status == "not-converged").map(|c| c.effect.as_str()).collect();
+    if !failed.is_empty() {
+        paragraph(out, "  ", &format!("did not converge, so neither found nor rejected: {}", failed.join(", ")));
     }
+    for line in reasons(&untested(diagnosis), UNTESTED.len()) {
+        let _ = writeln!(out, "{UNTESTED}{line}");
+    }
+}
+
+/// Effects that could not be looked for, and why.
+pub(crate) fn untested(diagnosis: &Diagnosis) -> Vec<(&str, Option<&str>)> {
+    let untested = diagnosis.candidates.iter().filter(|c| c.status == "not-testable");
+    untested.map(|c| (c.effect.as_str(), c.why.as_deref())).collect()
 }
 
 fn next(out: &mut String, diagnosis: &Diagnosis) {
     let Some(next) = &diagnosis.next_experiment else { return };
     paragraph(out, "  ", &format!("next experiment: {}", next.says.trim()));
-    if !next.separates.is_empty() {
+    // No repeats: there is no such experiment, and the sentence says so.
+    if !next.separates.is_empty() && next.repeats > 0 {
         let times = if next.repeats == 1 { "once" } else { "times" };
         let repeats = if next.repeats == 1 { times.to_owned() } else { format!("{} {times}", next.repeats) };
         let _ = writeln!(
@@ -257,35 +261,6 @@ fn accept(out: &mut String, diagnosis: &Diagnosis, call: &Call) {
         out,
         "\n  to accept this step:\n    bulge diagnose {rest}\n    bulge fit {rest} --out learnt.toml"
     );
-}
-
-/// A word of a command line, in quotes if a shell would take it for more than one.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./,:=+@\\".contains(c);
-    if !word.is_empty() && word.chars().all(plain) { word.to_owned() } else { format!("\"{word}\"") }
-}
-
-/// Keeps a number and its unit on one line.
-const TIE: char = '\u{a0}';
-
-/// Running text, broken at spaces (not before a per cent sign); lines after the first are set in a little more.
-fn paragraph(out: &mut String, indent: &str, words: &str) {
-    let mut line = indent.to_owned();
-    let mut is_empty = true;
-    let tied = words.replace(" %", &format!("{TIE}%"));
-    for word in tied.split([' ', '\n']).filter(|word| !word.is_empty()) {
-        if !is_empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            let _ = writeln!(out, "{line}");
-            line = format!("{indent}  ");
-            is_empty = true;
-        }
-        if !is_empty {
-            line.push(' ');
-        }
-        line.push_str(&word.replace(TIE, " "));
-        is_empty = false;
-    }
-    let _ = writeln!(out, "{line}");
 }
 
 fn three(value: f64) -> String {
@@ -363,7 +338,7 @@ mod tests {
             "    bladder-elasticity: wall-thickness 1.20, hoop-elasticity 7.50",
             "  not found, and would show from: creep 0.220 N/decade (0.500 N), end-slip 0.0500 um/N",
             "  did not converge, so neither found nor rejected: bouc-wen",
-            "  could not be looked for in these data: temperature",
+            "  could not be looked for (needs a column `temperature` that changes): temperature",
             "  next experiment: Hold at 3 bar for an hour.",
             "    it separates bladder-elasticity and wall-thickness by 4.90 sigma, done 2 times",
             "  ! one warning",
@@ -412,29 +387,37 @@ mod tests {
         }
         let mut more = diagnosed::missing(comparison);
         more.remaining.structured = true;
-        place(&lines(&more), "  unknown: what is left then has a structure");
+        let lines = lines(&more);
+        let remains = place(&lines, "  remains: a structure of 0.400 N that no other effect of the catalogue explains");
+        assert!(place(&lines, "  missing: coulomb-friction") < remains && remains < place(&lines, "noise floor"));
     }
 
     #[test]
-    fn words_of_a_shell_are_quoted() {
-        assert_eq!(["a.csv", "my file", ""].map(quoted), ["a.csv", "\"my file\"", "\"\""]);
+    fn nothing_is_said_twice() {
+        let comparison = comparison();
+        let mut missing = diagnosed::missing(comparison.clone());
+        missing.says = "missing: bladder-elasticity and coulomb-friction; with it the model explains the data".to_owned();
+        assert!(lines(&missing).iter().all(|line| !line.contains("with it the model")));
+        let mut unknown = diagnosed::unknown(comparison.clone());
+        unknown.says =
+            "these data hold a structure of 3.1 N (2.0 to 4.2) that no effect of the catalogue explains".to_owned();
+        let text = lines(&unknown);
+        let verdict = "  unknown: these data hold a structure of 3.1 N (2.0 to 4.2) that no effect of the catalogue explains";
+        place(&text, verdict);
+        assert_eq!(text.iter().filter(|line| line.contains("these data hold")).count(), 1, "{text:#?}");
+        let mut cannot_tell = diagnosed::cannot_tell(comparison);
+        cannot_tell.says = "these data can't tell: 7 rows are too few to know their noise".to_owned();
+        let text = lines(&cannot_tell);
+        assert!(text.contains(&"  7 rows are too few to know their noise".to_owned()), "{text:#?}");
     }
 
     #[test]
-    fn running_text_keeps_its_words_and_its_width() {
-        let words = "bladder-elasticity and more ".repeat(20);
-        let mut out = String::new();
-        paragraph(&mut out, "    ", &words);
-        assert!(
-            out.lines().count() > 4
-                && out.lines().all(|line| line.len() <= WIDTH && line.starts_with("    "))
-        );
-        assert!(out.split_whitespace().eq(words.split_whitespace()));
-        let mut out = String::new();
-        paragraph(&mut out, "", &"right 99 % ".repeat(40));
-        assert!(
-            out.lines().count() > 3 && !out.contains("\n  %") && out.matches("99 %").count() == 40,
-            "{out}"
-        );
+    fn where_no_experiment_separates_none_is_counted() {
+        let mut diagnosis = diagnosed::missing(comparison());
+        let next = diagnosis.next_experiment.as_mut().unwrap();
+        (next.says, next.repeats) = ("no test of force tells them apart".to_owned(), 0);
+        let text = lines(&diagnosis);
+        place(&text, "  next experiment: no test of force");
+        assert!(text.iter().all(|line| !line.contains("it separates")), "{text:#?}");
     }
 }

@@ -2,45 +2,72 @@
 
 use bulge_inference::{Diagnosis, Missing, Verdict};
 
+use crate::comparison::number::newton;
 use crate::diagnosis::words::chance;
 
-/// The verdict, one line for each thing that it says; each begins with `missing: `, `adequate: `, `unknown: `, `cannot tell: ` or `nearest: `.
+/// Words after which two sentences are about the same.
+const ALIKE: usize = 4;
+/// What a verdict that names effects begins with.
+const MISSING: &str = "missing: ";
+/// What a diagnosis without a verdict may begin with.
+const CANNOT_TELL: &str = "these data can't tell: ";
+/// Verdicts in words, where the diagnosis has none of its own.
+const ADEQUATE: &str = "the model explains these data within noise and tolerance";
+const UNKNOWN: &str = "these data hold a structure that no effect of the catalogue explains";
+const TOO_FEW: &str = "these data are too few or too noisy for a verdict";
+
+/// The verdict, one line for each thing that it says; each begins with `missing: `, `remains: `, `adequate: `, `unknown: `, `cannot tell: ` or `nearest: `.
 ///
 /// ```text
 /// missing: bladder-elasticity (on data like these such a claim is right 97 % of the time)
 /// ```
-/// Effects that were tried on the way to another verdict are `nearest: `: nothing is claimed of them.
+/// What is missing comes first, then that something remains. Effects that were tried on the way to another verdict are `nearest: `: nothing is claimed of them.
+/// Where the diagnosis has a sentence of its own for the verdict, with numbers, it is the line.
 #[must_use]
 pub fn headlines(diagnosis: &Diagnosis) -> Vec<String> {
     let claim = |missing: &Missing| {
         let right = chance(missing.confidence);
-        format!("missing: {} (on data like these such a claim is right {right} of the time)", missing.effect)
+        format!("{MISSING}{} (on data like these such a claim is right {right} of the time)", missing.effect)
     };
     let nearest = |why: &str| -> Vec<String> {
         diagnosis.missing.iter().map(|missing| format!("nearest: {} ({why})", missing.effect)).collect()
     };
-    let (first, rest) = match diagnosis.verdict {
+    let (verdict, says, rest) = match diagnosis.verdict {
         Verdict::Missing => {
             let mut lines: Vec<String> = diagnosis.missing.iter().map(claim).collect();
             if diagnosis.remaining.structured {
-                let left = "unknown: what is left then has a structure that no other effect of the catalogue explains";
-                lines.push(left.to_owned());
+                let size = newton(diagnosis.remaining.misfit_n);
+                lines.push(format!("remains: a structure of {size} that no other effect of the catalogue explains"));
             }
             return lines;
         }
-        Verdict::Adequate => {
-            ("adequate: the model explains these data within noise and tolerance", nearest("not needed"))
-        }
-        Verdict::Unknown => (
-            "unknown: these data hold a structure that no effect of the catalogue explains",
-            nearest("it lowers the error and leaves the structure"),
-        ),
-        Verdict::CannotTell => (
-            "cannot tell: these data are too few or too noisy for a verdict",
-            nearest("a ranking, not a claim"),
-        ),
+        Verdict::Adequate => ("adequate", ADEQUATE, nearest("not needed")),
+        Verdict::Unknown => ("unknown", UNKNOWN, nearest("it lowers the error and leaves the structure")),
+        Verdict::CannotTell => ("cannot tell", TOO_FEW, nearest("a ranking, not a claim")),
     };
-    std::iter::once(first.to_owned()).chain(rest).collect()
+    let own = diagnosis.says.trim();
+    let says = if opens_alike(own, says) { own } else { says };
+    std::iter::once(format!("{verdict}: {says}")).chain(rest).collect()
+}
+
+/// The sentence of the diagnosis, as far as it says more than [`headlines`] do.
+#[must_use]
+pub fn further(diagnosis: &Diagnosis) -> Option<&str> {
+    let says = diagnosis.says.trim();
+    let is_said = match diagnosis.verdict {
+        Verdict::Missing => says.starts_with(MISSING),
+        Verdict::Adequate => opens_alike(says, ADEQUATE),
+        Verdict::Unknown => opens_alike(says, UNKNOWN),
+        Verdict::CannotTell => false,
+    };
+    let says = says.strip_prefix(CANNOT_TELL).unwrap_or(says);
+    (!is_said && !says.is_empty()).then_some(says)
+}
+
+/// Whether two sentences begin with the same words.
+fn opens_alike(a: &str, b: &str) -> bool {
+    let [a, b] = [a, b].map(|text| text.split_whitespace().take(ALIKE));
+    a.eq(b)
 }
 
 /// Effects that the data can't tell from a missing one, without itself.

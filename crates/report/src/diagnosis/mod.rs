@@ -25,7 +25,7 @@ use bulge_inference::Diagnosis;
 use crate::PlotError;
 use crate::comparison::Plot;
 
-pub use headline::{headlines, others_in_class};
+pub use headline::{further, headlines, others_in_class};
 pub use words::{base_name, chance, found_by, is_significant, noise_says, once_in, remains_says};
 
 /// The page: one HTML document with the verdict, all plots and tables, readable on screen and on paper.

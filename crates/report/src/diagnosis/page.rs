@@ -9,7 +9,7 @@ use crate::comparison::number::{and, count, newton, three};
 use crate::comparison::page::{Figure, filled, model_and_measurement};
 use crate::comparison::wording::sentence;
 use crate::diagnosis::{
-    candidates, chance, explained, headlines, limits, located, noise_says, others_in_class, remaining,
+    candidates, chance, explained, further, headlines, limits, located, noise_says, others_in_class, remaining,
     remains_says, rivals, steps, words,
 };
 use crate::interval::with_interval;
@@ -85,7 +85,7 @@ fn page(diagnosis: &Diagnosis) -> Result<Page<'_>, PlotError> {
         schema: diagnosis.schema,
         tone: tone(diagnosis.verdict),
         headlines: headlines(diagnosis).iter().map(|line| sentence(line)).collect(),
-        says: diagnosis.says.trim(),
+        says: further(diagnosis).unwrap_or_default(),
         found: diagnosis.missing.iter().map(|missing| found(missing, diagnosis.verdict)).collect(),
         base: words::base_name(diagnosis),
         data_says: data_says(diagnosis),
@@ -206,7 +206,11 @@ fn next_says(next: Option<&NextExperiment>) -> String {
     }
 }
 
+/// Nothing where there is no such experiment: the sentence says so.
 fn next(next: &NextExperiment) -> Vec<(&'static str, String)> {
+    if next.repeats == 0 {
+        return Vec::new();
+    }
     vec![
         ("separates", and(&next.separates)),
         ("by", format!("{} sigma", three(next.sigma))),

@@ -1,0 +1,62 @@
+//! Running text on a terminal: paragraphs of even width, and words of a command line.
+
+use std::fmt::Write;
+
+/// Width of running text.
+pub(crate) const WIDTH: usize = 108;
+/// Keeps a number and its unit on one line.
+const TIE: char = '\u{a0}';
+
+/// Running text, broken at spaces (not before a per cent sign); lines after the first are set in a little more.
+pub(crate) fn paragraph(out: &mut String, indent: &str, words: &str) {
+    let mut line = indent.to_owned();
+    let mut is_empty = true;
+    let tied = words.replace(" %", &format!("{TIE}%"));
+    for word in tied.split([' ', '\n']).filter(|word| !word.is_empty()) {
+        if !is_empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            let _ = writeln!(out, "{line}");
+            line = format!("{indent}  ");
+            is_empty = true;
+        }
+        if !is_empty {
+            line.push(' ');
+        }
+        line.push_str(&word.replace(TIE, " "));
+        is_empty = false;
+    }
+    let _ = writeln!(out, "{line}");
+}
+
+/// A word of a command line, in quotes if a shell would take it for more than one.
+pub(crate) fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./,:=+@\\".contains(c);
+    if !word.is_empty() && word.chars().all(plain) { word.to_owned() } else { format!("\"{word}\"") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_of_a_shell_are_quoted() {
+        assert_eq!(["a.csv", "my file", ""].map(quoted), ["a.csv", "\"my file\"", "\"\""]);
+    }
+
+    #[test]
+    fn running_text_keeps_its_words_and_its_width() {
+        let words = "bladder-elasticity and more ".repeat(20);
+        let mut out = String::new();
+        paragraph(&mut out, "    ", &words);
+        assert!(
+            out.lines().count() > 4
+                && out.lines().all(|line| line.len() <= WIDTH && line.starts_with("    "))
+        );
+        assert!(out.split_whitespace().eq(words.split_whitespace()));
+        let mut out = String::new();
+        paragraph(&mut out, "", &"right 99 % ".repeat(40));
+        assert!(
+            out.lines().count() > 3 && !out.contains("\n  %") && out.matches("99 %").count() == 40,
+            "{out}"
+        );
+    }
+}

@@ -1,0 +1,234 @@
+//! `bulge plan`: before measuring, what a test would show and which effects it could not tell apart.
+
+use bulge_effects::known;
+use bulge_inference::{ConfusedPair, CorrelationTime, Plan, PlannedEffect, Protocol, plan};
+use clap::Args;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use crate::arguments;
+use crate::diagnose::paragraph::{paragraph, quoted};
+use crate::diagnose::untested::reasons;
+use crate::failure::Failure;
+use crate::text::{significant, table};
+
+/// Sigmas at which an effect is seen, and from which two are told apart.
+const SEEN: f64 = 3.3;
+const APART: f64 = 3.29;
+/// A compensation that is spoken of.
+const MUCH: f64 = 0.5;
+/// Lines of a kind that are shown; JSON has all.
+const EASIEST: usize = 9;
+const HARDEST: usize = 8;
+const MOST_NAMES: usize = 12;
+const MOST_PAIRS: usize = 5;
+const MOST_WARNINGS: usize = 2;
+/// More tests than this are nobody's plan.
+const MOST_TESTS: f64 = 1000.0;
+/// What stands before the effects that a test can't show.
+const UNTESTED: &str = "  cannot be seen ";
+
+/// Before measuring: detection limits, and which effects this test could not tell apart.
+#[derive(Debug, Args)]
+pub(crate) struct PlanCommand {
+    /// A muscle file or the name of a shipped muscle
+    #[arg(long)]
+    muscle: String,
+    /// What the test bench does: a TOML file as for `bulge simulate` (its help has an example)
+    #[arg(long, value_name = "PROTOCOL.toml")]
+    protocol: PathBuf,
+    /// Your own effects, as expressions in a TOML file
+    #[arg(long, value_name = "FILE")]
+    effects: Option<PathBuf>,
+    /// One JSON document on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl PlanCommand {
+    pub(crate) fn run(&self) -> Result<String, Failure> {
+        let catalogue = arguments::catalogue(self.effects.as_deref())?;
+        let muscle = arguments::muscle(&self.muscle)?;
+        let protocol = Protocol::read(&self.protocol)?;
+        let known = known(&muscle, &catalogue)?;
+        let found = plan(&muscle, &known, &catalogue, &protocol)?;
+        if self.json { Ok(serde_json::to_string_pretty(&found)? + "\n") } else { Ok(self.text(&found)) }
+    }
+
+    /// The plan for people.
+    fn text(&self, plan: &Plan) -> String {
+        let mut out = String::new();
+        test(&mut out, plan);
+        limits(&mut out, plan);
+        pairs(&mut out, plan);
+        for warning in plan.warnings.iter().take(MOST_WARNINGS) {
+            paragraph(&mut out, "  ! ", warning);
+        }
+        let own = self
+            .effects
+            .as_ref()
+            .map_or_else(String::new, |path| format!(" --effects {}", quoted(&path.display().to_string())));
+        let hidden = plan.effects.first().map_or("coulomb-friction", |effect| effect.effect.as_str());
+        let _ = writeln!(
+            out,
+            "\n  to try it, hide an effect and look for it:\n    bulge simulate {} --protocol {}{own} --with {hidden} --out trial",
+            quoted(&self.muscle),
+            quoted(&self.protocol.display().to_string())
+        );
+        out
+    }
+}
+
+fn three(value: f64) -> String {
+    significant(value, 3)
+}
+
+/// What the test is.
+fn test(out: &mut String, plan: &Plan) {
+    let [low, high] = plan.pressure_pa.map(|p| three(p / 1e5));
+    let [short, long] = plan.contraction.map(|e| three(100.0 * e));
+    let _ = writeln!(
+        out,
+        "{}, before measuring\n\n  {} rows in {}: {low} to {high} bar, contraction {short} to {long} %",
+        plan.muscle,
+        plan.rows,
+        if plan.sweeps == 1 { "1 sweep".to_owned() } else { format!("{} sweeps", plan.sweeps) }
+    );
+    let noise = &plan.noise;
+    let correlated = match noise.time.filter(|_| noise.correlated_n > 0.0) {
+        Some(CorrelationTime::Seconds(time)) => {
+            format!(", {} N correlated over {} s", three(noise.correlated_n), three(time))
+        }
+        Some(CorrelationTime::Rows(rows)) => {
+            format!(", {} N correlated over {} rows", three(noise.correlated_n), three(rows))
+        }
+        None => String::new(),
+    };
+    let offset = if noise.offset_n > 0.0 {
+        format!(", {} N from sweep to sweep", three(noise.offset_n))
+    } else {
+        String::new()
+    };
+    paragraph(out, "  ", &format!("noise of the force: {} N white{correlated}{offset} ({})", three(noise.white_n), noise.says));
+}
+
+/// What is seen from which size on, and what is not.
+fn limits(out: &mut String, plan: &Plan) {
+    let seen: Vec<&PlannedEffect> = plan.effects.iter().filter(|e| e.detection_limit_n.is_some()).collect();
+    // The easiest and the hardest to see are shown; what lies between them is named.
+    let (easiest, hardest) = if seen.len() <= EASIEST + HARDEST {
+        (seen.len(), seen.len())
+    } else {
+        (EASIEST, seen.len() - HARDEST)
+    };
+    let part = if easiest == hardest { "" } else { "; the easiest and the hardest" };
+    let _ = writeln!(out, "\n  seen from ({SEEN} sigma), and sigmas at the usual size{part}");
+    let mut rows = vec![["effect", "limit", "force", "usual", "compensated"].map(str::to_owned).to_vec()];
+    rows.extend(seen[..easiest].iter().chain(&seen[hardest..]).map(|effect| row(effect)));
+    if rows.iter().skip(1).all(|row| row[4].is_empty()) {
+        rows.iter_mut().for_each(|row| row.truncate(4));
+    }
+    out.push_str(&table(&rows));
+    let between: Vec<&str> = seen[easiest..hardest].iter().map(|e| e.effect.as_str()).collect();
+    if !between.is_empty() {
+        let shown = &between[..between.len().min(MOST_NAMES)];
+        let more = match between.len() - shown.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        paragraph(out, "  ", &format!("between them: {}{more} (--json)", shown.join(", ")));
+    }
+    let unseen: Vec<(&str, Option<&str>)> = plan
+        .effects
+        .iter()
+        .filter(|e| e.detection_limit_n.is_none())
+        .map(|e| (e.effect.as_str(), e.why.as_deref()))
+        .collect();
+    for line in reasons(&unseen, UNTESTED.len()) {
+        let _ = writeln!(out, "{UNTESTED}{line}");
+    }
+}
+
+fn row(effect: &PlannedEffect) -> Vec<String> {
+    let unit = if effect.unit == "1" { "" } else { &effect.unit };
+    let limit = effect
+        .detection_limit
+        .map_or_else(|| "as it is".to_owned(), |limit| format!("{} {} {unit}", effect.parameter, three(limit)));
+    let compensated =
+        if effect.compensation > MUCH { format!("{:.0} %", 100.0 * effect.compensation) } else { String::new() };
+    vec![
+        effect.effect.clone(),
+        limit.trim_end().to_owned(),
+        effect.detection_limit_n.map_or_else(String::new, |n| format!("{} N", three(n))),
+        three(effect.usual_sigma),
+        compensated,
+    ]
+}
+
+/// Effects that look alike.
+fn pairs(out: &mut String, plan: &Plan) {
+    let open: Vec<&ConfusedPair> = plan.confused.iter().filter(|pair| pair.sigma < APART).collect();
+    if open.is_empty() {
+        out.push_str("\n  all effects can be told apart at their usual size\n");
+        return;
+    }
+    let (never, some): (Vec<&ConfusedPair>, Vec<&ConfusedPair>) =
+        open.iter().partition(|pair| pair.repeats > MOST_TESTS);
+    let _ = writeln!(out, "\n  could not be told apart (less than {APART} sigma at the usual size)");
+    if !some.is_empty() {
+        let mut rows = vec![["pair", "cosine", "sigma", "tests that would"].map(str::to_owned).to_vec()];
+        rows.extend(some.iter().take(MOST_PAIRS).map(|pair| {
+            let [a, b] = &pair.effects;
+            let [cosine, tests] = [format!("{:.4}", pair.cosine), format!("{:.0}", pair.repeats)];
+            vec![format!("{a} and {b}"), cosine, three(pair.sigma), tests]
+        }));
+        out.push_str(&table(&rows));
+    }
+    if some.len() > MOST_PAIRS {
+        let _ = writeln!(out, "  and {} pairs more: --json", some.len() - MOST_PAIRS);
+    }
+    if !never.is_empty() {
+        let least = never.iter().map(|pair| pair.cosine).fold(1.0, f64::min);
+        let twins: Vec<String> = twins(&never).iter().map(|names| names.join(" = ")).collect();
+        paragraph(out, "  ", &format!("the same by any number of tests (cosine {least:.4}): {}", twins.join("; ")));
+    }
+}
+
+/// Pairs that share an effect become one list.
+fn twins<'a>(pairs: &[&'a ConfusedPair]) -> Vec<Vec<&'a str>> {
+    let mut lists: Vec<Vec<&str>> = Vec::new();
+    for pair in pairs {
+        let both = pair.effects.each_ref().map(String::as_str);
+        let (mut joined, others): (Vec<_>, Vec<_>) =
+            lists.into_iter().partition(|list| both.iter().any(|name| list.contains(name)));
+        joined.push(both.to_vec());
+        let mut list: Vec<&str> = Vec::new();
+        for name in joined.into_iter().flatten() {
+            if !list.contains(&name) {
+                list.push(name);
+            }
+        }
+        lists = others;
+        lists.push(list);
+    }
+    lists
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_that_share_an_effect_are_one_list() {
+        let pair = |a: &str, b: &str| ConfusedPair {
+            effects: [a, b].map(str::to_owned),
+            cosine: 1.0,
+            sigma: 0.0,
+            repeats: 1e19,
+            separate: String::new(),
+        };
+        let all = [pair("a", "b"), pair("c", "d"), pair("e", "f"), pair("d", "b")];
+        let lists = twins(&all.iter().collect::<Vec<_>>());
+        assert_eq!(lists, [vec!["e", "f"], vec!["a", "b", "c", "d"]]);
+    }
+}

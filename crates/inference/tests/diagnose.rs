@@ -1,0 +1,193 @@
+//! Diagnosis of simulated measurements: the hidden effect is named, nothing is named where nothing is hidden, and too few rows name nothing.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use bulge_effects::Catalogue;
+use bulge_inference::{
+    Block, DiagnoseOptions, Diagnosis, Options, Path, Protocol, ReadingNoise, Verdict, diagnose, simulate,
+};
+use bulge_measurements::Data;
+use bulge_model::Model;
+use bulge_muscles::{Muscle, from_toml};
+
+const BRAID: &str = r#"
+name = "braid"
+kind = "braided"
+length = "250 mm"
+radius = "10 mm"
+braid_angle = "25 deg"
+ends = "clamped"
+wall = "1.8 mm"
+
+[instruments]
+force = { noise = "2 N", zero = "0.5 N", gain = "0.05 %" }
+pressure = { noise = "50 Pa", zero = "100 Pa", gain = "0.05 %" }
+length = { noise = "5 um", zero = "0.02 mm", gain = "0.02 %" }
+"#;
+
+fn muscle() -> Muscle {
+    from_toml(BRAID, "braid.toml").unwrap()
+}
+
+fn protocol(force_n: f64, correlated_n: f64) -> Protocol {
+    let loops = Block {
+        path: Path::Triangle,
+        cycles: 2,
+        rows: 50,
+        ..Block::loops(vec![2e5, 3e5, 4e5, 5e5], [0.01, 0.18], 40.0)
+    };
+    let noise = ReadingNoise { force_n, correlated_n, correlation_time_s: 3.0, ..ReadingNoise::default() };
+    Protocol { noise, ..Protocol::new(vec![loops]) }
+}
+
+fn measured(effects: &[(&str, &[f64])], protocol: &Protocol, seed: u64) -> Data {
+    let catalogue = Catalogue::builtin();
+    let mut model = Model::new(&muscle());
+    let mut theta = Vec::new();
+    for (name, values) in effects {
+        model = model.with(catalogue.find(name).unwrap(), None).unwrap();
+        theta.extend_from_slice(values);
+    }
+    simulate(&model, &theta, protocol, seed).unwrap().data
+}
+
+fn diagnosed(data: &Data) -> Diagnosis {
+    let base = Options::new(Catalogue::builtin(), Vec::new());
+    diagnose(data, &muscle(), &DiagnoseOptions::new(base)).unwrap()
+}
+
+fn names(diagnosis: &Diagnosis) -> Vec<&str> {
+    diagnosis.missing.iter().map(|missing| missing.effect.as_str()).collect()
+}
+
+#[test]
+fn the_hidden_effect_is_named_with_its_number() {
+    for (effect, values, key, unit) in [
+        ("bladder-elasticity", &[1e5][..], "modulus", 1e6),
+        ("coulomb-friction", &[6.0][..], "force", 1.0),
+        ("frame-compliance", &[2e-7][..], "compliance", 1e-6),
+    ] {
+        let found = diagnosed(&measured(&[(effect, values)], &protocol(2.0, 0.0), 3));
+        assert_eq!(found.verdict, Verdict::Missing, "{effect}: {}", found.says);
+        let first = &found.missing[0];
+        assert!(
+            found.missing.len() == 1 && first.class.iter().any(|name| name == effect),
+            "{effect}: {:?}",
+            names(&found)
+        );
+        assert!(!found.remaining.structured && first.plausible, "{effect}");
+        if first.effect == effect {
+            let number = &first.parameters[key];
+            let value = values[0] / unit;
+            // A 95 % interval: twice its width holds the truth in all but one of 10^4 runs.
+            let slack = 0.5 * (number.high - number.low);
+            assert!(
+                number.low - slack < value && value < number.high + slack,
+                "{effect}: {value} against {number:?}"
+            );
+        }
+        let [before, after] = [0, 1].map(|i| found.ladder[i].rmse_n);
+        assert!(after < before && after < 1.1 * found.noise_floor_n, "{effect}: {before} to {after}");
+    }
+}
+
+#[test]
+fn where_nothing_is_hidden_nothing_is_named() {
+    let mut named = Vec::new();
+    for seed in 0..12 {
+        let correlated = if seed % 2 == 0 { 0.0 } else { 2.0 };
+        let found = diagnosed(&measured(&[], &protocol(2.0, correlated), seed));
+        if found.verdict != Verdict::Adequate {
+            named.push(format!("{seed}: {} {:?} {}", found.says, names(&found), found.noise.law.says));
+        }
+        assert_eq!(found.noise.correlated, correlated > 0.0 || found.noise.law.offset_n > 0.0);
+    }
+    // At 5 % false alarms, three of 12 have a chance of 2 %.
+    assert!(named.len() <= 2, "{named:#?}");
+}
+
+#[test]
+fn two_effects_are_both_named() {
+    let hidden: [(&str, &[f64]); 2] = [("coulomb-friction", &[8.0]), ("bladder-elasticity", &[5e4])];
+    let found = diagnosed(&measured(&hidden, &protocol(2.0, 0.0), 5));
+    assert_eq!(found.verdict, Verdict::Missing, "{}", found.says);
+    for (effect, _) in hidden {
+        let is_in = found.missing.iter().any(|missing| missing.class.iter().any(|name| name == effect));
+        assert!(is_in, "{effect}: {:?}", names(&found));
+    }
+    // And with them the model is adequate: the next diagnosis starts from there.
+    let catalogue = Catalogue::builtin();
+    let effects = names(&found).iter().map(|name| std::sync::Arc::clone(catalogue.find(name).unwrap())).collect();
+    let data = measured(&hidden, &protocol(2.0, 0.0), 5);
+    let options = DiagnoseOptions::new(Options::new(catalogue, effects));
+    let again = diagnose(&data, &muscle(), &options).unwrap();
+    assert_eq!(again.verdict, Verdict::Adequate, "{}", again.says);
+}
+
+#[test]
+fn too_few_rows_name_nothing() {
+    let csv = |rows: usize| {
+        let mut text = String::from("pressure [bar],contraction [%],force [N]\n");
+        for i in 0..rows {
+            let line = format!("{},{},{}\n", 2 + i % 2, 2 + 3 * (i / 2), 900.0 - 40.0 * i as f64 + 3.0 * (i % 3) as f64);
+            text.push_str(&line);
+        }
+        let folder = std::env::temp_dir().join(format!("bulge-few-{rows}-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("data.csv");
+        std::fs::write(&path, text).unwrap();
+        let data = Data::read(&[&path]).unwrap();
+        std::fs::remove_dir_all(&folder).unwrap();
+        data
+    };
+    for rows in [1, 2, 4, 7] {
+        let found = diagnosed(&csv(rows));
+        assert_eq!(found.verdict, Verdict::CannotTell, "{rows} rows: {}", found.says);
+        assert!(found.missing.is_empty() && !found.says.is_empty());
+    }
+}
+
+#[test]
+fn the_same_bytes_on_one_thread_and_on_many() {
+    let data = measured(&[("pressure-friction", &[2e-5])], &protocol(2.0, 1.0), 2);
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| serde_json::to_string(&diagnosed(&data)).unwrap())
+    };
+    assert!(on(1) == on(3));
+}
+
+#[test]
+fn a_tolerance_is_what_matters() {
+    let data = measured(&[("coulomb-friction", &[3.0])], &protocol(2.0, 0.0), 3);
+    let with = |tolerance_n: Option<f64>| {
+        let base = Options::new(Catalogue::builtin(), Vec::new());
+        diagnose(&data, &muscle(), &DiagnoseOptions { tolerance_n, ..DiagnoseOptions::new(base) }).unwrap()
+    };
+    assert_eq!(with(None).verdict, Verdict::Missing);
+    assert_eq!(with(Some(1.0)).verdict, Verdict::Missing);
+    let loose = with(Some(20.0));
+    assert_eq!(loose.verdict, Verdict::Adequate, "{}", loose.says);
+    assert!(loose.missing.is_empty() && loose.says.contains("20"), "{}", loose.says);
+}
+
+#[test]
+fn a_wrong_unit_is_no_physics() {
+    let exact = measured(&[], &protocol(2.0, 0.0), 1);
+    let folder = std::env::temp_dir().join(format!("bulge-unit-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("data.csv");
+    // Bar written into a column of psi.
+    let mut text = String::from("pressure [psi],contraction [%],force [N]\n");
+    let contraction = exact.contraction(0.25);
+    for row in 0..exact.len() {
+        let line = format!("{},{},{}\n", exact.pressure()[row] / 1e5, 100.0 * contraction[row], exact.force()[row]);
+        text.push_str(&line);
+    }
+    std::fs::write(&path, text).unwrap();
+    let data = Data::read(&[&path]).unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    let options = DiagnoseOptions::new(Options::new(Catalogue::builtin(), Vec::new()));
+    let error = diagnose(&data, &muscle(), &options).map(|found| found.says).unwrap_err().to_string();
+    assert!(error.contains("14.50") && error.contains("psi"), "{error}");
+}

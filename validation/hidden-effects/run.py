@@ -1,0 +1,167 @@
+"""Runs `bulge diagnose --json` on the cases of a suite.
+
+    python run.py DIR RESULTS --bulge PATH [--jobs 2] [--only REGEX] [--again]
+
+RESULTS/<case>.json is the answer, times.json the seconds of each case, inputs.json a checksum of the program and the files that it answered on. A case
+is skipped if this program has answered on these files already, unless --again is given. Each case runs on one thread; the cases are what runs in
+parallel. Every file appears whole or not at all. Failures are listed at the end with what the program said, and make the exit status 1; after Ctrl-C
+(exit status 130) the same command goes on where it stopped.
+"""
+
+import argparse
+import contextlib
+import hashlib
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+
+PART = ".part"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the cases")
+    parser.add_argument("results", type=Path, metavar="RESULTS", help="folder of the answers")
+    parser.add_argument("--bulge", default="bulge", help="the program to run")
+    parser.add_argument("--jobs", type=int, default=2, help="cases at a time")
+    parser.add_argument("--only", default="", help="regular expression that the names of the cases must contain")
+    parser.add_argument("--again", action="store_true", help="run cases that are answered already")
+    arguments = parser.parse_args()
+    program = shutil.which(arguments.bulge)
+    if program is None:
+        parser.error(f"{arguments.bulge!r} is no program; say where it is: --bulge PATH")
+    cases = sorted(p.parent for p in arguments.folder.glob("*/truth.json") if re.search(arguments.only, p.parent.name))
+    if not cases:
+        parser.error(f"{arguments.folder} holds no case called like {arguments.only!r}")
+    # A polite request to end is Ctrl-C.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    arguments.results.mkdir(parents=True, exist_ok=True)
+    run = Run(os.path.abspath(program), arguments.results)
+    try:
+        return run.all(cases, arguments.jobs, arguments.again)
+    except KeyboardInterrupt:
+        print("stopped; the same command goes on from here", file=sys.stderr)
+        return 130
+
+
+class Run:
+    """A program at work on cases: what it answered, how long that took, what is running."""
+
+    def __init__(self, program, results):
+        self.program, self.results = program, results
+        self.checksum = hashlib.sha256(Path(program).read_bytes()).hexdigest()
+        self.times, self.inputs = _numbers(results / "times.json"), _numbers(results / "inputs.json")
+        self.running, self.stopping = set(), threading.Event()
+
+    def all(self, cases, jobs, again):
+        """Runs the cases that are not answered; the exit status."""
+        started, failed = time.monotonic(), []
+        waiting = [case for case in cases if again or not self._answered(case)]
+        # The longest files first, so that none is left to run alone at the end.
+        waiting.sort(key=lambda case: -(case / "data.csv").stat().st_size)
+        with ThreadPoolExecutor(max_workers=jobs) as pool:
+            tasks = {pool.submit(self._diagnose, case): case for case in waiting}
+            try:
+                for done, task in enumerate(as_completed(tasks), 1):
+                    self._note(tasks[task], *task.result(), failed)
+                    if done % 50 == 0:
+                        print(f"{done} of {len(waiting)} cases, {time.monotonic() - started:.0f} s", file=sys.stderr)
+            except BaseException:
+                self._stop(pool)
+                raise
+        for message in sorted(failed):
+            print(message, file=sys.stderr)
+        there = f"{len(cases) - len(waiting)} were there already, " if len(waiting) < len(cases) else ""
+        print(f"{len(cases)} cases in {time.monotonic() - started:.0f} s, {there}{len(failed)} failed")
+        return 1 if failed else 0
+
+    def _answered(self, case):
+        return (self.results / f"{case.name}.json").exists() and self.inputs.get(case.name) == self._fingerprint(case)
+
+    def _fingerprint(self, case):
+        """Checksum of the program and of what it reads."""
+        digest = hashlib.sha256(self.checksum.encode())
+        for name in ("data.csv", "muscle.toml"):
+            digest.update(hashlib.sha256((case / name).read_bytes()).digest())
+        return digest.hexdigest()
+
+    def _diagnose(self, case):
+        """Seconds, and what went wrong or None."""
+        command = [self.program, "diagnose", str(case / "data.csv"), "--muscle", str(case / "muscle.toml"), "--json"]
+        started = time.monotonic()
+        # A session of its own: Ctrl-C reaches this program, which then ends the others.
+        process = subprocess.Popen(
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env={**os.environ, "RAYON_NUM_THREADS": "1"},
+            start_new_session=True,
+        )
+        self.running.add(process)
+        if self.stopping.is_set():
+            process.terminate()
+        answer, said = process.communicate()
+        self.running.discard(process)
+        seconds = time.monotonic() - started
+        problem = _problem(process.returncode, answer, said)
+        if problem is None:
+            _write(self.results / f"{case.name}.json", answer)
+        return seconds, problem
+
+    def _note(self, case, seconds, problem, failed):
+        """Enters a case in the tables. An earlier answer doesn't outlive a failure."""
+        if problem is None:
+            self.times[case.name], self.inputs[case.name] = round(seconds, 3), self._fingerprint(case)
+        else:
+            failed.append(f"{case.name}: {problem}")
+            (self.results / f"{case.name}.json").unlink(missing_ok=True)
+            self.times.pop(case.name, None)
+            self.inputs.pop(case.name, None)
+        for name, table in (("times.json", self.times), ("inputs.json", self.inputs)):
+            _write(self.results / name, (json.dumps(table, indent=1, sort_keys=True) + "\n").encode())
+
+    def _stop(self, pool):
+        self.stopping.set()
+        pool.shutdown(wait=False, cancel_futures=True)
+        for process in list(self.running):
+            with contextlib.suppress(ProcessLookupError):
+                process.terminate()
+
+
+def _problem(status, answer, said):
+    """What went wrong, in a line; None if the answer is a document."""
+    if status < 0:
+        return f"ended by {signal.Signals(-status).name}"
+    if status > 0:
+        return f"exit status {status}: {' '.join(said.decode('utf-8', 'replace').split()) or 'no message'}"
+    try:
+        json.loads(answer)
+    except ValueError as error:
+        return f"the answer is no JSON: {error}"
+    return None
+
+
+def _numbers(file):
+    return json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+
+
+def _write(file, content):
+    """The whole file, or the one that was there before."""
+    part = file.with_name(file.name + PART)
+    try:
+        part.write_bytes(content)
+        os.replace(part, file)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
