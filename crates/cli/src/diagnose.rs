@@ -59,7 +59,8 @@ impl DiagnoseCommand {
         let base = Options { known, ..Options::new(catalogue, effects) };
         let bar = Bar::new(self.json);
         let progress = bar.progress();
-        let options = DiagnoseOptions { tolerance_n, seed: self.seed, progress, ..DiagnoseOptions::new(base) };
+        let options =
+            DiagnoseOptions { tolerance_n, seed: self.seed, progress, ..DiagnoseOptions::new(base) };
         let found = diagnose(&data, &muscle, &options)?;
         drop(bar);
         let document = serde_json::to_string_pretty(&found)? + "\n";

@@ -2,7 +2,8 @@
 
 use bulge_effects::{Catalogue, known};
 use bulge_inference::{
-    CandidateResult, DiagnoseOptions, Diagnosis, Missing, NextExperiment, NextLimits, Options, Verdict, diagnose,
+    CandidateResult, DiagnoseOptions, Diagnosis, Missing, NextExperiment, NextLimits, Options, Verdict,
+    diagnose,
 };
 use bulge_measurements::Data;
 use bulge_muscles::units::{self, Quantity};
@@ -62,6 +63,9 @@ pub(crate) struct NextCommand {
     json: bool,
 }
 
+/// Said where no test separates, and nobody has stated what can be tested.
+const WIDER: &str = "these limits are those of the data; --pressure and --contraction allow for others";
+
 /// An effect that is missing, in the JSON document.
 #[derive(Debug, Serialize)]
 struct Named<'a> {
@@ -95,22 +99,28 @@ impl NextCommand {
         let options = DiagnoseOptions { seed: self.seed, limits, progress, ..DiagnoseOptions::new(base) };
         let found = diagnose(&data, &muscle, &options)?;
         drop(bar);
-        let answer = answer(&found, &catalogue);
+        let answer = answer(&found, &catalogue, limits);
         if self.json { document(&found, &answer) } else { Ok(self.text(&found, &answer)) }
     }
 
     /// What the next test may use.
     fn limits(&self) -> Result<NextLimits, Failure> {
-        let pressure_pa =
-            self.pressure.as_deref().map(|text| range::<Pressure>(PRESSURE, text, "1 bar..6 bar")).transpose()?;
+        let pressure_pa = self
+            .pressure
+            .as_deref()
+            .map(|text| range::<Pressure>(PRESSURE, text, "1 bar..6 bar"))
+            .transpose()?;
         if let Some([low, high]) = pressure_pa.filter(|[low, high]| !(*low > 0.0 && *high <= MOST_PRESSURE)) {
             let what = format!(
                 "{low} to {high} Pa is not possible: gauge pressures lie above 0 and up to 1000 bar; write such as \"1 bar..6 bar\""
             );
             return Err(Failure::Value { option: PRESSURE, what });
         }
-        let contraction =
-            self.contraction.as_deref().map(|text| range::<Ratio>(CONTRACTION, text, "0 %..20 %")).transpose()?;
+        let contraction = self
+            .contraction
+            .as_deref()
+            .map(|text| range::<Ratio>(CONTRACTION, text, "0 %..20 %"))
+            .transpose()?;
         let [least, most] = CONTRACTIONS;
         if let Some([low, high]) = contraction.filter(|[low, high]| *low < least || *high > most) {
             let what = format!(
@@ -130,22 +140,23 @@ impl NextCommand {
         paragraph(&mut out, "  ", &verdict(diagnosis));
         if let Some(open) = answer.open {
             let others: Vec<&str> = others_in_class(open).collect();
-            paragraph(&mut out, "  ", &format!("open: these data cannot tell {} from {}", open.effect, others.join(", ")));
+            paragraph(
+                &mut out,
+                "  ",
+                &format!("open: these data cannot tell {} from {}", open.effect, others.join(", ")),
+            );
         }
         out.push('\n');
         for sentence in &answer.sentences {
             paragraph(&mut out, "  ", sentence);
         }
-        if let Some(next) = answer.next.filter(|next| next.repeats > 0) {
-            let times = if next.repeats == 1 { "once".to_owned() } else { format!("{} times", next.repeats) };
+        if answer.next.is_some_and(|next| next.repeats > 0) {
             let _ = writeln!(
                 out,
-                "    {} from {}: {} sigma with what is measured already, done {times}",
-                next.separates.first().map_or("", String::as_str),
-                next.separates.get(1).map_or("", String::as_str),
-                significant(next.sigma, 3)
+                "\n  and then, with both:\n    bulge diagnose {} NEW.csv {}",
+                self.files(),
+                self.rest()
             );
-            let _ = writeln!(out, "\n  and then, with both:\n    bulge diagnose {} NEW.csv {}", self.files(), self.rest());
         }
         if answer.open.is_none() {
             for line in reasons(&untested(diagnosis), UNTESTED.len()) {
@@ -180,7 +191,8 @@ fn range<Q: Quantity>(option: &'static str, text: &str, example: &str) -> Result
     if low.si() < high.si() {
         return Ok([low.si(), high.si()]);
     }
-    let what = format!("the range \"{}\" is empty: write the smaller end first, as in \"{example}\"", text.trim());
+    let what =
+        format!("the range \"{}\" is empty: write the smaller end first, as in \"{example}\"", text.trim());
     Err(Failure::Value { option, what })
 }
 
@@ -195,7 +207,7 @@ struct Answer<'a> {
 }
 
 /// What to do next, by the verdict.
-fn answer<'a>(diagnosis: &'a Diagnosis, catalogue: &Catalogue) -> Answer<'a> {
+fn answer<'a>(diagnosis: &'a Diagnosis, catalogue: &Catalogue, limits: NextLimits) -> Answer<'a> {
     let mut sentences = Vec::new();
     let next = diagnosis.next_experiment.as_ref().filter(|_| diagnosis.verdict == Verdict::Missing);
     // The experiment is for the first class that holds several.
@@ -207,9 +219,16 @@ fn answer<'a>(diagnosis: &'a Diagnosis, catalogue: &Catalogue) -> Answer<'a> {
             sentences.extend(diagnosis.remaining.hints.iter().take(MOST_HINTS).cloned());
             sentences.push(again(diagnosis));
         }
-        (Verdict::CannotTell, _) => sentences.push(further(diagnosis).unwrap_or("measure more rows").to_owned()),
+        (Verdict::CannotTell, _) => {
+            sentences.push(further(diagnosis).unwrap_or("measure more rows").to_owned());
+        }
         (_, Some(next)) if next.repeats > 0 => sentences.push(format!("next: {}", next.says.trim())),
-        (_, Some(next)) => sentences.push(next.says.trim().to_owned()),
+        (_, Some(next)) => {
+            sentences.push(next.says.trim().to_owned());
+            if limits == NextLimits::default() {
+                sentences.push(WIDER.to_owned());
+            }
+        }
         (verdict, None) => {
             let why = if verdict == Verdict::Missing {
                 "these data tell every effect that was found from all others"
@@ -228,11 +247,10 @@ fn answer<'a>(diagnosis: &'a Diagnosis, catalogue: &Catalogue) -> Answer<'a> {
 
 /// What would lower the largest detection limit.
 fn lower(diagnosis: &Diagnosis, catalogue: &Catalogue) -> Option<String> {
-    let limited = diagnosis.candidates.iter().filter(|c| c.status == "rejected" && c.detection_limit.is_some());
+    let limited =
+        diagnosis.candidates.iter().filter(|c| c.status == "rejected" && c.detection_limit.is_some());
     let force = |c: &CandidateResult| c.detection_limit_n.filter(|n| n.is_finite());
-    let (least, force_n) = limited
-        .filter_map(|c| Some((c, force(c)?)))
-        .max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (least, force_n) = limited.filter_map(|c| Some((c, force(c)?))).max_by(|a, b| a.1.total_cmp(&b.1))?;
     let unit = if least.unit == "1" { "" } else { &least.unit };
     let limit = format!("{} {unit}", significant(least.detection_limit?, 3));
     let cure = if least.compensation > MUCH {
@@ -240,7 +258,9 @@ fn lower(diagnosis: &Diagnosis, catalogue: &Catalogue) -> Option<String> {
         format!(
             "other numbers can make up for {:.0} % of it; {}",
             100.0 * least.compensation,
-            separate.filter(|separate| !separate.is_empty()).unwrap_or("state their widths, or measure over a wider range")
+            separate
+                .filter(|separate| !separate.is_empty())
+                .unwrap_or("state their widths, or measure over a wider range")
         )
     } else {
         "four times the rows, or a quarter of the variance of the noise, halve it".to_owned()

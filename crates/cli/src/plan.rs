@@ -18,13 +18,13 @@ const APART: f64 = 3.29;
 /// A compensation that is spoken of.
 const MUCH: f64 = 0.5;
 /// Lines of a kind that are shown; JSON has all.
-const EASIEST: usize = 9;
-const HARDEST: usize = 8;
+const EASIEST: usize = 8;
+const HARDEST: usize = 7;
 const MOST_NAMES: usize = 12;
 const MOST_PAIRS: usize = 5;
 const MOST_WARNINGS: usize = 2;
-/// More tests than this are nobody's plan.
-const MOST_TESTS: f64 = 1000.0;
+/// A cosine from which two are the same: no number of tests that anybody makes tells them apart.
+const SAME: f64 = 1.0 - 1e-9;
 /// What stands before the effects that a test can't show.
 const UNTESTED: &str = "  cannot be seen ";
 
@@ -109,7 +109,11 @@ fn test(out: &mut String, plan: &Plan) {
     } else {
         String::new()
     };
-    paragraph(out, "  ", &format!("noise of the force: {} N white{correlated}{offset} ({})", three(noise.white_n), noise.says));
+    paragraph(
+        out,
+        "  ",
+        &format!("noise of the force: {} N white{correlated}{offset} ({})", three(noise.white_n), noise.says),
+    );
 }
 
 /// What is seen from which size on, and what is not.
@@ -126,7 +130,9 @@ fn limits(out: &mut String, plan: &Plan) {
     let mut rows = vec![["effect", "limit", "force", "usual", "compensated"].map(str::to_owned).to_vec()];
     rows.extend(seen[..easiest].iter().chain(&seen[hardest..]).map(|effect| row(effect)));
     if rows.iter().skip(1).all(|row| row[4].is_empty()) {
-        rows.iter_mut().for_each(|row| row.truncate(4));
+        for row in &mut rows {
+            row.truncate(4);
+        }
     }
     out.push_str(&table(&rows));
     let between: Vec<&str> = seen[easiest..hardest].iter().map(|e| e.effect.as_str()).collect();
@@ -151,11 +157,15 @@ fn limits(out: &mut String, plan: &Plan) {
 
 fn row(effect: &PlannedEffect) -> Vec<String> {
     let unit = if effect.unit == "1" { "" } else { &effect.unit };
-    let limit = effect
-        .detection_limit
-        .map_or_else(|| "as it is".to_owned(), |limit| format!("{} {} {unit}", effect.parameter, three(limit)));
-    let compensated =
-        if effect.compensation > MUCH { format!("{:.0} %", 100.0 * effect.compensation) } else { String::new() };
+    let limit = effect.detection_limit.map_or_else(
+        || "as it is".to_owned(),
+        |limit| format!("{} {} {unit}", effect.parameter, three(limit)),
+    );
+    let compensated = if effect.compensation > MUCH {
+        format!("{:.0} %", 100.0 * effect.compensation)
+    } else {
+        String::new()
+    };
     vec![
         effect.effect.clone(),
         limit.trim_end().to_owned(),
@@ -167,19 +177,23 @@ fn row(effect: &PlannedEffect) -> Vec<String> {
 
 /// Effects that look alike.
 fn pairs(out: &mut String, plan: &Plan) {
-    let open: Vec<&ConfusedPair> = plan.confused.iter().filter(|pair| pair.sigma < APART).collect();
-    if open.is_empty() {
-        out.push_str("\n  all effects can be told apart at their usual size\n");
+    // Of what isn't seen nobody asks whether it is something else.
+    let is_seen = |name: &str| plan.effects.iter().any(|e| e.effect == name && e.usual_sigma >= SEEN);
+    let (never, others): (Vec<&ConfusedPair>, Vec<&ConfusedPair>) =
+        plan.confused.iter().filter(|pair| pair.sigma < APART).partition(|pair| pair.cosine >= SAME);
+    let some: Vec<&ConfusedPair> =
+        others.into_iter().filter(|pair| pair.effects.iter().all(|name| is_seen(name))).collect();
+    if never.is_empty() && some.is_empty() {
+        out.push_str("\n  all effects that are seen at their usual size can be told apart\n");
         return;
     }
-    let (never, some): (Vec<&ConfusedPair>, Vec<&ConfusedPair>) =
-        open.iter().partition(|pair| pair.repeats > MOST_TESTS);
     let _ = writeln!(out, "\n  could not be told apart (less than {APART} sigma at the usual size)");
     if !some.is_empty() {
         let mut rows = vec![["pair", "cosine", "sigma", "tests that would"].map(str::to_owned).to_vec()];
         rows.extend(some.iter().take(MOST_PAIRS).map(|pair| {
             let [a, b] = &pair.effects;
-            let [cosine, tests] = [format!("{:.4}", pair.cosine), format!("{:.0}", pair.repeats)];
+            let tests = pair.repeats.map_or_else(|| "-".to_owned(), |repeats| format!("{repeats:.0}"));
+            let cosine = format!("{:.5}", pair.cosine);
             vec![format!("{a} and {b}"), cosine, three(pair.sigma), tests]
         }));
         out.push_str(&table(&rows));
@@ -188,9 +202,8 @@ fn pairs(out: &mut String, plan: &Plan) {
         let _ = writeln!(out, "  and {} pairs more: --json", some.len() - MOST_PAIRS);
     }
     if !never.is_empty() {
-        let least = never.iter().map(|pair| pair.cosine).fold(1.0, f64::min);
         let twins: Vec<String> = twins(&never).iter().map(|names| names.join(" = ")).collect();
-        paragraph(out, "  ", &format!("the same by any number of tests (cosine {least:.4}): {}", twins.join("; ")));
+        paragraph(out, "  ", &format!("by no number of tests (cosine 1, 0 sigma): {}", twins.join("; ")));
     }
 }
 
@@ -224,7 +237,7 @@ mod tests {
             effects: [a, b].map(str::to_owned),
             cosine: 1.0,
             sigma: 0.0,
-            repeats: 1e19,
+            repeats: None,
             separate: String::new(),
         };
         let all = [pair("a", "b"), pair("c", "d"), pair("e", "f"), pair("d", "b")];

@@ -254,11 +254,16 @@ mod tests {
         Candidate { whole, ..Candidate::for_test(columns, size(sign)) }
     }
 
+    #[track_caller]
+    fn is(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-12, "{found}");
+    }
+
     #[test]
     fn an_effect_of_the_wrong_sign_explains_nothing() {
         let z = [-3.0, 1.0];
-        assert_eq!(candidate(&[&[1.0, 0.0]], Sign::Positive, false).explains(&z).gain, 0.0);
-        assert_eq!(candidate(&[&[1.0, 0.0]], Sign::Negative, false).explains(&z).gain, 9.0);
+        is(candidate(&[&[1.0, 0.0]], Sign::Positive, false).explains(&z).gain, 0.0);
+        is(candidate(&[&[1.0, 0.0]], Sign::Negative, false).explains(&z).gain, 9.0);
         let both = candidate(&[&[1.0, 0.0], &[0.0, 2.0]], Sign::Positive, false).explains(&z);
         assert_eq!((both.gain, both.sizes), (1.0, vec![0.0, 0.5]));
     }
@@ -267,10 +272,10 @@ mod tests {
     fn what_is_there_as_a_whole_is_there_once() {
         let whole = candidate(&[&[2.0, 0.0]], Sign::Positive, true);
         // |z|^2 - |z - s|^2 = 2 z.s - s.s
-        assert_eq!(whole.explains(&[5.0, 1.0]).gain, 16.0);
-        assert_eq!(whole.explains(&[0.5, 1.0]).gain, -2.0);
+        is(whole.explains(&[5.0, 1.0]).gain, 16.0);
+        is(whole.explains(&[0.5, 1.0]).gain, -2.0);
         let slope = candidate(&[&[0.0, 1.0]], Sign::Any, false);
-        assert_eq!(explained(&[&whole, &slope], &[5.0, 1.0]).gain, 17.0);
+        is(explained(&[&whole, &slope], &[5.0, 1.0]).gain, 17.0);
     }
 
     #[test]

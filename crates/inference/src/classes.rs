@@ -84,7 +84,8 @@ impl Given<'_> {
             .filter(|h| Some(h.effects[0]) != own)
             .map(|h| {
                 let separation = separation(&without.scene, h.effects[0], &signal) / scatter.sqrt();
-                let near = (h.log_evidence > best - FITTED * scatter || separation < SEPARATION) && fitted < MOST;
+                let near =
+                    (h.log_evidence > best - FITTED * scatter || separation < SEPARATION) && fitted < MOST;
                 fitted += usize::from(near);
                 (h, separation, near)
             })
@@ -95,7 +96,14 @@ impl Given<'_> {
                 let (linear, gain_of) = (hypothesis.log_evidence, hypothesis.gain);
                 let place = hypothesis.effects[0];
                 let tried = near.then(|| self.fitted(base, &without, hypothesis));
-                self.rival(&without, place, tempered(linear, gain_of, scatter), separation, tried, (log_evidence, scatter))
+                Self::rival(
+                    &without,
+                    place,
+                    tempered(linear, gain_of, scatter),
+                    separation,
+                    tried,
+                    (log_evidence, scatter),
+                )
             })
             .collect();
         let detectability = dot(&signal, &signal).sqrt() / scatter.sqrt();
@@ -104,14 +112,19 @@ impl Given<'_> {
 
     /// A stage with fewer effects: from where it was, else from usual numbers; what was best with the effect may not even have an equilibrium
     /// without it.
-    fn refitted(&self, base: &Model, stage: &Stage, others: &[Arc<dyn Effect>]) -> Result<Confirmed, ModelError> {
+    fn refitted(
+        &self,
+        base: &Model,
+        stage: &Stage,
+        others: &[Arc<dyn Effect>],
+    ) -> Result<Confirmed, ModelError> {
         let carried = self.confirm(base, others, Some(&stage.confirmed), &[]);
         let mut best = carried;
         for part in [1.0, 0.1] {
             if best.as_ref().is_ok_and(|found| found.converged) {
                 break;
             }
-            let usual = self.usual(base, others, part);
+            let usual = Self::usual(base, others, part);
             let other = self.confirm(base, others, None, &[usual]);
             best = match (best, other) {
                 (Ok(a), Ok(b)) => Ok(if b.cost() < a.cost() { b } else { a }),
@@ -123,7 +136,6 @@ impl Given<'_> {
     }
 
     fn rival(
-        &self,
         without: &Stage,
         place: usize,
         linear: f64,
@@ -147,7 +159,8 @@ impl Given<'_> {
     pub(crate) fn signal(&self, with: &Confirmed, without: &Scene) -> Result<Vec<f64>, ModelError> {
         let model = &with.prepared.model;
         let force = model.evaluate_warm(self.record, &with.theta, &Wanted::default(), &Warm::new())?.force;
-        let mut change: Vec<f64> = force.iter().zip(&without.force).map(|(with, without)| with - without).collect();
+        let mut change: Vec<f64> =
+            force.iter().zip(&without.force).map(|(with, without)| with - without).collect();
         // The law was made for this record.
         let _ = self.whitening.apply(&mut change);
         change.resize(self.record.len() + without.priors, 0.0);

@@ -8,6 +8,7 @@ use bulge_muscles::{Muscle, Parameter, Quantity};
 use rayon::prelude::*;
 use std::sync::Arc;
 
+use crate::carry_over::carry_over;
 use crate::comparison::{Comparison, DataSummary, NoiseFloor, Rung};
 use crate::error::InferenceError;
 use crate::fit::Fit;
@@ -98,7 +99,7 @@ fn compared(data: &Data, muscle: &Muscle, options: &Options) -> Result<Compariso
         .par_iter()
         .enumerate()
         .map(|(number, climbed)| analysis.rung(number, climbed))
-        .collect::<Result<Vec<_>, _>>()?;
+        .collect::<Vec<_>>();
     let last = &rungs[rungs.len() - 1];
     // A surface follows the residuals of a better model better: then less of them is taken for noise.
     let again = analysis.noise_floor(last);
@@ -242,7 +243,12 @@ impl<'a> Analysis<'a> {
     pub(crate) fn as_stated(&self) -> Result<Vec<f64>, InferenceError> {
         let prepared = self.model(0)?;
         let counting = Warm::of_rows(&self.used.mask);
-        let found = prepared.model.evaluate_warm(&self.record, &prepared.model.start(), &Wanted::default(), &counting);
+        let found = prepared.model.evaluate_warm(
+            &self.record,
+            &prepared.model.start(),
+            &Wanted::default(),
+            &counting,
+        );
         Ok(found.map_err(|error| self.about(error))?.force)
     }
 
@@ -340,7 +346,7 @@ impl<'a> Analysis<'a> {
         floor
     }
 
-    fn rung(&self, number: usize, climbed: &Climbed) -> Result<Rung, InferenceError> {
+    fn rung(&self, number: usize, climbed: &Climbed) -> Rung {
         let added = number.checked_sub(1).map(|i| &self.options.effects[i]);
         let title = match (added, &self.options.law) {
             (Some(effect), _) => effect.card().title.to_owned(),
@@ -353,8 +359,8 @@ impl<'a> Analysis<'a> {
             }
         };
         let error = residuals::summary(self, &climbed.force);
-        let held_out = if self.options.held_out { self.held_out(climbed)? } else { None };
-        Ok(Rung {
+        let held_out = if self.options.held_out { self.held_out(climbed) } else { None };
+        Rung {
             added: added.map(|effect| effect.card().name.to_owned()),
             title,
             rmse_n: error.rmse,
@@ -367,12 +373,12 @@ impl<'a> Analysis<'a> {
             fitted: free(&climbed.prepared.model).len(),
             half_gap_rmse_n: loops::half_gap_error(self, &climbed.force),
             fit: climbed.fit.clone(),
-        })
+        }
     }
 
     /// RMS error on pressures (specimens, sweeps) that took no part in the fit.
-    pub(crate) fn held_out(&self, climbed: &Climbed) -> Result<Option<f64>, InferenceError> {
-        let Some(folds) = &self.folds else { return Ok(None) };
+    pub(crate) fn held_out(&self, climbed: &Climbed) -> Option<f64> {
+        let folds = self.folds.as_ref()?;
         let (thin, kept) = self.record.thinned(FEWER_ROWS);
         let numbers = free(&climbed.prepared.model).len();
         let of_fold = |fold: usize| -> Result<Option<(f64, usize)>, ModelError> {
@@ -401,10 +407,10 @@ impl<'a> Analysis<'a> {
         let mut sums = (0.0, 0_usize);
         for fold in found {
             // Numbers that suit the other rows may leave these without an equilibrium: there is no error to state then.
-            let Some((square, count)) = fold.ok().flatten() else { return Ok(None) };
+            let (square, count) = fold.ok().flatten()?;
             sums = (sums.0 + square, sums.1 + count);
         }
-        Ok((sums.1 > 0).then(|| (sums.0 / sums.1 as f64).sqrt()))
+        (sums.1 > 0).then(|| (sums.0 / sums.1 as f64).sqrt())
     }
 
     fn summary(&self) -> DataSummary {
@@ -481,18 +487,6 @@ impl<'a> Analysis<'a> {
                 rank: 0,
             },
             warnings: Vec::new(),
-        }
-    }
-}
-
-/// Numbers that two models share start where the first left them.
-pub(crate) fn carry_over(from: &Model, values: &[f64], to: &Model, theta: &mut [f64]) {
-    for (place, number) in to.parameters().iter().enumerate() {
-        let same = |other: &bulge_model::ModelParameter| {
-            other.effect == number.effect && other.name == number.name && other.specimen == number.specimen
-        };
-        if let Some(old) = from.parameters().iter().position(same) {
-            theta[place] = values[old];
         }
     }
 }

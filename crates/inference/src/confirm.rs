@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::candidates::log_prior;
-use crate::compare::carry_over;
+use crate::carry_over::carry_over;
 use crate::nuisance::{Prepared, with_nuisances};
 use crate::problem::{FitProblem, free};
 use crate::scene::Given;
@@ -21,7 +21,7 @@ use crate::showing::{Showing, Sign, Size, sizes};
 const TOLERANCE: f64 = 1e-5;
 /// What a size costs that is twice as large as plausible.
 const IMPLAUSIBLE: f64 = 8.0;
-const EVALUATIONS: usize = 120;
+const EVALUATIONS: usize = 50;
 
 /// A model with its effects at their best numbers.
 #[derive(Debug, Clone)]
@@ -33,8 +33,6 @@ pub(crate) struct Confirmed {
     pub(crate) log_evidence: f64,
     /// Whether the best search ended in a minimum.
     pub(crate) converged: bool,
-    /// How many starts were tried, and how many ended there.
-    pub(crate) starts: [usize; 2],
 }
 
 impl Confirmed {
@@ -115,11 +113,9 @@ impl Given<'_> {
             .collect();
         let mut best: Option<(Minimum, Vec<f64>)> = None;
         let mut first_error = None;
-        let mut costs = Vec::new();
         for found in searched {
             match found {
                 Ok(found) => {
-                    costs.push(found.0.cost);
                     if best.as_ref().is_none_or(|other| found.0.cost < other.0.cost) {
                         best = Some(found);
                     }
@@ -130,16 +126,8 @@ impl Given<'_> {
         let Some((minimum, theta)) = best else {
             return Err(first_error.unwrap_or(ModelError::Values { given: 0, expected: 1 }));
         };
-        let agreeing = costs.iter().filter(|cost| **cost - minimum.cost < 0.1).count();
         let log_evidence = log_evidence(&prepared, &theta, &minimum);
-        Ok(Confirmed {
-            converged: minimum.certificate.converged,
-            starts: [starts.len(), agreeing],
-            prepared,
-            theta,
-            minimum,
-            log_evidence,
-        })
+        Ok(Confirmed { converged: minimum.certificate.converged, prepared, theta, minimum, log_evidence })
     }
 }
 

@@ -43,7 +43,13 @@ impl DiagnoseOptions {
     /// No tolerance, seed 1, nobody to tell.
     #[must_use]
     pub fn new(base: Options) -> Self {
-        Self { base, tolerance_n: None, seed: 1, limits: NextLimits::default(), progress: Progress::default() }
+        Self {
+            base,
+            tolerance_n: None,
+            seed: 1,
+            limits: NextLimits::default(),
+            progress: Progress::default(),
+        }
     }
 }
 
@@ -130,9 +136,14 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
 }
 
 /// Means, their forces, and their noise under the base model.
-fn ground(analysis: &Analysis<'_>, base: &Climbed, options: &DiagnoseOptions) -> Result<Ground, InferenceError> {
+fn ground(
+    analysis: &Analysis<'_>,
+    base: &Climbed,
+    options: &DiagnoseOptions,
+) -> Result<Ground, InferenceError> {
     let none = || InferenceError::NoRows { left_out: "none counts".to_owned() };
-    let averaged = Averaged::of(&analysis.record, &analysis.used.mask, &analysis.levels, MOST_ROWS).ok_or_else(none)?;
+    let averaged =
+        Averaged::of(&analysis.record, &analysis.used.mask, &analysis.levels, MOST_ROWS).ok_or_else(none)?;
     let readings = Wanted { parameters: Vec::new(), readings: true };
     let model = &base.prepared.model;
     let at_means = model
@@ -173,7 +184,8 @@ fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
 /// Standard deviation of a single row: the law of the means, what the means have averaged, and what noise of pressure and contraction makes of it.
 fn row_sd(law: &NoiseLaw, ground: &Ground, residual: &[f64]) -> f64 {
     let means = ground.input_variances.iter().zip(ground.averaged.counts());
-    let inputs = means.map(|(variance, count)| variance * count).sum::<f64>() / ground.input_variances.len().max(1) as f64;
+    let inputs = means.map(|(variance, count)| variance * count).sum::<f64>()
+        / ground.input_variances.len().max(1) as f64;
     let (sum, freedom) = ground.averaged.within(residual);
     let own = law.white_n.powi(2) + inputs;
     let white = if freedom > 0.0 { (sum / freedom).max(own) } else { own };

@@ -3,8 +3,8 @@
 use bulge_effects::Effect;
 use bulge_measurements::Data;
 use bulge_model::Record;
-use bulge_muscles::{Muscle, Quantity};
 use bulge_muscles::units::significant;
+use bulge_muscles::{Muscle, Quantity};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -12,8 +12,8 @@ use crate::classes::{Class, Rival};
 use crate::comparison::{Comparison, DataSummary};
 use crate::confidence::Confidence;
 use crate::diagnosis::{
-    CandidateResult, DiagnosedData, DiagnosedNoise, Diagnosis, ExplainedStep, LadderStep, Missing, NextExperiment, ParameterResult,
-    Remaining, RivalResult, Verdict,
+    CandidateResult, DiagnosedData, DiagnosedNoise, Diagnosis, ExplainedStep, LadderStep, Missing,
+    NextExperiment, ParameterResult, Remaining, RivalResult, Verdict,
 };
 use crate::explained::{explained, surface};
 use crate::hints::hints;
@@ -77,7 +77,11 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
         },
         verdict,
         says,
-        missing: if named { classes.iter().map(|(class, sure)| found.missing(class, *sure)).collect() } else { Vec::new() },
+        missing: if named {
+            classes.iter().map(|(class, sure)| found.missing(class, *sure)).collect()
+        } else {
+            Vec::new()
+        },
         candidates: candidates(given, search, classes),
         ladder: found.ladder(&comparison),
         noise_floor_n: sd_n,
@@ -241,7 +245,10 @@ impl Findings<'_> {
             return (Verdict::Adequate, says);
         }
         if last.adequate {
-            return (Verdict::Missing, format!("missing: {}; with it the model explains the data", names.join(" and ")));
+            return (
+                Verdict::Missing,
+                format!("missing: {}; with it the model explains the data", names.join(" and ")),
+            );
         }
         if !names.is_empty() && structure(&last.scene) < FORWARD * structure(&self.search.stages[0].scene) {
             let says = format!(
@@ -280,12 +287,10 @@ impl Findings<'_> {
             .zip(&confirmed.theta)
             .find(|(p, _)| p.effect == card.name && p.name == "distance")
             .map(|(_, value)| *value);
-        let [low, high] = self
-            .given
-            .record
-            .moments()
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], m| [l.min(m.contraction), h.max(m.contraction)]);
+        let [low, high] =
+            self.given.record.moments().iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], m| {
+                [l.min(m.contraction), h.max(m.contraction)]
+            });
         let is_short = card.family == HYSTERESIS && distance.is_some_and(|d| d < SHORT * (high - low));
         if is_short { COULOMB.to_owned() } else { card.name.to_owned() }
     }
@@ -303,7 +308,8 @@ impl Findings<'_> {
                 names.push(family);
             }
         }
-        let mut rivals: Vec<RivalResult> = class.rivals.iter().map(|rival| rival_result(rival, class)).collect();
+        let mut rivals: Vec<RivalResult> =
+            class.rivals.iter().map(|rival| rival_result(rival, class)).collect();
         rivals.sort_by(|a, b| a.behind.total_cmp(&b.behind));
         Missing {
             class: names,
@@ -329,8 +335,13 @@ impl Findings<'_> {
             .zip(&confirmed.prepared.nuisance)
             .map(|(prior, nuisance)| prior.filter(|_| *nuisance))
             .collect();
-        let problem =
-            FitProblem::whitened(model, self.given.record, self.given.whitening, confirmed.theta.clone(), &priors);
+        let problem = FitProblem::whitened(
+            model,
+            self.given.record,
+            self.given.whitening,
+            confirmed.theta.clone(),
+            &priors,
+        );
         let scale = interval::Scale::known(last.scatter(), self.given.law.degrees_of_freedom);
         let mut found = BTreeMap::new();
         for (place, index) in free(model).into_iter().enumerate() {
@@ -339,13 +350,19 @@ impl Findings<'_> {
                 continue;
             }
             let value = confirmed.theta[index];
-            let at_bound = matches!(confirmed.minimum.certificate.at_bound[place], Some(Side::Lower | Side::Upper));
+            let at_bound =
+                matches!(confirmed.minimum.certificate.at_bound[place], Some(Side::Lower | Side::Upper));
             let determined = confirmed.minimum.certificate.is_determined(place);
-            let found_interval = interval::of(&problem, &confirmed.minimum, place, &scale, at_bound || !determined);
+            let found_interval =
+                interval::of(&problem, &confirmed.minimum, place, &scale, at_bound || !determined);
             let name = p.specimen.as_ref().map_or_else(|| p.name.clone(), |s| format!("{}[{s}]", p.name));
             let [low, high] = found_interval.ends;
-            let result =
-                ParameterResult { value: p.shown(value), unit: p.unit.clone(), low: p.shown(low), high: p.shown(high) };
+            let result = ParameterResult {
+                value: p.shown(value),
+                unit: p.unit.clone(),
+                low: p.shown(low),
+                high: p.shown(high),
+            };
             found.insert(name, result);
         }
         found
@@ -380,7 +397,8 @@ fn candidates(given: &Given<'_>, search: &Search, classes: &[(Class, Confidence)
         let name = screened.effect.card().name;
         let alone = linear.iter().find(|h| h.effects == [place]);
         let tried = stage.tried.iter().find(|t| t.hypothesis.effects == [place]);
-        let is_rival = |class: &Class| class.rivals.iter().any(|r| r.in_class && r.effect.card().name == name);
+        let is_rival =
+            |class: &Class| class.rivals.iter().any(|r| r.in_class && r.effect.card().name == name);
         let status = if classes.iter().any(|(class, _)| class.effect.card().name == name) {
             "confirmed"
         } else if classes.iter().any(|(class, _)| is_rival(class)) {
@@ -398,7 +416,8 @@ fn candidates(given: &Given<'_>, search: &Search, classes: &[(Class, Confidence)
         let per_size = candidate.map_or(0.0, |c| c.detectability(1.0));
         let limit = (per_size > 0.0).then(|| SEEN / per_size);
         // Beyond the bounds of the number it is no limit: these data can't show the effect.
-        let limit = limit.filter(|l| number.is_none_or(|n| *l <= n.of(given_muscle).high - n.of(given_muscle).low));
+        let limit =
+            limit.filter(|l| number.is_none_or(|n| *l <= n.of(given_muscle).high - n.of(given_muscle).low));
         let column = candidate.and_then(|c| scene.showings.showings[c.showing].columns.first());
         let rms = column.map(|c| (dot(c, c) / given.record.len().max(1) as f64).sqrt());
         let fitted = tried.map(|t| t.log_evidence).filter(|evidence| evidence.is_finite());

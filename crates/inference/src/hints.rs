@@ -22,13 +22,17 @@ pub(crate) fn hints(record: &Record, scene: &Scene, located: &[Located]) -> Vec<
     let mut found = Vec::new();
     found.extend(largest(record, &misfit));
     found.extend(exponent(record, &misfit));
-    let clear = |variable: &str| located.iter().any(|l| l.variable == variable && l.share > MUCH && l.p < CLEAR);
+    let clear =
+        |variable: &str| located.iter().any(|l| l.variable == variable && l.share > MUCH && l.p < CLEAR);
     if clear("direction") {
         found.push("it turns its sign with the direction, as friction and hysteresis do".to_owned());
     } else if record.moments().iter().any(|m| m.direction != 0.0)
         && located.iter().all(|l| l.variable != "direction" || l.share < 0.1)
     {
-        found.push("it is the same in both directions: geometry, elasticity or the rig rather than friction".to_owned());
+        found.push(
+            "it is the same in both directions: geometry, elasticity or the rig rather than friction"
+                .to_owned(),
+        );
     }
     for (variable, says) in [
         ("time", "it changes with time: drift, creep, or an event"),
@@ -107,7 +111,9 @@ fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
         })
         .collect();
     if multiples.iter().any(|m| *m <= 0.0) {
-        return Some("it changes its form with the pressure: no power of the pressure describes it".to_owned());
+        return Some(
+            "it changes its form with the pressure: no power of the pressure describes it".to_owned(),
+        );
     }
     // A straight line through the logarithms.
     let points: Vec<(f64, f64)> = levels.mean.iter().zip(&multiples).map(|(p, m)| (p.ln(), m.ln())).collect();
@@ -119,9 +125,13 @@ fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
     }
     let power = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>() / spread;
     let says = match power {
-        p if p.abs() < 0.35 => "it is about the same at all pressures (rubber, offsets of the load cell)".to_owned(),
+        p if p.abs() < 0.35 => {
+            "it is about the same at all pressures (rubber, offsets of the load cell)".to_owned()
+        }
         p if (0.65..=1.35).contains(&p) => "it goes about with the pressure (geometry, gains)".to_owned(),
-        p if (1.65..=2.5).contains(&p) => "it goes about with the square of the pressure (stretch of fibres or frame)".to_owned(),
+        p if (1.65..=2.5).contains(&p) => {
+            "it goes about with the square of the pressure (stretch of fibres or frame)".to_owned()
+        }
         p => format!("it goes with the pressure to the power {}", significant(p, 2)),
     };
     Some(says)
@@ -129,7 +139,8 @@ fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
 
 /// The effect that explains most, and where it fails.
 fn nearest(record: &Record, scene: &Scene) -> Option<String> {
-    let whole: f64 = scene.smooth.iter().map(|d| dot(&d.unit, &scene.z).powi(2)).sum::<f64>() - scene.smooth.len() as f64;
+    let whole: f64 =
+        scene.smooth.iter().map(|d| dot(&d.unit, &scene.z).powi(2)).sum::<f64>() - scene.smooth.len() as f64;
     let gain = |c: &&Candidate| c.explains(&scene.z).gain;
     let best = scene.candidates.iter().max_by(|a, b| gain(a).total_cmp(&gain(b)))?;
     let explained = best.explains(&scene.z);

@@ -67,7 +67,7 @@ impl Source<'_> {
         let at_levels = prepared.model.evaluate_warm(&kept, theta, &wanted, &Warm::new())?;
         let tangents: Vec<Vec<f64>> =
             (0..k).map(|j| at_levels.jacobian.iter().skip(j).step_by(k).copied().collect()).collect();
-        let showings = Showings::of(self.catalogue, None, prepared, theta, &kept, &at_levels.force)?;
+        let showings = Showings::of(self.catalogue, None, prepared, theta, &kept, &at_levels.force);
         let columns: Vec<&Vec<f64>> = showings.showings.iter().flat_map(|s| &s.columns).collect();
         let design = saturated(self.record, &tangents, &columns);
         let n = self.record.len();
@@ -95,8 +95,8 @@ impl Source<'_> {
 fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> Vec<Vec<f64>> {
     let n = record.len() as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "numbers of columns")]
-    let [effects_most, most] =
-        [EFFECTS_PART, ALL_PART].map(|part| (part[usize::from(record.is_path())] * n).max(FEW.min(0.4 * n)) as usize);
+    let [effects_most, most] = [EFFECTS_PART, ALL_PART]
+        .map(|part| (part[usize::from(record.is_path())] * n).max(FEW.min(0.4 * n)) as usize);
     let mut space = Space::without(&[]);
     for column in between(record) {
         enter_new(&mut space, &column);

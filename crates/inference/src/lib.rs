@@ -9,6 +9,7 @@
 mod as_set;
 mod averaged;
 mod candidates;
+mod carry_over;
 mod classes;
 mod compare;
 mod comparison;
@@ -28,8 +29,8 @@ mod interval;
 mod law_of_record;
 mod levels;
 mod loops;
-mod mismatch;
 mod misfit;
+mod mismatch;
 mod next;
 mod noise_error;
 mod noise_estimate;

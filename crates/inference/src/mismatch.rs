@@ -28,7 +28,8 @@ pub(crate) fn check_scale(data: &Data, model: &[f64], used: &[bool]) -> Result<(
         return Ok(());
     }
     let factor = along / square;
-    let error = |factor: f64| rows().map(|row| (force[row] - factor * model[row]).powi(2)).sum::<f64>().sqrt();
+    let error =
+        |factor: f64| rows().map(|row| (force[row] - factor * model[row]).powi(2)).sum::<f64>().sqrt();
     let (before, after) = (error(1.0), error(factor));
     if (USUAL.0..=USUAL.1).contains(&factor) || factor <= 0.0 || after > LEFT * before {
         return Ok(());

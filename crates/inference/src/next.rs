@@ -48,7 +48,11 @@ impl Limits {
     /// Those stated, else those of a record.
     pub(crate) fn of(record: &Record, stated: NextLimits) -> Self {
         let range = |of: &dyn Fn(&bulge_effects::Moment) -> f64| {
-            record.moments().iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
+            record
+                .moments()
+                .iter()
+                .map(of)
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
         };
         let levels = Levels::of(record, &vec![true; record.len()]);
         let [low, high] = range(&|m| m.pressure);
@@ -63,8 +67,16 @@ impl Limits {
         }
     }
 
+    fn pressures_in_words(&self) -> String {
+        let [low, high] = self.pressure_pa.map(|p| significant(p / 1e5, 3));
+        if low == high { format!("at {low} bar") } else { format!("between {low} and {high} bar") }
+    }
+
     fn pressures(&self, count: usize) -> Vec<f64> {
         let [low, high] = self.pressure_pa;
+        if high - low <= 1e-3 * high {
+            return vec![high];
+        }
         (0..count).map(|i| low + (high - low) * i as f64 / (count - 1).max(1) as f64).collect()
     }
 }
@@ -97,25 +109,44 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
     let one = |says, blocks: Vec<Block>| Proposal { says, protocol: Protocol::new(blocks) };
     let small = [whole[0], (whole[0] + 0.25 * (high - whole[0])).max(whole[0] + 0.01)];
     vec![
-        one("loops at six pressures over the whole range of contraction", vec![block(6, whole, Path::Triangle, slow, 1)]),
-        one("loops at the lowest and the highest pressure, three times each", vec![block(2, whole, Path::Triangle, slow, 3)]),
+        one(
+            "loops at six pressures over the whole range of contraction",
+            vec![block(6, whole, Path::Triangle, slow, 1)],
+        ),
+        one(
+            "loops at the lowest and the highest pressure, three times each",
+            vec![block(2, whole, Path::Triangle, slow, 3)],
+        ),
         one(
             "slow loops, and loops twenty times as fast, at two pressures",
             vec![block(2, whole, Path::Triangle, slow, 1), block(2, whole, Path::Triangle, slow / 20.0, 1)],
         ),
-        one("sines at three pressures, whose speed goes through 0 at the ends", vec![block(3, whole, Path::Sine, slow, 2)]),
-        one("small loops near the largest force, at four pressures", vec![block(4, small, Path::Triangle, slow, 2)]),
+        one(
+            "sines at three pressures, whose speed goes through 0 at the ends",
+            vec![block(3, whole, Path::Sine, slow, 2)],
+        ),
+        one(
+            "small loops near the largest force, at four pressures",
+            vec![block(4, small, Path::Triangle, slow, 2)],
+        ),
         one(
             "steps of contraction with holds of a minute, at two pressures",
             vec![block(2, whole, Path::Stairs { steps: 4, hold_s: 60.0 }, 8.0 * 70.0, 1)],
         ),
-        one("twelve loops at one pressure, one after the other", vec![block(1, whole, Path::Triangle, slow, 12)]),
+        one(
+            "twelve loops at one pressure, one after the other",
+            vec![block(1, whole, Path::Triangle, slow, 12)],
+        ),
         one("a static map of eight pressures", vec![Block::map(limits.pressures(8), whole, 20)]),
     ]
 }
 
 /// The experiment that best separates the effects of the first class that holds several; none if every class is decided.
-pub(crate) fn next_experiment(given: &Given<'_>, judged: &[Judged], limits: &Limits) -> Option<NextExperiment> {
+pub(crate) fn next_experiment(
+    given: &Given<'_>,
+    judged: &[Judged],
+    limits: &Limits,
+) -> Option<NextExperiment> {
     let open = judged.iter().find(|j| j.class.rivals.iter().any(|rival| rival.in_class))?;
     let (with, without) = open.models.as_ref()?;
     let named = open.class.effect.card().name.to_owned();
@@ -132,12 +163,15 @@ pub(crate) fn next_experiment(given: &Given<'_>, judged: &[Judged], limits: &Lim
     let names: Vec<String> = rivals.iter().map(|(effect, _)| effect.card().name.to_owned()).collect();
     let mut best: Option<(f64, &'static str)> = None;
     for proposal in proposals(limits) {
-        let Some(sigma) = least_separation(given, with, without, &names, &proposal.protocol) else { continue };
+        let Some(sigma) = least_separation(given, with, without, &names, &proposal.protocol) else {
+            continue;
+        };
         if best.is_none_or(|(other, _)| sigma > other) {
             best = Some((sigma, proposal.says));
         }
     }
-    let needed = |sigma: f64| ((SEPARATION.powi(2) - at_hand.powi(2)).max(0.0) / (sigma * sigma)).ceil().max(1.0);
+    let needed =
+        |sigma: f64| ((SEPARATION.powi(2) - at_hand.powi(2)).max(0.0) / (sigma * sigma)).ceil().max(1.0);
     match best.filter(|(sigma, _)| *sigma > 0.0 && needed(*sigma) <= MOST_REPEATS as f64) {
         Some((sigma, says)) => {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 20")]
@@ -146,9 +180,8 @@ pub(crate) fn next_experiment(given: &Given<'_>, judged: &[Judged], limits: &Lim
             let times = if repeats == 1 { "once".to_owned() } else { format!("{repeats} times") };
             Some(NextExperiment {
                 says: format!(
-                    "measure {says}, between {} and {} bar and between {} and {} % of contraction, {times}: that tells `{named}` from {} ({} sigma)",
-                    significant(limits.pressure_pa[0] / 1e5, 3),
-                    significant(limits.pressure_pa[1] / 1e5, 3),
+                    "measure {says}, {} and between {} and {} % of contraction, {times}: that tells `{named}` from {} ({} sigma)",
+                    limits.pressures_in_words(),
                     significant(100.0 * limits.contraction[0], 2),
                     significant(100.0 * limits.contraction[1], 3),
                     listed(&names),
@@ -193,7 +226,8 @@ fn least_separation(
     let variances: Vec<f64> =
         slopes.map(|(p, e)| (p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)).collect();
     // The noise of the data at hand; a correlation over rows means nothing in another test.
-    let timed = record.has_time() && matches!(given.law.time, Some(crate::noise_law::CorrelationTime::Seconds(_)));
+    let timed =
+        record.has_time() && matches!(given.law.time, Some(crate::noise_law::CorrelationTime::Seconds(_)));
     let law = NoiseLaw {
         correlated_n: if timed { given.law.correlated_n } else { 0.0 },
         time: given.law.time.filter(|_| timed),

@@ -329,7 +329,8 @@ impl<'a> Estimate<'a> {
         );
         let sd = |variance: f64| (variance * factor).sqrt();
         let beliefs = if self.asks_for_offsets {
-            let [white, correlated] = [components.white, components.correlated].map(|variance| variance * factor);
+            let [white, correlated] =
+                [components.white, components.correlated].map(|variance| variance * factor);
             offset_beliefs(self.likelihood, &Components { white, correlated, ..components })
         } else {
             Vec::new()

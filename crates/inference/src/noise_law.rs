@@ -85,10 +85,12 @@ impl NoiseLaw {
         }
     }
 
-    /// Whether rows are independent under the law.
+    /// Whether rows are independent, as far as is known: offsets that are only possible don't count.
     #[must_use]
     pub fn is_white(&self) -> bool {
-        self.correlated_n == 0.0 && self.offset_n == 0.0
+        let none = self.offset_beliefs.iter().filter(|belief| belief.sd_n == 0.0).map(|belief| belief.weight);
+        let offsets = self.offset_n > 0.0 && none.sum::<f64>() < 0.5;
+        self.correlated_n == 0.0 && !offsets
     }
 
     /// Noise that follows the law \[N\], one value for each row of the record: 0 where a row isn't used. `input_variances` are as in

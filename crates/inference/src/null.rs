@@ -90,12 +90,7 @@ impl Statistics {
 
 impl Null {
     /// Of the catalogue and the smooth functions.
-    pub(crate) fn of(
-        chance: &Chance<'_>,
-        candidates: &[Candidate],
-        smooth: &[Vec<f64>],
-        seed: u64,
-    ) -> Self {
+    pub(crate) fn of(chance: &Chance<'_>, candidates: &[Candidate], smooth: &[Vec<f64>], seed: u64) -> Self {
         let drawn: Vec<Statistics> = (0..DRAWS.div_ceil(PER_STREAM))
             .into_par_iter()
             .flat_map_iter(|stream| {
@@ -120,15 +115,6 @@ impl Null {
             (above as f64 + 1.0) / (sorted.len() as f64 + 1.0)
         };
         [part(&self.screen, found.screen), part(&self.smooth, found.smooth)]
-    }
-
-    /// Score of a single effect that chance exceeds with probability `alpha` somewhere in the catalogue: a square of sigmas.
-    pub(crate) fn score_at(&self, alpha: f64) -> f64 {
-        let place = ((1.0 - alpha) * (self.screen.len() - 1) as f64).round();
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the list")]
-        let w = self.screen.get(place as usize).copied().unwrap_or(0.0);
-        // Back from the quantile to chi^2 of one degree of freedom.
-        (1.0 - 2.0 / 9.0 + w * (2.0_f64 / 9.0).sqrt()).max(0.0).powi(3)
     }
 }
 
@@ -179,6 +165,21 @@ mod tests {
 
     fn white(freedom: f64) -> Chance<'static> {
         Chance { coordinates: 10, freedom, offsets: &[], offset_n: 0.0, beliefs: &[] }
+    }
+
+    impl Null {
+        /// Score of a single effect that chance exceeds somewhere in the catalogue with this probability: a square of sigmas.
+        fn score_at(&self, alpha: f64) -> f64 {
+            let place = ((1.0 - alpha) * (self.screen.len() - 1) as f64).round();
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a place in the list"
+            )]
+            let w = self.screen[place as usize];
+            // Back from the quantile to chi^2 of one degree of freedom.
+            (1.0 - 2.0 / 9.0 + w * (2.0_f64 / 9.0).sqrt()).max(0.0).powi(3)
+        }
     }
 
     #[test]

@@ -28,6 +28,8 @@ pub(crate) const SEEN: f64 = 3.3;
 const ALIKE: f64 = 0.9;
 /// Sigmas from which two are told apart.
 const APART: f64 = 3.29;
+/// Sigmas that are rounding.
+const NOTHING: f64 = 1e-3;
 /// Most pairs that are listed.
 const MOST_PAIRS: usize = 40;
 
@@ -88,8 +90,8 @@ pub struct ConfusedPair {
     pub cosine: f64,
     /// Sigmas between the two, each at its usual size: the smaller of both ways round.
     pub sigma: f64,
-    /// How many times as many repeats tell them apart (3.29 sigma).
-    pub repeats: f64,
+    /// How many repeats tell them apart (3.29 sigma); none if no number does.
+    pub repeats: Option<f64>,
     /// The experiment that separates them, from the catalogue.
     pub separate: String,
 }
@@ -123,9 +125,11 @@ pub fn plan(
     };
     let mut warnings = Vec::new();
     if planned.law.source == NoiseSource::Instruments && planned.law.degrees_of_freedom == 0.0 {
-        warnings.push("no noise is stated by the protocol or `[instruments]`: 1 % of full scale is assumed".to_owned());
+        warnings.push(
+            "no noise is stated by the protocol or `[instruments]`: 1 % of full scale is assumed".to_owned(),
+        );
     }
-    let mut effects = effects(&scene, planned.record.len());
+    let mut effects = effects(&scene, planned.record.len(), muscle);
     effects.sort_by(|a, b| b.usual_sigma.total_cmp(&a.usual_sigma).then(a.effect.cmp(&b.effect)));
     Ok(Plan {
         schema: "bulge.plan/1",
@@ -178,7 +182,14 @@ impl Planned {
     }
 
     pub(crate) fn given<'a>(&'a self, catalogue: &'a Catalogue) -> Given<'a> {
-        Given { catalogue, record: &self.record, whitening: &self.whitening, law: &self.law, seed: 1, only: None }
+        Given {
+            catalogue,
+            record: &self.record,
+            whitening: &self.whitening,
+            law: &self.law,
+            seed: 1,
+            only: None,
+        }
     }
 }
 
@@ -206,12 +217,12 @@ fn law_of(protocol: &Protocol, muscle: &Muscle, force: &[f64]) -> NoiseLaw {
 }
 
 /// The form of an effect that is usual: the middle one.
-fn usual<'s>(scene: &'s Scene, effect: usize) -> Option<&'s Candidate> {
+fn usual(scene: &Scene, effect: usize) -> Option<&Candidate> {
     let forms: Vec<&Candidate> = scene.candidates.iter().filter(|c| c.effect == effect).collect();
     forms.get(forms.len() / 2).copied()
 }
 
-fn effects(scene: &Scene, rows: usize) -> Vec<PlannedEffect> {
+fn effects(scene: &Scene, rows: usize, muscle: &Muscle) -> Vec<PlannedEffect> {
     let of = |(place, screened): (usize, &crate::showing::Screened)| {
         let card = screened.effect.card();
         let cards = screened.effect.parameters();
@@ -220,7 +231,9 @@ fn effects(scene: &Scene, rows: usize) -> Vec<PlannedEffect> {
         let number = cards.get(size.map_or(0, |s| s.place));
         let unit = number.map_or(("", 1.0), |n| (n.unit, n.factor));
         let per_size = candidate.map_or(0.0, |c| c.detectability(1.0));
-        let limit = (per_size > 0.0).then(|| SEEN / per_size);
+        let range = number.map(|n| n.of(muscle)).map_or(f64::INFINITY, |n| n.high - n.low);
+        // Beyond the bounds of the number it is no limit: the test can't show the effect.
+        let limit = (per_size > 0.0).then(|| SEEN / per_size).filter(|limit| *limit <= range);
         let column = candidate.and_then(|c| scene.showings.showings[c.showing].columns.first());
         let rms = column.map_or(0.0, |c| (dot(c, c) / rows.max(1) as f64).sqrt());
         PlannedEffect {
@@ -233,7 +246,9 @@ fn effects(scene: &Scene, rows: usize) -> Vec<PlannedEffect> {
             usual_sigma: size.map_or(0.0, |s| s.scale * per_size),
             compensation: candidate.map_or(1.0, |c| c.compensated),
             why: screened.untestable.clone().or_else(|| {
-                candidate.is_none().then(|| "can't be told from what the rig's and the muscle's widths leave open".to_owned())
+                candidate.is_none().then(|| {
+                    "can't be told from what the rig's and the muscle's widths leave open".to_owned()
+                })
             }),
         }
     };
@@ -242,7 +257,8 @@ fn effects(scene: &Scene, rows: usize) -> Vec<PlannedEffect> {
 
 /// Pairs of different families that look alike.
 fn confused(scene: &Scene) -> Vec<ConfusedPair> {
-    let all: Vec<&Candidate> = (0..scene.showings.effects.len()).filter_map(|effect| usual(scene, effect)).collect();
+    let all: Vec<&Candidate> =
+        (0..scene.showings.effects.len()).filter_map(|effect| usual(scene, effect)).collect();
     let mut found = Vec::new();
     for (i, a) in all.iter().enumerate() {
         for b in &all[i + 1..] {
@@ -257,7 +273,7 @@ fn confused(scene: &Scene) -> Vec<ConfusedPair> {
                 effects: [x.card().name.to_owned(), y.card().name.to_owned()],
                 cosine,
                 sigma,
-                repeats: (APART / sigma.max(1e-9)).powi(2).ceil().max(1.0),
+                repeats: (sigma > NOTHING).then(|| (APART / sigma).powi(2).ceil().max(1.0)),
                 separate: x.card().separate.to_owned(),
             });
         }

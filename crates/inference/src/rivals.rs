@@ -38,7 +38,7 @@ fn rival(analysis: &Analysis<'_>, law: &'static Law) -> Rival {
         Ok(climbed) => {
             rival.rmse_n = residuals::summary(analysis, &climbed.force).rmse;
             rival.rmse_percent = 100.0 * rival.rmse_n / analysis.full_scale.max(f64::MIN_POSITIVE);
-            rival.held_out_rmse_n = analysis.held_out(&climbed).ok().flatten();
+            rival.held_out_rmse_n = analysis.held_out(&climbed);
             rival.fitted = free(&climbed.prepared.model).len();
         }
         Err(error) => rival.failed = Some(error.to_string()),

@@ -5,8 +5,8 @@ use bulge_model::{ModelError, Record, Wanted, Warm};
 
 use crate::as_set::as_set;
 use crate::candidates::Candidate;
-use crate::nuisance::Prepared;
 use crate::noise_law::NoiseLaw;
+use crate::nuisance::Prepared;
 use crate::null::{Chance, Null, Statistics};
 use crate::problem::free;
 use crate::showing::Showings;
@@ -56,8 +56,6 @@ pub(crate) struct Scene {
     pub(crate) offsets: Vec<Vec<f64>>,
     /// The misfit in coordinates.
     pub(crate) z: Vec<f64>,
-    /// Number of directions that the model's own numbers take.
-    pub(crate) taken: usize,
     /// Force of the model at the means \[N\].
     pub(crate) force: Vec<f64>,
 }
@@ -114,10 +112,13 @@ impl Given<'_> {
             misfit[rows + place] = prior.1;
         }
         let mut space = Space::without(&tangents);
-        let taken = space.taken();
-        let showings = Showings::of(self.catalogue, self.only, prepared, theta, &kept, &at_levels.force)?;
+        let showings = Showings::of(self.catalogue, self.only, prepared, theta, &kept, &at_levels.force);
         let candidates = Candidate::all(&showings, &mut space, &whiten);
-        let smooth = if self.only.is_some() { Vec::new() } else { self.directions(&raw, &tangents, &mut space, &whiten) };
+        let smooth = if self.only.is_some() {
+            Vec::new()
+        } else {
+            self.directions(&raw, &tangents, &mut space, &whiten)
+        };
         let z = space.coordinates(&misfit);
         let offsets = self.offsets(&space, &whiten);
         Ok(Scene {
@@ -128,7 +129,6 @@ impl Given<'_> {
             offsets,
             priors: priors.len(),
             z,
-            taken,
             force: prediction.force,
         })
     }
@@ -168,7 +168,11 @@ impl Given<'_> {
             }
             let white = whiten(&function.values);
             let Some((values, unit)) = orthogonal(function.values, white, &known) else { continue };
-            found.push(Direction { variable: function.variable, unit: space.enter(&unit), values: values.clone() });
+            found.push(Direction {
+                variable: function.variable,
+                unit: space.enter(&unit),
+                values: values.clone(),
+            });
             known.push((values, unit));
         }
         found
@@ -176,7 +180,11 @@ impl Given<'_> {
 }
 
 /// A function without what others span, so that its white column has the length 1; none if nothing of it is new.
-fn orthogonal(mut raw: Vec<f64>, mut white: Vec<f64>, known: &[(Vec<f64>, Vec<f64>)]) -> Option<(Vec<f64>, Vec<f64>)> {
+fn orthogonal(
+    mut raw: Vec<f64>,
+    mut white: Vec<f64>,
+    known: &[(Vec<f64>, Vec<f64>)],
+) -> Option<(Vec<f64>, Vec<f64>)> {
     let whole = norm(&white);
     for _ in 0..2 {
         for (other, unit) in known {
@@ -215,13 +223,13 @@ impl Scene {
         }
     }
 
-    /// The statistics of the misfit, and how often chance alone gives as much: of the screen and of the smooth test.
-    pub(crate) fn chance(&self, given: &Given<'_>) -> (Statistics, Null, [f64; 2]) {
+    /// How often chance alone gives as much misfit: by the screen and by the smooth test.
+    pub(crate) fn chance(&self, given: &Given<'_>) -> (Null, [f64; 2]) {
         let units = self.units();
         let found = Statistics::of(&self.z, &self.candidates, &units);
         let chance = self.chance_of(given);
         let null = Null::of(&chance, &self.candidates, &units, given.seed);
         let chance = null.chance(&found);
-        (found, null, chance)
+        (null, chance)
     }
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::candidates::{Candidate, explained, log_evidence};
 use crate::confirm::{Confirmed, starts};
-use crate::null::{Null, Statistics};
+use crate::null::Null;
 use crate::scene::{Given, Scene};
 
 /// Chance with which the screen may raise a false alarm, and the smooth test.
@@ -44,8 +44,6 @@ pub(crate) struct Hypothesis {
 #[derive(Debug, Clone)]
 pub(crate) struct Tried {
     pub(crate) hypothesis: Hypothesis,
-    /// Names of the effects.
-    pub(crate) names: Vec<String>,
     /// The fit; none if it failed.
     pub(crate) confirmed: Option<Confirmed>,
     /// Log evidence of the fit with tickets, over that of the model before.
@@ -55,7 +53,6 @@ pub(crate) struct Tried {
 /// Whether a model explains the data.
 #[derive(Debug, Clone)]
 pub(crate) struct Adequacy {
-    pub(crate) statistics: Statistics,
     pub(crate) null: Null,
     /// How often chance alone gives as much: the screen, the smooth test.
     pub(crate) chance: [f64; 2],
@@ -118,8 +115,8 @@ impl Given<'_> {
         confirmed: Confirmed,
     ) -> Result<Stage, ModelError> {
         let scene = self.scene(&confirmed.prepared, &confirmed.theta)?;
-        let (statistics, null, chance) = scene.chance(self);
-        let adequacy = Adequacy { statistics, null, chance };
+        let (null, chance) = scene.chance(self);
+        let adequacy = Adequacy { null, chance };
         Ok(Stage { added, confirmed, scene, adequate: adequacy.holds(), adequacy, tried: Vec::new() })
     }
 
@@ -177,9 +174,8 @@ impl Given<'_> {
     pub(crate) fn fitted(&self, base: &Model, stage: &Stage, hypothesis: Hypothesis) -> Tried {
         let effects: Vec<Arc<dyn Effect>> =
             hypothesis.effects.iter().map(|i| Arc::clone(&stage.scene.showings.effects[*i].effect)).collect();
-        let names: Vec<String> = effects.iter().map(|effect| effect.card().name.to_owned()).collect();
         let all: Vec<Arc<dyn Effect>> = stage.added.iter().chain(&effects).cloned().collect();
-        let before = self.numbers_of(base, stage);
+        let before = Self::numbers_of(base, stage);
         let starts: Vec<Vec<f64>> =
             hypothesis.starts.iter().map(|start| before.iter().chain(start).copied().collect()).collect();
         let mut confirmed = self.confirm(base, &all, Some(&stage.confirmed), &starts).ok();
@@ -187,7 +183,7 @@ impl Given<'_> {
             // Far from where the tangents hold: usual numbers, and nearly none of them.
             let further: Vec<Vec<f64>> = [1.0, 0.1]
                 .iter()
-                .map(|part| before.iter().copied().chain(self.usual(base, &effects, *part)).collect())
+                .map(|part| before.iter().copied().chain(Self::usual(base, &effects, *part)).collect())
                 .collect();
             let other = self.confirm(base, &all, Some(&stage.confirmed), &further).ok();
             confirmed = match (confirmed, other) {
@@ -199,11 +195,11 @@ impl Given<'_> {
         let log_evidence = confirmed
             .as_ref()
             .map_or(f64::NEG_INFINITY, |c| c.log_evidence - stage.confirmed.log_evidence + tickets);
-        Tried { hypothesis, names, confirmed, log_evidence }
+        Tried { hypothesis, confirmed, log_evidence }
     }
 
     /// A part of the way from `off` to the usual numbers of effects.
-    pub(crate) fn usual(&self, base: &Model, effects: &[Arc<dyn Effect>], part: f64) -> Vec<f64> {
+    pub(crate) fn usual(base: &Model, effects: &[Arc<dyn Effect>], part: f64) -> Vec<f64> {
         let specimens = base.specimens().len();
         let of = |effect: &Arc<dyn Effect>| {
             let copies = if effect.card().group == bulge_effects::Group::Specimen { specimens } else { 1 };
@@ -219,7 +215,7 @@ impl Given<'_> {
     }
 
     /// Numbers of the effects that a stage has added, in order.
-    fn numbers_of(&self, base: &Model, stage: &Stage) -> Vec<f64> {
+    fn numbers_of(base: &Model, stage: &Stage) -> Vec<f64> {
         let names: Vec<&str> = stage.added.iter().map(|effect| effect.card().name).collect();
         let own = base.parameters().len();
         stage.confirmed.prepared.model.parameters()[own..]
@@ -254,7 +250,8 @@ pub(crate) fn ticket(scene: &Scene, effect: usize) -> f64 {
     let heads = (0..effects.len()).filter(|i| shown(*i) && effects[*i].effect.card().name == own).count();
     let is_head = effects[effect].effect.card().name == own;
     // Of two that are the same on these data, the one that takes less to be seen.
-    let simple = if effects[effect].effect.card().needs == bulge_effects::Needs::Time { -SIMPLER } else { 0.0 };
+    let simple =
+        if effects[effect].effect.card().needs == bulge_effects::Needs::Time { -SIMPLER } else { 0.0 };
     of_family
         + simple
         + match (members, heads, is_head) {
@@ -271,7 +268,10 @@ pub(crate) fn hypotheses(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
     let pairs = pairs(scene, model);
     let best = singles.iter().chain(&pairs).map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
     let near = |list: Vec<Hypothesis>, most: usize| {
-        list.into_iter().filter(|h| h.log_evidence > best - FITTED || best > FAR).take(most).collect::<Vec<_>>()
+        list.into_iter()
+            .filter(|h| h.log_evidence > best - FITTED || best > FAR)
+            .take(most)
+            .collect::<Vec<_>>()
     };
     let mut all = near(singles, MOST[0]);
     all.extend(near(pairs, MOST[1]));
@@ -326,7 +326,7 @@ fn pairs(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
                 }
                 let together = explained(&[a, b], &scene.z);
                 // A pair of which one does nothing is no pair.
-                if together.sizes.iter().any(|size| *size == 0.0) {
+                if together.sizes.contains(&0.0) {
                     continue;
                 }
                 let value = log_evidence(&[a, b], &together) + tickets[a.effect] + tickets[b.effect];

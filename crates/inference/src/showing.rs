@@ -97,7 +97,7 @@ impl Showings {
         theta: &[f64],
         record: &Record,
         force: &[f64],
-    ) -> Result<Self, ModelError> {
+    ) -> Self {
         let full_scale = force.iter().fold(f64::MIN_POSITIVE, |most, f| most.max(f.abs()));
         let ground = Ground { prepared, theta, record, force, full_scale };
         let mut effects = Vec::new();
@@ -137,7 +137,7 @@ impl Showings {
                 Err(why) => screened.untestable = Some(why),
             }
         }
-        Ok(Self { effects, showings })
+        Self { effects, showings }
     }
 }
 
@@ -236,7 +236,7 @@ impl Ground<'_> {
         }
         let model = self.prepared.model.with(effect, None)?;
         if cards.is_empty() {
-            return Ok(self.whole(place, &model, &[])?.into_iter().collect());
+            return Ok(self.whole(place, &model, &[]).into_iter().collect());
         }
         let sizes = sizes(&cards);
         let mut found = Vec::new();
@@ -254,7 +254,7 @@ impl Ground<'_> {
             for value in spread(card, GRID) {
                 let mut values: Vec<f64> = cards.iter().map(|card| card.typical).collect();
                 values[sizes[0].place] = value;
-                found.extend(self.whole(place, &model, &values)?);
+                found.extend(self.whole(place, &model, &values));
             }
         }
         Ok(found)
@@ -280,11 +280,11 @@ impl Ground<'_> {
     }
 
     /// The effect as a whole, beside the model without it.
-    fn whole(&self, place: usize, model: &Model, values: &[f64]) -> Result<Option<Showing>, ModelError> {
+    fn whole(&self, place: usize, model: &Model, values: &[f64]) -> Option<Showing> {
         let theta: Vec<f64> = self.theta.iter().chain(values).copied().collect();
         let Ok(with) = model.evaluate_warm(self.record, &theta, &Wanted::default(), &Warm::new()) else {
             // No equilibrium everywhere: nothing that these data could have been.
-            return Ok(None);
+            return None;
         };
         let change: Vec<f64> =
             with.force.iter().zip(self.force).map(|(with, without)| with - without).collect();
@@ -298,13 +298,13 @@ impl Ground<'_> {
             secant: None,
         };
         let shows = self.shows(&change, 1.0);
-        Ok(shows.then(|| Showing {
+        shows.then(|| Showing {
             effect: place,
             values: values.to_vec(),
             sizes: vec![size],
             columns: vec![change],
             whole: true,
-        }))
+        })
     }
 
     /// Whether a column times a size is more than rounding.
@@ -352,7 +352,8 @@ impl Ground<'_> {
             size.secant = Some(step);
         }
         // A modulus of rubber that isn't there does nothing.
-        let visible: Vec<bool> = columns.iter().zip(&sizes).map(|(c, size)| self.shows(c, size.scale)).collect();
+        let visible: Vec<bool> =
+            columns.iter().zip(&sizes).map(|(c, size)| self.shows(c, size.scale)).collect();
         let mut keep = visible.iter();
         columns.retain(|_| keep.next().copied().unwrap_or(false));
         let mut keep = visible.iter();

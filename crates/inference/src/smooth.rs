@@ -172,7 +172,9 @@ fn in_time(record: &Record) -> Vec<Smooth> {
     };
     let clock = scaled(record, |m| m.clock);
     for turns in 1..=TURNS {
-        let wave = |shift: f64| clock.iter().map(|c| (std::f64::consts::PI * (c * turns as f64 + shift)).cos()).collect();
+        let wave = |shift: f64| {
+            clock.iter().map(|c| (std::f64::consts::PI * (c * turns as f64 + shift)).cos()).collect()
+        };
         add(Variable::Time, 4.0 + turns as f64, wave(0.0));
         add(Variable::Time, 4.0 + turns as f64, wave(0.5));
     }

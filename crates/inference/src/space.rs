@@ -28,11 +28,6 @@ impl Space {
         Self { tangents, frame: Vec::new() }
     }
 
-    /// Number of directions that the model's own numbers take.
-    pub(crate) fn taken(&self) -> usize {
-        self.tangents.len()
-    }
-
     /// Number of coordinates.
     pub(crate) fn len(&self) -> usize {
         self.frame.len()
@@ -130,7 +125,7 @@ mod tests {
     fn coordinates_keep_lengths_and_angles_outside_the_tangents() {
         let tangents = [column(1), column(2), column(1)];
         let mut space = Space::without(&tangents);
-        assert_eq!(space.taken(), 2);
+        assert_eq!(space.tangents.len(), 2);
         let [a, b] = [column(3), column(4)];
         let (ca, cb) = (space.enter(&a), space.enter(&b));
         let outside = |v: &[f64]| {

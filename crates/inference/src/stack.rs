@@ -2,7 +2,8 @@
 
 use bulge_model::{Wanted, Warm};
 
-use crate::compare::{Analysis, Climbed, carry_over};
+use crate::carry_over::carry_over;
+use crate::compare::{Analysis, Climbed};
 use crate::comparison::{Part, Stack};
 use crate::error::InferenceError;
 use crate::residuals::{bin, contractions};

@@ -117,7 +117,8 @@ fn two_effects_are_both_named() {
     }
     // And with them the model is adequate: the next diagnosis starts from there.
     let catalogue = Catalogue::builtin();
-    let effects = names(&found).iter().map(|name| std::sync::Arc::clone(catalogue.find(name).unwrap())).collect();
+    let effects =
+        names(&found).iter().map(|name| std::sync::Arc::clone(catalogue.find(name).unwrap())).collect();
     let data = measured(&hidden, &protocol(2.0, 0.0), 5);
     let options = DiagnoseOptions::new(Options::new(catalogue, effects));
     let again = diagnose(&data, &muscle(), &options).unwrap();
@@ -129,7 +130,12 @@ fn too_few_rows_name_nothing() {
     let csv = |rows: usize| {
         let mut text = String::from("pressure [bar],contraction [%],force [N]\n");
         for i in 0..rows {
-            let line = format!("{},{},{}\n", 2 + i % 2, 2 + 3 * (i / 2), 900.0 - 40.0 * i as f64 + 3.0 * (i % 3) as f64);
+            let line = format!(
+                "{},{},{}\n",
+                2 + i % 2,
+                2 + 3 * (i / 2),
+                900.0 - 40.0 * i as f64 + 3.0 * (i % 3) as f64
+            );
             text.push_str(&line);
         }
         let folder = std::env::temp_dir().join(format!("bulge-few-{rows}-{}", std::process::id()));
@@ -180,8 +186,9 @@ fn a_wrong_unit_is_no_physics() {
     // Bar written into a column of psi.
     let mut text = String::from("pressure [psi],contraction [%],force [N]\n");
     let contraction = exact.contraction(0.25);
-    for row in 0..exact.len() {
-        let line = format!("{},{},{}\n", exact.pressure()[row] / 1e5, 100.0 * contraction[row], exact.force()[row]);
+    for (row, contraction) in contraction.iter().enumerate() {
+        let line =
+            format!("{},{},{}\n", exact.pressure()[row] / 1e5, 100.0 * contraction, exact.force()[row]);
         text.push_str(&line);
     }
     std::fs::write(&path, text).unwrap();

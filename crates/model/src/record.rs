@@ -210,7 +210,8 @@ impl Record {
     /// The same history at other pressures \[Pa\] and contractions, one for each moment; those that are missing stay.
     #[must_use]
     pub fn at(mut self, pressure: &[f64], contraction: &[f64]) -> Self {
-        for (moment, (pressure, contraction)) in self.moments.iter_mut().zip(pressure.iter().zip(contraction)) {
+        for (moment, (pressure, contraction)) in self.moments.iter_mut().zip(pressure.iter().zip(contraction))
+        {
             (moment.pressure, moment.contraction) = (*pressure, *contraction);
         }
         self

@@ -1,4 +1,4 @@
-"""Self-test of the generator: limits, identities, noise laws, detectability, files. Every check prints its error and its tolerance."""
+"""Self-test of the generator and the score: limits, identities, noise laws, detectability, files. Every check prints its error and its tolerance."""
 
 import tempfile
 from pathlib import Path as Folder
@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipeinc, ellipkinc
 
-from . import history, muscle, protocols
+from . import history, muscle, protocols, score_check
 from . import path as paths
 from .case import build
 from .detectability import Metric
@@ -42,6 +42,9 @@ def run():
         ("detectability of an offset in white noise is A sqrt(n)/s", _plain_detectability, 1e-9),
         ("detectability reached by built cases", _reached, 0.05),
         ("muscle file read back", _files, 1e-9),
+        ("score: Wilson's interval against printed numbers", score_check.printed_interval, 5e-5),
+        ("score: top-1, class and names that are no claims", score_check.claims, 1e-12),
+        ("score: alarms without names where nothing is hidden", score_check.quiet, 1e-12),
     ]
     failed = 0
     for title, check, tolerance in checks:

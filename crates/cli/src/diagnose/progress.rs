@@ -21,6 +21,7 @@ impl Bar {
         if let Ok(style) = ProgressStyle::with_template("  {spinner} [{bar:30}] {percent:>3} %  {msg}") {
             bar.set_style(style.progress_chars("=> "));
         }
+        bar.set_message("the base");
         bar.enable_steady_tick(Duration::from_millis(120));
         Self(bar)
     }

@@ -210,10 +210,18 @@ fn limits(out: &mut String, diagnosis: &Diagnosis) {
         let of_all = if all > named.len() { format!("; all {all}: --json") } else { String::new() };
         paragraph(out, "  ", &format!("not found, and would show from: {}{of_all}", named.join(", ")));
     }
-    let failed: Vec<&str> =
-        diagnosis.candidates.iter().filter(|c| c.status == "not-converged").map(|c| c.effect.as_str()).collect();
+    let failed: Vec<&str> = diagnosis
+        .candidates
+        .iter()
+        .filter(|c| c.status == "not-converged")
+        .map(|c| c.effect.as_str())
+        .collect();
     if !failed.is_empty() {
-        paragraph(out, "  ", &format!("did not converge, so neither found nor rejected: {}", failed.join(", ")));
+        paragraph(
+            out,
+            "  ",
+            &format!("did not converge, so neither found nor rejected: {}", failed.join(", ")),
+        );
     }
     for line in reasons(&untested(diagnosis), UNTESTED.len()) {
         let _ = writeln!(out, "{UNTESTED}{line}");
@@ -388,19 +396,25 @@ mod tests {
         let mut more = diagnosed::missing(comparison);
         more.remaining.structured = true;
         let lines = lines(&more);
-        let remains = place(&lines, "  remains: a structure of 0.400 N that no other effect of the catalogue explains");
-        assert!(place(&lines, "  missing: coulomb-friction") < remains && remains < place(&lines, "noise floor"));
+        let remains =
+            place(&lines, "  remains: a structure of 0.400 N that no other effect of the catalogue explains");
+        assert!(
+            place(&lines, "  missing: coulomb-friction") < remains && remains < place(&lines, "noise floor")
+        );
     }
 
     #[test]
     fn nothing_is_said_twice() {
         let comparison = comparison();
         let mut missing = diagnosed::missing(comparison.clone());
-        missing.says = "missing: bladder-elasticity and coulomb-friction; with it the model explains the data".to_owned();
+        missing.says =
+            "missing: bladder-elasticity and coulomb-friction; with it the model explains the data"
+                .to_owned();
         assert!(lines(&missing).iter().all(|line| !line.contains("with it the model")));
         let mut unknown = diagnosed::unknown(comparison.clone());
         unknown.says =
-            "these data hold a structure of 3.1 N (2.0 to 4.2) that no effect of the catalogue explains".to_owned();
+            "these data hold a structure of 3.1 N (2.0 to 4.2) that no effect of the catalogue explains"
+                .to_owned();
         let text = lines(&unknown);
         let verdict = "  unknown: these data hold a structure of 3.1 N (2.0 to 4.2) that no effect of the catalogue explains";
         place(&text, verdict);

@@ -43,7 +43,11 @@ fn line(why: &str, names: &[&str], width: usize) -> String {
         };
         format!("({why}): {}{more}", names[..shown].join(", "))
     };
-    (1..=names.len()).rev().map(with).find(|line| line.chars().count() <= width).unwrap_or_else(|| with(names.len().min(1)))
+    (1..=names.len())
+        .rev()
+        .map(with)
+        .find(|line| line.chars().count() <= width)
+        .unwrap_or_else(|| with(names.len().min(1)))
 }
 
 #[cfg(test)]
@@ -53,8 +57,12 @@ mod tests {
     #[test]
     fn effects_stand_together_by_their_reason() {
         let time = Some("needs a path with a column `time`");
-        let lines = reasons(&[("temperature", Some("needs warmth")), ("creep", time), ("force-lag", time)], 0);
-        assert_eq!(lines, ["(needs a path with a column `time`): creep, force-lag", "(needs warmth): temperature"]);
+        let lines =
+            reasons(&[("temperature", Some("needs warmth")), ("creep", time), ("force-lag", time)], 0);
+        assert_eq!(
+            lines,
+            ["(needs a path with a column `time`): creep, force-lag", "(needs warmth): temperature"]
+        );
         assert_eq!(reasons(&[("lobes", None)], 0), ["(would change nothing here): lobes"]);
         assert_eq!(reasons(&[], 0), Vec::<String>::new());
     }
@@ -63,12 +71,13 @@ mod tests {
     fn there_are_three_lines_at_most_and_none_is_too_long() {
         let long = "why ".repeat(40);
         let names: Vec<String> = (0..40).map(|i| format!("effect-{i}")).collect();
-        let mut untested: Vec<(&str, Option<&str>)> = names.iter().map(|n| (n.as_str(), Some(long.as_str()))).collect();
+        let mut untested: Vec<(&str, Option<&str>)> =
+            names.iter().map(|n| (n.as_str(), Some(long.as_str()))).collect();
         untested.extend([("a", Some("x")), ("b", Some("y")), ("c", Some("y")), ("d", Some("z"))]);
         let lines = reasons(&untested, 16);
         assert_eq!(lines.len(), 3);
         assert!(lines.iter().all(|line| line.chars().count() <= WIDTH - 16), "{lines:#?}");
-        assert!(lines[0].contains("...): effect-0, ") && lines[0].ends_with(" more"), "{lines:#?}");
+        assert!(lines[0].contains("...): effect-0 and ") && lines[0].ends_with(" more"), "{lines:#?}");
         assert_eq!(lines[1..], ["(y): b, c", "(for other reasons: see --json): a, d"]);
     }
 }

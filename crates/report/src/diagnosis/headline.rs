@@ -37,7 +37,9 @@ pub fn headlines(diagnosis: &Diagnosis) -> Vec<String> {
             let mut lines: Vec<String> = diagnosis.missing.iter().map(claim).collect();
             if diagnosis.remaining.structured {
                 let size = newton(diagnosis.remaining.misfit_n);
-                lines.push(format!("remains: a structure of {size} that no other effect of the catalogue explains"));
+                lines.push(format!(
+                    "remains: a structure of {size} that no other effect of the catalogue explains"
+                ));
             }
             return lines;
         }

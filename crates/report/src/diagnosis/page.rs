@@ -9,8 +9,8 @@ use crate::comparison::number::{and, count, newton, three};
 use crate::comparison::page::{Figure, filled, model_and_measurement};
 use crate::comparison::wording::sentence;
 use crate::diagnosis::{
-    candidates, chance, explained, further, headlines, limits, located, noise_says, others_in_class, remaining,
-    remains_says, rivals, steps, words,
+    candidates, chance, explained, further, headlines, limits, located, noise_says, others_in_class,
+    remaining, remains_says, rivals, steps, words,
 };
 use crate::interval::with_interval;
 

@@ -1,0 +1,236 @@
+//! `next` as a user sees it: what is open, the experiment that decides it (and does), the honest answers where none does.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod support;
+
+use serde_json::Value;
+use std::fs;
+use support::{Folder, bulge, failure, json};
+
+const MUSCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid.toml");
+const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml");
+/// A single loop at one pressure.
+const LOOP: &str =
+    "[[block]]\npressures = [\"3 bar\"]\ncontraction = \"1 %..20 %\"\nperiod = \"50 s\"\nrows = 50\n";
+const NOISE: &str = "[noise]\nforce = \"2 N\"\npressure = \"100 Pa\"\n";
+
+/// Simulated measurements in a folder of that name: data file and muscle file.
+fn simulated(folder: &Folder, name: &str, protocol: &str, hidden: &str, seed: &str) -> [String; 2] {
+    let out = folder.path(name);
+    let output =
+        bulge(&["simulate", MUSCLE, "--protocol", protocol, "--out", &out, "--seed", seed, "--with", hidden]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    ["data.csv", "muscle.toml"].map(|file| folder.path(&format!("{name}/{file}")))
+}
+
+fn text(arguments: &[&str]) -> String {
+    let output = bulge(arguments);
+    assert!(
+        output.status.success() && output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.lines().count() < 25, "{text}");
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn class(found: &Value) -> Vec<&str> {
+    found["missing"][0]["class"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect()
+}
+
+#[test]
+fn where_no_test_of_force_separates_that_is_said() {
+    let folder = Folder::new("next-threshold");
+    let [data, muscle] = simulated(&folder, "trial", PROTOCOL, "pressure-threshold", "7");
+    let found = json(&["next", &data, "--muscle", &muscle, "--json"]);
+    assert_eq!(
+        (found["schema"].as_str(), found["verdict"].as_str()),
+        (Some("bulge.next/1"), Some("missing")),
+        "{found}"
+    );
+    let class = class(&found);
+    assert!(class.contains(&"pressure-threshold") && class.contains(&"pressure-offset"), "{class:?}");
+    assert!(found["missing"][0]["confidence"].is_f64());
+    let next = &found["next_experiment"];
+    assert_eq!(next["repeats"], 0, "{next}");
+    assert!(
+        next["says"].as_str().unwrap().starts_with("no test of force within these limits tells"),
+        "{next}"
+    );
+    assert!(found["says"].as_str().unwrap().contains("the reading of the vented pressure sensor"));
+    let text = text(&["next", &data, "--muscle", &muscle]);
+    for part in [
+        "missing: pressure-threshold",
+        "open: these data cannot tell pressure-",
+        "no test of force",
+        "--pressure",
+    ] {
+        assert!(text.contains(part), "{part:?} is not in {text}");
+    }
+    assert!(!text.contains("and then, with both"), "{text}");
+}
+
+/// What a proposal says, as a protocol between 2 and 5 bar.
+fn proposed(says: &str) -> String {
+    let block = |pressures: &str, more: &str| {
+        format!(
+            "[[block]]\npressures = \"{pressures} bar\"\ncontraction = \"1 %..20 %\"\nrows = 60\n{more}\n"
+        )
+    };
+    if says.contains("sines at three pressures") {
+        return block("2,3.5,5", "wave = \"sine\"\nperiod = \"50 s\"\ncycles = 2");
+    }
+    if says.contains("slow loops, and loops twenty times as fast") {
+        return block("2,5", "period = \"50 s\"") + &block("2,5", "period = \"2.5 s\"");
+    }
+    assert!(says.contains("loops at six pressures"), "a proposal that this test doesn't know: {says}");
+    block("2,2.6,3.2,3.8,4.4,5", "period = \"50 s\"")
+}
+
+#[test]
+fn what_is_proposed_decides_what_was_open() {
+    let folder = Folder::new("next-friction");
+    let one = folder.write("one.toml", &format!("{LOOP}{NOISE}"));
+    // At one pressure, friction that goes with the pressure is as good as friction that doesn't.
+    let [data, muscle] = simulated(&folder, "one", &one, "coulomb-friction=14 N", "2");
+    let arguments = ["next", &data, "--muscle", &muscle, "--pressure", "2 bar..5 bar"];
+    let found = json(&[&arguments[..], &["--json"]].concat());
+    let class = class(&found);
+    assert!(class.contains(&"coulomb-friction") && class.contains(&"pressure-friction"), "{class:?}");
+    let next = &found["next_experiment"];
+    let says = next["says"].as_str().unwrap();
+    assert!(next["sigma"].as_f64().unwrap() > 3.29 && next["repeats"].as_u64() == Some(1), "{next}");
+    assert!(says.contains("between 2.00 and 5.00 bar"), "{says}");
+    let words = text(&arguments);
+    assert!(
+        words.contains("next: measure ") && words.contains(&format!("bulge diagnose {data} NEW.csv")),
+        "{words}"
+    );
+    let second = folder.write("second.toml", &(proposed(says) + NOISE));
+    let [more, _] = simulated(&folder, "second", &second, "coulomb-friction=14 N", "12");
+    let after = json(&["next", &data, &more, "--muscle", &muscle, "--json"]);
+    assert_eq!(after["missing"][0]["effect"], "coulomb-friction", "{after}");
+    let left = after["missing"][0]["class"].as_array().unwrap();
+    for name in ["pressure-friction", "viscous-damping", "force-lag"] {
+        assert!(!left.contains(&name.into()), "{left:?}");
+    }
+}
+
+#[test]
+fn where_nothing_is_open_the_largest_limit_is_named() {
+    let folder = Folder::new("next-nothing");
+    let [data, muscle] = simulated(&folder, "trial", PROTOCOL, "bladder-elasticity=0.31 MPa", "7");
+    let with = ["next", &data, "--muscle", &muscle, "--with", "bladder-elasticity"];
+    let found = json(&[&with[..], &["--json"]].concat());
+    assert_eq!(found["verdict"], "adequate", "{found}");
+    assert!(found["next_experiment"].is_null() && found["missing"] == serde_json::json!([]), "{found}");
+    let says = found["says"].as_str().unwrap();
+    assert!(
+        says.starts_with("nothing to separate: ")
+            && says.contains("the largest detection limit is that of `"),
+        "{says}"
+    );
+    assert!(says.contains(" N). What lowers it: "), "{says}");
+    let words = text(&with);
+    for part in [
+        "adequate: ",
+        "nothing to separate: ",
+        "could not be looked for (needs a column `temperature` that changes)",
+    ] {
+        assert!(words.contains(part), "{part:?} is not in {words}");
+    }
+    // The same seed gives the same bytes.
+    let again = || bulge(&["next", &data, "--muscle", &muscle, "--seed", "5", "--json"]).stdout;
+    assert_eq!(again(), again());
+}
+
+/// Data with a bump of 25 N over the contraction, which no effect has.
+fn with_a_bump(csv: &str) -> String {
+    let is_row = |line: &str| line.starts_with(|c: char| c.is_ascii_digit());
+    let columns: Vec<&str> = csv.lines().find(|line| line.starts_with("time")).unwrap().split(',').collect();
+    let place = |name: &str| columns.iter().position(|column| column.starts_with(name)).unwrap();
+    let (contraction, force) = (place("contraction"), place("force"));
+    let bumped = |line: &str| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        let at: f64 = cells[contraction].parse().unwrap();
+        let bump = 25.0 * (-((at - 8.0) / 0.6).powi(2)).exp();
+        cells[force] = (cells[force].parse::<f64>().unwrap() + bump).to_string();
+        cells.join(",")
+    };
+    csv.lines().map(|line| if is_row(line) { bumped(line) } else { line.to_owned() } + "\n").collect()
+}
+
+#[test]
+fn the_unknown_is_measured_again_where_it_is_largest() {
+    let folder = Folder::new("next-unknown");
+    let [data, muscle] = simulated(&folder, "trial", PROTOCOL, "coulomb-friction=14 N", "7");
+    let data = folder.write("bump.csv", &with_a_bump(&fs::read_to_string(data).unwrap()));
+    let arguments = ["next", &data, "--muscle", &muscle, "--with", "coulomb-friction"];
+    let found = json(&[&arguments[..], &["--json"]].concat());
+    assert_eq!(found["verdict"], "unknown", "{found}");
+    assert!(found["next_experiment"].is_null(), "{found}");
+    let words = text(&arguments);
+    for part in [
+        "unknown: ",
+        "it is largest near contraction ",
+        "next: repeat the test where the misfit is largest, around contraction ",
+    ] {
+        assert!(words.contains(part), "{part:?} is not in {words}");
+    }
+    let around = words.split("around contraction ").nth(1).unwrap().split(' ').next().unwrap();
+    assert!((around.parse::<f64>().unwrap() - 8.0).abs() < 1.0, "{words}");
+}
+
+#[test]
+fn too_few_rows_are_answered_with_what_to_measure() {
+    let folder = Folder::new("next-few");
+    let data =
+        folder.write("few.csv", "pressure [bar],contraction [%],force [N]\n2,5,300\n3,5,480\n3,9,400\n");
+    let found = json(&["next", &data, "--muscle", MUSCLE, "--json"]);
+    assert_eq!(found["verdict"], "cannot-tell", "{found}");
+    let words = text(&["next", &data, "--muscle", MUSCLE]);
+    assert!(words.contains("cannot tell: ") && words.contains("easure at least three pressures"), "{words}");
+    assert_eq!(words.matches("can't tell").count(), 0, "{words}");
+}
+
+#[test]
+fn bad_input_gets_one_clear_message() {
+    let folder = Folder::new("next-bad");
+    let data = folder.write("data.csv", "pressure [bar],contraction [%],force [N]\n1,5,100\n1,6,90\n");
+    for (more, expected, parts) in [
+        (&["--pressure", "1 bar"][..], 1, &["--pressure", "range"][..]),
+        (
+            &["--pressure", "5 bar..1 bar"],
+            1,
+            &["--pressure", "5 bar..1 bar", "the smaller end first", "\"1 bar..6 bar\""],
+        ),
+        (&["--pressure", "0 bar..2 bar"], 1, &["--pressure", "above 0"]),
+        (&["--pressure", "-1 bar..2 bar"], 1, &["--pressure", "above 0"]),
+        (&["--pressure", "1 bar..2000 bar"], 1, &["--pressure", "1000 bar"]),
+        (&["--pressure", "1 mm..2 mm"], 1, &["--pressure", "mm"]),
+        (&["--contraction", "5 %..5 %"], 1, &["--contraction", "is empty", "\"0 %..20 %\""]),
+        (&["--contraction", "0 %..90 %"], 1, &["--contraction", "90.00 %", "60 %"]),
+        (&["--contraction", "0..much"], 1, &["--contraction", "much"]),
+        (&["--with", "fibre-strech"], 1, &["did you mean `fibre-stretch`"]),
+        (&["--effects", "nowhere.toml"], 1, &["nowhere.toml"]),
+        (&["--seed", "x"], 2, &["--seed", "invalid"]),
+        (&["--presure", "1 bar..2 bar"], 2, &["--presure"]),
+    ] {
+        let mut arguments = vec!["next", &data, "--muscle", MUSCLE];
+        arguments.extend(more);
+        let (status, message) = failure(&arguments);
+        assert_eq!(status, expected, "{message}");
+        for part in parts {
+            assert!(message.contains(part), "{message:?} does not say {part:?}");
+        }
+        assert!(message.starts_with("error: ") && message.lines().count() < 12, "{message}");
+    }
+    let (status, message) = failure(&["next", "--muscle", MUSCLE]);
+    assert!(status == 2 && message.contains("DATA"), "{message}");
+    let (status, message) = failure(&["next", "nowhere.csv", "--muscle", MUSCLE]);
+    assert!(status == 1 && message.contains("nowhere.csv"), "{message}");
+    // Nothing is left behind.
+    assert_eq!(folder.names(), ["data.csv"]);
+}
