@@ -16,6 +16,8 @@ use crate::space::dot;
 
 /// Rivals whose log evidence is less than this below stay in the class.
 pub(crate) const EVIDENCE: f64 = 3.0;
+/// Unless the data have decided after all: this far below they are out.
+pub(crate) const DECIDED: f64 = 6.0;
 /// And those that differ by fewer sigmas than this: one error in a thousand.
 pub(crate) const SEPARATION: f64 = 3.29;
 /// Rivals this far below in linear evidence aren't fitted.
@@ -150,7 +152,7 @@ impl Given<'_> {
         let in_class = tried.is_some()
             && log_evidence.is_finite()
             && log_evidence > 0.0
-            && (log_evidence > named - EVIDENCE || separation < SEPARATION);
+            && (log_evidence > named - EVIDENCE || separation < SEPARATION && log_evidence > named - DECIDED);
         let effect = Arc::clone(&without.scene.showings.effects[place].effect);
         Rival { effect, log_evidence, separation, in_class, fit: tried.and_then(|tried| tried.confirmed) }
     }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::candidates::{Candidate, log_evidence};
-use crate::classes::{Class, EVIDENCE, SEPARATION};
+use crate::classes::{Class, DECIDED, EVIDENCE, SEPARATION};
 use crate::null::{Null, Statistics};
 use crate::random::Random;
 use crate::scene::{Given, Scene};
@@ -235,7 +235,8 @@ impl Claim {
             || truth.effect.is_some_and(|effect| {
                 self.evidence[effect] > 0.0
                     && (self.evidence[effect] > self.evidence[self.named] - EVIDENCE
-                        || self.separation(scene, effect) < SEPARATION)
+                        || self.evidence[effect] > self.evidence[self.named] - DECIDED
+                            && self.separation(scene, effect) < SEPARATION)
             })
     }
 }
