@@ -16,6 +16,8 @@ use crate::space::dot;
 
 /// Rivals whose log evidence is less than this below stay in the class.
 pub(crate) const EVIDENCE: f64 = 3.0;
+/// Effects that differ by less than this many sigmas are the same on these data.
+pub(crate) const SAME: f64 = 1.0;
 /// Unless the data have decided after all: this far below they are out.
 pub(crate) const DECIDED: f64 = 6.0;
 /// And those that differ by fewer sigmas than this: one error in a thousand.
@@ -149,10 +151,11 @@ impl Given<'_> {
             let gain = tried.confirmed.as_ref().map_or(0.0, |c| without.confirmed.cost() - c.cost());
             tempered(tried.log_evidence, gain, scatter)
         });
-        let in_class = tried.is_some()
-            && log_evidence.is_finite()
-            && log_evidence > 0.0
-            && (log_evidence > named - EVIDENCE || separation < SEPARATION && log_evidence > named - DECIDED);
+        // What is the same on these data stays, however unlikely its numbers are: priors may be wrong.
+        let undecided = log_evidence > named - EVIDENCE
+            || separation < SEPARATION && log_evidence > named - DECIDED
+            || separation < SAME;
+        let in_class = tried.is_some() && log_evidence.is_finite() && log_evidence > 0.0 && undecided;
         let effect = Arc::clone(&without.scene.showings.effects[place].effect);
         Rival { effect, log_evidence, separation, in_class, fit: tried.and_then(|tried| tried.confirmed) }
     }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::candidates::{Candidate, log_evidence};
-use crate::classes::{Class, DECIDED, EVIDENCE, SEPARATION};
+use crate::classes::{Class, DECIDED, EVIDENCE, SAME, SEPARATION};
 use crate::null::{Null, Statistics};
 use crate::random::Random;
 use crate::scene::{Given, Scene};
@@ -20,8 +20,6 @@ const DRAWS: usize = 2000;
 const PER_STREAM: usize = 100;
 /// Fewest claims of the same kind from which a rate is stated.
 const ENOUGH: usize = 20;
-/// Effects that differ by less than this many sigmas are the same on these data: naming either is right.
-const SAME: f64 = 1.0;
 
 /// How often a claim is right.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
