@@ -93,17 +93,18 @@ fn the_hidden_effect_is_named_with_its_number() {
 
 #[test]
 fn where_nothing_is_hidden_nothing_is_named() {
-    let mut named = Vec::new();
+    let (mut named, mut told) = (Vec::new(), 0);
     for seed in 0..12 {
         let correlated = if seed % 2 == 0 { 0.0 } else { 2.0 };
         let found = diagnosed(&measured(&[], &protocol(2.0, correlated), seed));
         if found.verdict != Verdict::Adequate {
             named.push(format!("{seed}: {} {:?} {}", found.says, names(&found), found.noise.law.says));
         }
-        assert_eq!(found.noise.correlated, correlated > 0.0 || found.noise.law.offset_n > 0.0);
+        told += usize::from(found.noise.correlated == (correlated > 0.0));
     }
     // At 5 % false alarms, three of 12 have a chance of 2 %.
     assert!(named.len() <= 2, "{named:#?}");
+    assert!(told >= 10, "{told} of 12 laws are right about correlation");
 }
 
 #[test]
