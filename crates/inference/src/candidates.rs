@@ -5,8 +5,9 @@
 //! log evidence = S/2 + log prior(a) + (k/2) log 2 pi - (1/2) log |s's|
 //! ```
 
+use crate::dot::dot;
 use crate::showing::{Showing, Showings, Sign, Size};
-use crate::space::{Space, dot, norm};
+use crate::space::{Space, norm};
 
 /// Sizes from this part of the literature's scale up are equally likely per decade.
 const SMALLEST: f64 = 1e-3;

@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::confirm::Confirmed;
+use crate::dot::dot;
 use crate::scene::{Given, Scene};
 use crate::search::{Hypothesis, Stage, Tried, singles, tempered};
-use crate::space::dot;
 
 /// Rivals whose log evidence is less than this below stay in the class.
 pub(crate) const EVIDENCE: f64 = 3.0;
@@ -22,6 +22,8 @@ pub(crate) const SAME: f64 = 1.0;
 pub(crate) const DECIDED: f64 = 6.0;
 /// And those that differ by fewer sigmas than this: one error in a thousand.
 pub(crate) const SEPARATION: f64 = 3.29;
+/// Log evidence by which a rival must be better to take the place of an effect that was accepted before the others.
+const SWAP: f64 = 1.0;
 /// Rivals this far below in linear evidence aren't fitted.
 const FITTED: f64 = 8.0;
 /// Most rivals that are fitted.
@@ -55,11 +57,12 @@ pub(crate) struct Class {
 }
 
 impl Class {
-    /// An effect without which there is no model at all.
-    pub(crate) fn alone(stage: &Stage, place: usize) -> Self {
+    /// An effect without which there is no model at all: nothing stands beside it, and it is as long as what it made the misfit of the base fall by.
+    pub(crate) fn alone(stage: &Stage, place: usize, base: &Stage) -> Self {
         let effect = Arc::clone(&stage.added[place]);
-        let (log_evidence, detectability) = (f64::MAX, f64::MAX);
-        Self { effect, log_evidence, detectability, scatter: stage.scatter(), rivals: Vec::new() }
+        let scatter = stage.scatter();
+        let gain = (base.confirmed.cost() - stage.confirmed.cost()).max(0.0) / scatter;
+        Self { effect, log_evidence: 0.5 * gain, detectability: gain.sqrt(), scatter, rivals: Vec::new() }
     }
 }
 
@@ -112,6 +115,21 @@ impl Given<'_> {
             .collect();
         let detectability = dot(&signal, &signal).sqrt() / scatter.sqrt();
         Some((Class { effect, log_evidence, detectability, scatter, rivals }, without))
+    }
+
+    /// A stage with the best rival instead of an effect, where that is clearly better and explains the data no less.
+    pub(crate) fn swapped(&self, stage: &Stage, place: usize, class: &Class) -> Option<Stage> {
+        let converged = |rival: &&Rival| rival.fit.as_ref().is_some_and(|fit| fit.converged);
+        let better = |a: &&Rival, b: &&Rival| a.log_evidence.total_cmp(&b.log_evidence);
+        let rival = class.rivals.iter().filter(converged).max_by(better)?;
+        if rival.log_evidence <= class.log_evidence + SWAP {
+            return None;
+        }
+        let mut added = stage.added.clone();
+        added.remove(place);
+        added.push(Arc::clone(&rival.effect));
+        let other = self.stage(added, rival.fit.clone()?).ok()?;
+        (other.adequate || !stage.adequate).then_some(other)
     }
 
     /// A stage with fewer effects: from where it was, else from usual numbers; what was best with the effect may not even have an equilibrium

@@ -8,11 +8,12 @@ use serde::Serialize;
 
 use crate::candidates::{Candidate, log_evidence};
 use crate::classes::{Class, DECIDED, EVIDENCE, SAME, SEPARATION};
+use crate::dot::dot;
 use crate::null::{Null, Statistics};
 use crate::random::Random;
 use crate::scene::{Given, Scene};
-use crate::search::{ALARM, ticket};
-use crate::space::dot;
+use crate::search::{ALARM, Tried, ticket};
+use crate::showing::Screened;
 
 /// Simulated data sets.
 const DRAWS: usize = 2000;
@@ -35,9 +36,16 @@ pub struct Confidence {
 }
 
 impl Confidence {
-    /// Of an effect without which there is no model at all.
-    pub(crate) const fn certain() -> Self {
-        Self { named: 1.0, class: 1.0, interval: [1.0, 1.0], claims: 0 }
+    /// Of an effect without which no model could be made to compare with: its weight among what was tried when it was added. Nothing was simulated.
+    pub(crate) fn of_tried(tried: &[Tried], effect: &str, effects: &[Screened]) -> Self {
+        let most = tried.iter().map(|t| t.log_evidence).fold(f64::NEG_INFINITY, f64::max);
+        let weight = |t: &Tried| (t.log_evidence - most).exp();
+        let holds =
+            |t: &&Tried| t.hypothesis.effects.iter().any(|i| effects[*i].effect.card().name == effect);
+        let all: f64 = tried.iter().map(weight).sum();
+        let own: f64 = tried.iter().filter(holds).map(weight).sum();
+        let share = if all > 0.0 { own / all } else { 0.0 };
+        Self { named: share, class: share, interval: [0.0, 1.0], claims: 0 }
     }
 }
 

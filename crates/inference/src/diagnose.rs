@@ -18,11 +18,14 @@ use crate::next::{Judged, Limits, NextLimits, next_experiment};
 use crate::noise_law::NoiseLaw;
 use crate::progress::Progress;
 use crate::scene::Given;
-use crate::search::Search;
+use crate::search::{Search, Stage};
 use crate::whitening::Whitening;
 
 /// Means of rows on which models are tried.
 const MOST_ROWS: usize = 2500;
+
+/// Times that an accepted effect gives way to a better one.
+const MOST_SWAPS: usize = 3;
 
 /// What is diagnosed, besides muscle and data.
 #[derive(Debug, Clone)]
@@ -107,9 +110,16 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
     };
     let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
     progress.at(0.25, "the catalogue");
-    let search = given.search(&model).map_err(|error| analysis.about(error))?;
+    let mut search = given.search(&model).map_err(|error| analysis.about(error))?;
     progress.at(0.6, "rivals");
-    let judged = classes(&given, &model, &search);
+    let mut judged = classes(&given, &model, &search);
+    for _ in 0..MOST_SWAPS {
+        let last = &search.stages[search.stages.len() - 1];
+        let better = judged.iter().enumerate().find_map(|(place, j)| given.swapped(last, place, &j.class));
+        let Some(better) = better else { break };
+        search.replace_last(better);
+        judged = classes(&given, &model, &search);
+    }
     progress.at(0.75, "the next experiment");
     let next = next_experiment(&given, &judged, &Limits::of(&ground.record, options.limits));
     progress.at(0.85, "the ladder");
@@ -171,12 +181,16 @@ fn ground(
 /// Each named effect with its rivals, and how often such a claim is right.
 fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
     let last = &search.stages[search.stages.len() - 1];
-    let of = |place: usize| match given.class(model, last, place) {
-        Some((class, without)) => {
+    let of = |place: usize| {
+        if let Some((class, without)) = given.class(model, last, place) {
             let confidence = confidence(given, &without.scene, &without.adequacy.null, &class);
-            Judged { class, confidence, models: Some((last.confirmed.clone(), without.confirmed)) }
+            return Judged { class, confidence, models: Some((last.confirmed.clone(), without.confirmed)) };
         }
-        None => Judged { class: Class::alone(last, place), confidence: Confidence::certain(), models: None },
+        let name = last.added[place].card().name;
+        let holds = |stage: &&Stage| stage.added.iter().any(|effect| effect.card().name == name);
+        let before = search.stages.iter().take_while(|stage| !holds(stage)).last().unwrap_or(last);
+        let confidence = Confidence::of_tried(&before.tried, name, &before.scene.showings.effects);
+        Judged { class: Class::alone(last, place, before), confidence, models: None }
     };
     (0..last.added.len()).map(of).collect()
 }

@@ -2,7 +2,6 @@
 
 use bulge_effects::Effect;
 use bulge_measurements::Data;
-use bulge_model::Record;
 use bulge_muscles::units::significant;
 use bulge_muscles::{Muscle, Quantity};
 use std::collections::BTreeMap;
@@ -15,6 +14,7 @@ use crate::diagnosis::{
     CandidateResult, DiagnosedData, DiagnosedNoise, Diagnosis, ExplainedStep, LadderStep, Missing,
     NextExperiment, ParameterResult, Remaining, RivalResult, Verdict,
 };
+use crate::dot::dot;
 use crate::explained::{explained, surface};
 use crate::hints::hints;
 use crate::interval;
@@ -23,9 +23,8 @@ use crate::noise_law::{NoiseLaw, NoiseSource};
 use crate::plan::SEEN;
 use crate::problem::{FitProblem, free};
 use crate::rows::full_scale;
-use crate::scene::{Given, Scene};
+use crate::scene::Given;
 use crate::search::{Search, Stage, singles};
-use crate::space::dot;
 use bulge_numerics::least_squares::Side;
 
 /// The family of hysteresis with a transition after each reversal, and what it is without.
@@ -53,10 +52,13 @@ pub(crate) struct Findings<'a> {
 /// The diagnosis.
 pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Comparison) -> Diagnosis {
     let Findings { given, search, classes, sd_n, .. } = *found;
-    let last = found.last();
-    let (misfit_n, misfit_interval_n) = misfit(&last.scene, given.seed);
-    let (verdict, says) = found.verdict(misfit_n, misfit_interval_n);
+    let (verdict, says) = found.verdict();
+    // Where no effect is named, none is shown: what is left is what the base leaves.
     let named = matches!(verdict, Verdict::Missing | Verdict::Unknown);
+    let classes = if named { classes } else { &[] };
+    let last = if named { found.last() } else { &search.stages[0] };
+    let adequate = last.adequate || verdict == Verdict::Adequate;
+    let (misfit_n, misfit_interval_n) = misfit(&last.scene, given.seed);
     let left = located(&last.scene);
     Diagnosis {
         schema: "bulge.diagnosis/1",
@@ -77,24 +79,20 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
         },
         verdict,
         says,
-        missing: if named {
-            classes.iter().map(|(class, sure)| found.missing(class, *sure)).collect()
-        } else {
-            Vec::new()
-        },
-        candidates: candidates(given, search, classes),
-        ladder: found.ladder(&comparison),
+        missing: classes.iter().map(|(class, sure)| found.missing(class, *sure)).collect(),
+        candidates: found.candidates(classes),
+        ladder: found.ladder(&comparison, last.added.len(), adequate),
         noise_floor_n: sd_n,
         r#where: located(&search.stages[0].scene),
-        explained: steps_explained(given.record, search),
+        explained: if named { found.explained() } else { Vec::new() },
         remaining: Remaining {
-            structured: !last.adequate,
+            structured: !adequate,
             misfit_n,
             misfit_interval_n,
-            hints: if last.adequate { Vec::new() } else { hints(given.record, &last.scene, &left) },
+            hints: if adequate { Vec::new() } else { hints(given.record, &last.scene, &left) },
             surface: surface(given.record, &last.scene),
         },
-        next_experiment: found.next.clone(),
+        next_experiment: found.next.clone().filter(|_| named),
         warnings: comparison.warnings.clone(),
         comparison,
     }
@@ -185,29 +183,15 @@ const fn source(source: NoiseSource) -> &'static str {
     }
 }
 
-/// Each step of the search with what it explained.
-fn steps_explained(record: &Record, search: &Search) -> Vec<ExplainedStep> {
-    let step = |pair: &[Stage]| {
-        let new = &pair[1].added[pair[0].added.len().min(pair[1].added.len())..];
-        let names: Vec<&str> = new.iter().map(|effect| effect.card().name).collect();
-        explained(&names.join(" + "), record, &pair[0].scene.force, &pair[1].scene.force)
-    };
-    search.stages.windows(2).map(step).collect()
-}
-
-/// Square of the misfit that smooth functions follow.
-fn structure(scene: &Scene) -> f64 {
-    scene.smooth.iter().map(|d| dot(&d.unit, &scene.z).powi(2)).sum()
-}
-
 impl Findings<'_> {
     fn last(&self) -> &Stage {
         &self.search.stages[self.search.stages.len() - 1]
     }
 
     /// The verdict, and a sentence or two.
-    fn verdict(&self, misfit_n: f64, interval: [f64; 2]) -> (Verdict, String) {
+    fn verdict(&self) -> (Verdict, String) {
         let last = self.last();
+        let (misfit_n, interval) = misfit(&last.scene, self.given.seed);
         let size = format!(
             "{} N ({} to {})",
             significant(misfit_n, 2),
@@ -247,10 +231,14 @@ impl Findings<'_> {
         if last.adequate {
             return (
                 Verdict::Missing,
-                format!("missing: {}; with it the model explains the data", names.join(" and ")),
+                format!(
+                    "missing: {}; with {} the model explains the data",
+                    names.join(" and "),
+                    if names.len() == 1 { "it" } else { "them" }
+                ),
             );
         }
-        if !names.is_empty() && structure(&last.scene) < FORWARD * structure(&self.search.stages[0].scene) {
+        if !names.is_empty() && last.scene.structure() < FORWARD * self.search.stages[0].scene.structure() {
             let says = format!(
                 "missing: {}; that explains most of the misfit, and {size} of structure remain that no further effect explains",
                 names.join(" and ")
@@ -261,15 +249,29 @@ impl Findings<'_> {
         (Verdict::Unknown, says)
     }
 
-    fn ladder(&self, comparison: &Comparison) -> Vec<LadderStep> {
-        let (steps, last) = (comparison.ladder.len(), self.last());
-        let rungs = comparison.ladder.iter().enumerate().skip(self.known);
+    /// Each step of the search with what it explained.
+    fn explained(&self) -> Vec<ExplainedStep> {
+        let step = |pair: &[Stage]| {
+            let is_new = |effect: &&Arc<dyn Effect>| {
+                pair[0].added.iter().all(|other| other.card().name != effect.card().name)
+            };
+            let names: Vec<String> =
+                pair[1].added.iter().filter(is_new).map(|effect| self.label(effect)).collect();
+            explained(&names.join(" + "), self.given.record, &pair[0].scene.force, &pair[1].scene.force)
+        };
+        self.search.stages.windows(2).map(step).collect()
+    }
+
+    /// The rungs of the base and of the first `added` effects.
+    fn ladder(&self, comparison: &Comparison, added: usize, adequate: bool) -> Vec<LadderStep> {
+        let (steps, last) = (self.known + 1 + added, self.last());
+        let rungs = comparison.ladder.iter().enumerate().take(steps).skip(self.known);
         rungs
             .map(|(i, rung)| LadderStep {
                 added: i.checked_sub(self.known + 1).and_then(|step| Some(self.label(last.added.get(step)?))),
                 rmse_n: rung.rmse_n,
                 held_out_rmse_n: rung.held_out_rmse_n,
-                adequate: i + 1 == steps && last.adequate,
+                adequate: i + 1 == steps && adequate,
             })
             .collect()
     }
@@ -386,53 +388,56 @@ fn rival_result(rival: &Rival, class: &Class) -> RivalResult {
     }
 }
 
-/// Every effect of the catalogue, beside the base.
-fn candidates(given: &Given<'_>, search: &Search, classes: &[(Class, Confidence)]) -> Vec<CandidateResult> {
-    let stage = &search.stages[0];
-    let scene = &stage.scene;
-    let linear = singles(scene, &stage.confirmed.prepared.model);
-    let given_muscle = stage.confirmed.prepared.model.muscle();
-    let mut found: Vec<CandidateResult> = Vec::new();
-    for (place, screened) in scene.showings.effects.iter().enumerate() {
-        let name = screened.effect.card().name;
-        let alone = linear.iter().find(|h| h.effects == [place]);
-        let tried = stage.tried.iter().find(|t| t.hypothesis.effects == [place]);
-        let is_rival =
-            |class: &Class| class.rivals.iter().any(|r| r.in_class && r.effect.card().name == name);
-        let status = if classes.iter().any(|(class, _)| class.effect.card().name == name) {
-            "confirmed"
-        } else if classes.iter().any(|(class, _)| is_rival(class)) {
-            "rival"
-        } else if screened.untestable.is_some() || alone.is_none() {
-            "not-testable"
-        } else if tried.is_some_and(|t| t.confirmed.as_ref().is_none_or(|c| !c.converged)) {
-            "not-converged"
-        } else {
-            "rejected"
-        };
-        let candidate = scene.candidates.iter().find(|c| c.effect == place);
-        let numbers = screened.effect.parameters();
-        let number = candidate.and_then(|c| numbers.get(c.sizes.first()?.place));
-        let per_size = candidate.map_or(0.0, |c| c.detectability(1.0));
-        let limit = (per_size > 0.0).then(|| SEEN / per_size);
-        // Beyond the bounds of the number it is no limit: these data can't show the effect.
-        let limit =
-            limit.filter(|l| number.is_none_or(|n| *l <= n.of(given_muscle).high - n.of(given_muscle).low));
-        let column = candidate.and_then(|c| scene.showings.showings[c.showing].columns.first());
-        let rms = column.map(|c| (dot(c, c) / given.record.len().max(1) as f64).sqrt());
-        let fitted = tried.map(|t| t.log_evidence).filter(|evidence| evidence.is_finite());
-        found.push(CandidateResult {
-            effect: name.to_owned(),
-            log_evidence: fitted.or(alone.map(|h| h.log_evidence)).unwrap_or(0.0),
-            score: alone.map_or(0.0, |h| h.gain),
-            status,
-            detection_limit: number.and_then(|n| Some(limit? / n.factor)),
-            unit: number.map_or(String::new(), |n| n.unit.to_owned()),
-            detection_limit_n: limit.zip(rms).map(|(limit, rms)| limit * rms),
-            compensation: candidate.map_or(1.0, |c| c.compensated),
-            why: screened.untestable.clone(),
-        });
+impl Findings<'_> {
+    /// Every effect of the catalogue, beside the base.
+    fn candidates(&self, classes: &[(Class, Confidence)]) -> Vec<CandidateResult> {
+        let given = self.given;
+        let stage = &self.search.stages[0];
+        let scene = &stage.scene;
+        let linear = singles(scene, &stage.confirmed.prepared.model);
+        let given_muscle = stage.confirmed.prepared.model.muscle();
+        let mut found: Vec<CandidateResult> = Vec::new();
+        for (place, screened) in scene.showings.effects.iter().enumerate() {
+            let name = screened.effect.card().name;
+            let alone = linear.iter().find(|h| h.effects == [place]);
+            let tried = stage.tried.iter().find(|t| t.hypothesis.effects == [place]);
+            let is_rival =
+                |class: &Class| class.rivals.iter().any(|r| r.in_class && r.effect.card().name == name);
+            let status = if classes.iter().any(|(class, _)| self.label(&class.effect) == name) {
+                "confirmed"
+            } else if classes.iter().any(|(class, _)| is_rival(class) || class.effect.card().name == name) {
+                "rival"
+            } else if screened.untestable.is_some() || alone.is_none() {
+                "not-testable"
+            } else if tried.is_some_and(|t| t.confirmed.as_ref().is_none_or(|c| !c.converged)) {
+                "not-converged"
+            } else {
+                "rejected"
+            };
+            let candidate = scene.candidates.iter().find(|c| c.effect == place);
+            let numbers = screened.effect.parameters();
+            let number = candidate.and_then(|c| numbers.get(c.sizes.first()?.place));
+            let per_size = candidate.map_or(0.0, |c| c.detectability(1.0));
+            let limit = (per_size > 0.0).then(|| SEEN / per_size);
+            // Beyond the bounds of the number it is no limit: these data can't show the effect.
+            let limit = limit
+                .filter(|l| number.is_none_or(|n| *l <= n.of(given_muscle).high - n.of(given_muscle).low));
+            let column = candidate.and_then(|c| scene.showings.showings[c.showing].columns.first());
+            let rms = column.map(|c| (dot(c, c) / given.record.len().max(1) as f64).sqrt());
+            let fitted = tried.map(|t| t.log_evidence).filter(|evidence| evidence.is_finite());
+            found.push(CandidateResult {
+                effect: name.to_owned(),
+                log_evidence: fitted.or(alone.map(|h| h.log_evidence)).unwrap_or(0.0),
+                score: alone.map_or(0.0, |h| h.gain),
+                status,
+                detection_limit: number.and_then(|n| Some(limit? / n.factor)),
+                unit: number.map_or(String::new(), |n| n.unit.to_owned()),
+                detection_limit_n: limit.zip(rms).map(|(limit, rms)| limit * rms),
+                compensation: candidate.map_or(1.0, |c| c.compensated),
+                why: screened.untestable.clone(),
+            });
+        }
+        found.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+        found
     }
-    found.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
-    found
 }

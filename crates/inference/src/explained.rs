@@ -3,10 +3,10 @@
 use bulge_model::Record;
 
 use crate::diagnosis::{ExplainedCurve, ExplainedStep, SurfaceCurve};
+use crate::dot::dot;
 use crate::levels::Levels;
 use crate::residuals::bin;
 use crate::scene::Scene;
-use crate::space::dot;
 
 /// Bins of the contraction.
 const BINS: usize = 24;

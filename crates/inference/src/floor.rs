@@ -8,6 +8,7 @@ use std::convert::Infallible;
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
+use crate::chebyshev::chebyshev;
 use crate::comparison::NoiseFloor;
 use crate::levels::sweep_of;
 
@@ -138,10 +139,10 @@ fn saturated(record: &Record, used: &[bool], residuals: &[f64]) -> Option<(f64, 
     let p = Scaled::of(rows.iter().map(|row| moments[*row].pressure));
     let e = Scaled::of(rows.iter().map(|row| moments[*row].contraction));
     let mut matrix = Vec::with_capacity(n * columns);
+    let all = |x: f64, most: usize| (0..=most).map(|degree| chebyshev(degree, x)).collect::<Vec<f64>>();
     for row in &rows {
         let m = &moments[*row];
-        let [along_p, along_e] =
-            [chebyshev(p.at(m.pressure), degrees_p), chebyshev(e.at(m.contraction), degrees_e)];
+        let [along_p, along_e] = [all(p.at(m.pressure), degrees_p), all(e.at(m.contraction), degrees_e)];
         for parity in 0..parities {
             let sign = if parity == 0 { 1.0 } else { m.direction };
             for x in &along_p {
@@ -204,16 +205,6 @@ impl Scaled {
     fn at(&self, value: f64) -> f64 {
         (value - self.middle) / self.half
     }
-}
-
-fn chebyshev(x: f64, degree: usize) -> Vec<f64> {
-    let mut t = vec![1.0, x];
-    while t.len() <= degree {
-        let n = t.len();
-        t.push(2.0 * x * t[n - 1] - t[n - 2]);
-    }
-    t.truncate(degree + 1);
-    t
 }
 
 #[cfg(test)]

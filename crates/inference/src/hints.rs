@@ -6,7 +6,6 @@ use crate::candidates::Candidate;
 use crate::diagnosis::Located;
 use crate::levels::Levels;
 use crate::scene::Scene;
-use crate::space::dot;
 use bulge_muscles::units::significant;
 
 /// Bins of the contraction in which levels are compared.
@@ -18,7 +17,7 @@ const CLEAR: f64 = 0.01;
 
 /// Sentences about the misfit that is left.
 pub(crate) fn hints(record: &Record, scene: &Scene, located: &[Located]) -> Vec<String> {
-    let misfit = systematic(record, scene);
+    let misfit = scene.systematic(&scene.z);
     let mut found = Vec::new();
     found.extend(largest(record, &misfit));
     found.extend(exponent(record, &misfit));
@@ -47,18 +46,6 @@ pub(crate) fn hints(record: &Record, scene: &Scene, located: &[Located]) -> Vec<
     }
     found.extend(nearest(record, scene));
     found
-}
-
-/// The systematic misfit of every row \[N\].
-fn systematic(record: &Record, scene: &Scene) -> Vec<f64> {
-    let mut sum = vec![0.0; record.len()];
-    for direction in &scene.smooth {
-        let part = dot(&direction.unit, &scene.z);
-        for (total, value) in sum.iter_mut().zip(&direction.values) {
-            *total += part * value;
-        }
-    }
-    sum
 }
 
 fn bar(pressure: f64) -> String {
@@ -139,8 +126,7 @@ fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
 
 /// The effect that explains most, and where it fails.
 fn nearest(record: &Record, scene: &Scene) -> Option<String> {
-    let whole: f64 =
-        scene.smooth.iter().map(|d| dot(&d.unit, &scene.z).powi(2)).sum::<f64>() - scene.smooth.len() as f64;
+    let whole = scene.structure() - scene.smooth.len() as f64;
     let gain = |c: &&Candidate| c.explains(&scene.z).gain;
     let best = scene.candidates.iter().max_by(|a, b| gain(a).total_cmp(&gain(b)))?;
     let explained = best.explains(&scene.z);
@@ -153,13 +139,7 @@ fn nearest(record: &Record, scene: &Scene) -> Option<String> {
             *value -= size * c;
         }
     }
-    let mut sum = vec![0.0; record.len()];
-    for direction in &scene.smooth {
-        let part = dot(&direction.unit, &left);
-        for (total, value) in sum.iter_mut().zip(&direction.values) {
-            *total += part * value;
-        }
-    }
+    let sum = scene.systematic(&left);
     let row = (0..sum.len()).max_by(|a, b| sum[*a].abs().total_cmp(&sum[*b].abs()))?;
     let moment = &record.moments()[row];
     Some(format!(

@@ -29,21 +29,21 @@ impl Scale {
         let cost: f64 = minimum.residuals.iter().take(rows).map(|r| r * r).sum();
         let spread = (cost / freedom).max(1.0);
         let independent = (effective - minimum.certificate.rank as f64).max(1.0);
-        let quantile = StudentsT::new(0.0, 1.0, independent)
-            .map_or(1.959_964, |t| t.inverse_cdf(0.975))
-            .clamp(1.959_964, 12.71);
+        let quantile = quantile(independent);
         Self { variance: spread * (rows as f64 / effective).max(1.0), quantile }
+    }
+
+    /// For noise that is known: whitened residuals have this variance, the law so many degrees of freedom.
+    pub(crate) fn known(variance: f64, freedom: f64) -> Self {
+        Self { variance, quantile: quantile(freedom) }
     }
 }
 
-impl Scale {
-    /// For noise that is known: whitened residuals have this variance, the law so many degrees of freedom.
-    pub(crate) fn known(variance: f64, freedom: f64) -> Self {
-        let quantile = StudentsT::new(0.0, 1.0, freedom.max(1.0))
-            .map_or(1.959_964, |t| t.inverse_cdf(0.975))
-            .clamp(1.959_964, 12.71);
-        Self { variance, quantile }
-    }
+/// Quantile 0.975 of Student's t.
+fn quantile(freedom: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, freedom.max(1.0))
+        .map_or(1.959_964, |t| t.inverse_cdf(0.975))
+        .clamp(1.959_964, 12.71)
 }
 
 /// Rows up to which a profile is affordable: each is some forty fits more.

@@ -2,17 +2,17 @@
 
 use bulge_effects::Catalogue;
 use bulge_measurements::PureError;
-use bulge_model::{ModelError, Record, Wanted, Warm};
+use bulge_model::{ModelError, Record};
 use bulge_muscles::Muscle;
 
 use crate::as_set::as_set;
 use crate::levels::Levels;
 use crate::noise_law::{NoiseLaw, NoiseSource};
 use crate::nuisance::Prepared;
-use crate::problem::free;
 use crate::showing::Showings;
 use crate::smooth::smooth;
 use crate::space::{Space, norm};
+use crate::tangents::Tangents;
 
 /// Independent columns of the saturated model, as a part of the rows: of effects, and of all.
 /// Along a path fewer: a model with many numbers follows correlated noise, and takes it away.
@@ -53,23 +53,11 @@ impl Source<'_> {
             let says = format!("repeated points, {:.0} degrees of freedom", pure.degrees_of_freedom);
             return Ok(Some(NoiseLaw::white(pure.sd_n, NoiseSource::Repeats, pure.degrees_of_freedom, says)));
         }
-        let wanted = Wanted { parameters: free(&prepared.model), readings: false };
-        let prediction = prepared.model.evaluate_warm(self.record, theta, &wanted, &Warm::new())?;
-        let residual: Vec<f64> = self
-            .record
-            .force()
-            .iter()
-            .zip(&prediction.force)
-            .map(|(measured, force)| measured - force)
-            .collect();
-        let k = wanted.parameters.len();
-        let kept = as_set(self.record);
-        let at_levels = prepared.model.evaluate_warm(&kept, theta, &wanted, &Warm::new())?;
-        let tangents: Vec<Vec<f64>> =
-            (0..k).map(|j| at_levels.jacobian.iter().skip(j).step_by(k).copied().collect()).collect();
-        let showings = Showings::of(self.catalogue, None, prepared, theta, &kept, &at_levels.force);
+        let tangents = Tangents::of(prepared, theta, self.record)?;
+        let Tangents { set, force_as_set, residual, .. } = &tangents;
+        let showings = Showings::of(self.catalogue, None, prepared, theta, set, force_as_set);
         let columns: Vec<&Vec<f64>> = showings.showings.iter().flat_map(|s| &s.columns).collect();
-        let design = saturated(self.record, &tangents, &columns);
+        let design = saturated(self.record, &tangents.columns, &columns);
         let n = self.record.len();
         let stated = self.muscle.instruments().force.map_or(0.0, |force| force.noise());
         let left = n as f64 - design.len() as f64;
@@ -77,7 +65,7 @@ impl Source<'_> {
             .then(|| {
                 let rows: Vec<f64> =
                     (0..n).flat_map(|i| design.iter().map(move |column| column[i])).collect();
-                NoiseLaw::estimate(self.record, &vec![true; n], self.input_variances, &rows, &residual).ok()
+                NoiseLaw::estimate(self.record, &vec![true; n], self.input_variances, &rows, residual).ok()
             })
             .flatten();
         Ok(found.or_else(|| {

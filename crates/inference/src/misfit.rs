@@ -3,10 +3,10 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::diagnosis::Located;
+use crate::dot::dot;
 use crate::random::Random;
 use crate::scene::{Direction, Scene};
 use crate::smooth::Variable;
-use crate::space::dot;
 
 /// Draws for the interval of the misfit.
 const DRAWS: usize = 400;
@@ -18,16 +18,8 @@ pub(crate) fn misfit(scene: &Scene, seed: u64) -> (f64, [f64; 2]) {
     let n = scene.force.len() as f64;
     let coordinates: Vec<f64> = scene.smooth.iter().map(|d| dot(&d.unit, &scene.z)).collect();
     let excess: f64 = scene.smooth.iter().map(|d| dot(&d.values, &d.values)).sum::<f64>() / n;
-    let square = |coordinates: &[f64]| {
-        let mut sum = vec![0.0; scene.force.len()];
-        for (direction, part) in scene.smooth.iter().zip(coordinates) {
-            for (total, value) in sum.iter_mut().zip(&direction.values) {
-                *total += part * value;
-            }
-        }
-        dot(&sum, &sum) / n
-    };
-    let found = (square(&coordinates) - excess).max(0.0).sqrt();
+    let sum = scene.systematic(&scene.z);
+    let found = (dot(&sum, &sum) / n - excess).max(0.0).sqrt();
     let stride = (scene.force.len() / 500).max(1);
     let thin: Vec<Direction> = scene
         .smooth

@@ -10,9 +10,9 @@
 use rayon::prelude::*;
 
 use crate::candidates::Candidate;
+use crate::dot::dot;
 use crate::offset_belief::OffsetBelief;
 use crate::random::Random;
-use crate::space::dot;
 
 /// Draws.
 const DRAWS: usize = 2000;

@@ -1,5 +1,7 @@
 //! Orthonormal basis of the columns of a matrix at its numerical rank: pivoted Gram-Schmidt, twice, then one-sided Jacobi (Golub and Van Loan 2013, 5.2, 8.6).
 
+use crate::dot::dot;
+
 /// Singular values below this part of the largest one, of columns scaled to 1, count as none.
 const RANK: f64 = 1e-6;
 /// Part of a column that is rounding once the others are taken out.
@@ -139,18 +141,6 @@ fn rotate(first: &mut [f64], second: &mut [f64]) -> bool {
         (*x, *y) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
     }
     true
-}
-
-/// In four interleaved parts, which are added at once.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (mut a, mut b) = (a.chunks_exact(4), b.chunks_exact(4));
-    let mut parts = [0.0; 4];
-    for (a, b) in a.by_ref().zip(b.by_ref()) {
-        for (part, (x, y)) in parts.iter_mut().zip(a.iter().zip(b)) {
-            *part += x * y;
-        }
-    }
-    parts.iter().sum::<f64>() + a.remainder().iter().zip(b.remainder()).map(|(x, y)| x * y).sum::<f64>()
 }
 
 fn add(to: &mut [f64], factor: f64, vector: &[f64]) {

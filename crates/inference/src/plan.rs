@@ -11,13 +11,15 @@ use serde::Serialize;
 use std::sync::Arc;
 
 use crate::candidates::Candidate;
+use crate::classes::SEPARATION;
+use crate::dot::dot;
 use crate::error::InferenceError;
 use crate::noise_law::{CorrelationTime, NoiseLaw, NoiseSource};
 use crate::nuisance::with_nuisances;
 use crate::protocol::Protocol;
 use crate::scene::{Given, Scene};
 use crate::showing::Sign;
-use crate::space::{dot, norm};
+use crate::space::norm;
 use crate::weights::Noise;
 use crate::whitening::Whitening;
 use bulge_model::Wanted;
@@ -26,8 +28,6 @@ use bulge_model::Wanted;
 pub(crate) const SEEN: f64 = 3.3;
 /// Cosine from which two effects are told of.
 const ALIKE: f64 = 0.9;
-/// Sigmas from which two are told apart.
-const APART: f64 = 3.29;
 /// Sigmas that are rounding.
 const NOTHING: f64 = 1e-3;
 /// Most pairs that are listed.
@@ -273,7 +273,7 @@ fn confused(scene: &Scene) -> Vec<ConfusedPair> {
                 effects: [x.card().name.to_owned(), y.card().name.to_owned()],
                 cosine,
                 sigma,
-                repeats: (sigma > NOTHING).then(|| (APART / sigma).powi(2).ceil().max(1.0)),
+                repeats: (sigma > NOTHING).then(|| (SEPARATION / sigma).powi(2).ceil().max(1.0)),
                 separate: x.card().separate.to_owned(),
             });
         }

@@ -1,17 +1,17 @@
 //! A model at its best numbers, seen from where the rest of the catalogue stands: the misfit that is left, and what each effect could do about it.
 
 use bulge_effects::Catalogue;
-use bulge_model::{ModelError, Record, Wanted, Warm};
+use bulge_model::{ModelError, Record};
 
-use crate::as_set::as_set;
 use crate::candidates::Candidate;
+use crate::dot::dot;
 use crate::noise_law::NoiseLaw;
 use crate::nuisance::Prepared;
 use crate::null::{Chance, Null, Statistics};
-use crate::problem::free;
 use crate::showing::Showings;
 use crate::smooth::{Variable, smooth};
-use crate::space::{Space, dot, norm};
+use crate::space::{Space, norm};
+use crate::tangents::Tangents;
 use crate::whitening::Whitening;
 
 /// A smooth function adds nothing if less than this part of it is new.
@@ -63,14 +63,9 @@ pub(crate) struct Scene {
 impl Given<'_> {
     /// The scene of a model with the numbers `theta`.
     pub(crate) fn scene(&self, prepared: &Prepared, theta: &[f64]) -> Result<Scene, ModelError> {
-        let wanted = Wanted { parameters: free(&prepared.model), readings: false };
-        let plain = Wanted::default();
-        let prediction = prepared.model.evaluate_warm(self.record, theta, &plain, &Warm::new())?;
-        // Columns are functions of what was set, not of what was read.
-        let kept = as_set(self.record);
-        let at_levels = prepared.model.evaluate_warm(&kept, theta, &wanted, &Warm::new())?;
-        let priors: Vec<(usize, f64, f64)> = wanted
-            .parameters
+        let tangent = Tangents::of(prepared, theta, self.record)?;
+        let priors: Vec<(usize, f64, f64)> = tangent
+            .free
             .iter()
             .enumerate()
             .filter(|(_, i)| prepared.nuisance[**i])
@@ -85,11 +80,9 @@ impl Given<'_> {
             white.resize(column.len() + priors.len(), 0.0);
             white
         };
-        let k = wanted.parameters.len();
         let rows = self.record.len();
-        let raw: Vec<Vec<f64>> =
-            (0..k).map(|j| at_levels.jacobian.iter().skip(j).step_by(k).copied().collect()).collect();
-        let tangents: Vec<Vec<f64>> = raw
+        let tangents: Vec<Vec<f64>> = tangent
+            .columns
             .iter()
             .enumerate()
             .map(|(j, column)| {
@@ -100,24 +93,18 @@ impl Given<'_> {
                 white
             })
             .collect();
-        let residual: Vec<f64> = self
-            .record
-            .force()
-            .iter()
-            .zip(&prediction.force)
-            .map(|(measured, force)| measured - force)
-            .collect();
-        let mut misfit = whiten(&residual);
+        let mut misfit = whiten(&tangent.residual);
         for (place, prior) in priors.iter().enumerate() {
             misfit[rows + place] = prior.1;
         }
         let mut space = Space::without(&tangents);
-        let showings = Showings::of(self.catalogue, self.only, prepared, theta, &kept, &at_levels.force);
+        let showings =
+            Showings::of(self.catalogue, self.only, prepared, theta, &tangent.set, &tangent.force_as_set);
         let candidates = Candidate::all(&showings, &mut space, &whiten);
         let smooth = if self.only.is_some() {
             Vec::new()
         } else {
-            self.directions(&raw, &tangents, &mut space, &whiten)
+            self.directions(&tangent.columns, &tangents, &mut space, &whiten)
         };
         let z = space.coordinates(&misfit);
         let offsets = self.offsets(&space, &whiten);
@@ -129,7 +116,7 @@ impl Given<'_> {
             offsets,
             priors: priors.len(),
             z,
-            force: prediction.force,
+            force: tangent.force,
         })
     }
 
@@ -208,6 +195,23 @@ fn orthogonal(
 }
 
 impl Scene {
+    /// Square of the misfit that smooth functions follow; as many as there are of them by chance alone.
+    pub(crate) fn structure(&self) -> f64 {
+        self.smooth.iter().map(|d| dot(&d.unit, &self.z).powi(2)).sum()
+    }
+
+    /// What the smooth functions make of a misfit in coordinates, row by row \[N\].
+    pub(crate) fn systematic(&self, z: &[f64]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.force.len()];
+        for direction in &self.smooth {
+            let part = dot(&direction.unit, z);
+            for (total, value) in sum.iter_mut().zip(&direction.values) {
+                *total += part * value;
+            }
+        }
+        sum
+    }
+
     fn units(&self) -> Vec<Vec<f64>> {
         self.smooth.iter().map(|direction| direction.unit.clone()).collect()
     }

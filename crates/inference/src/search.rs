@@ -92,8 +92,7 @@ impl Stage {
         if self.adequate || smooth.is_empty() {
             return 1.0;
         }
-        let square: f64 = smooth.iter().map(|d| crate::space::dot(&d.unit, &self.scene.z).powi(2)).sum();
-        (square / smooth.len() as f64).max(1.0)
+        (self.scene.structure() / smooth.len() as f64).max(1.0)
     }
 }
 
@@ -105,6 +104,14 @@ pub(crate) fn tempered(log_evidence: f64, gain: f64, scatter: f64) -> f64 {
 /// A whole search: the base first, then each model that was accepted.
 pub(crate) struct Search {
     pub(crate) stages: Vec<Stage>,
+}
+
+impl Search {
+    /// Another model instead of the last one.
+    pub(crate) fn replace_last(&mut self, stage: Stage) {
+        self.stages.pop();
+        self.stages.push(stage);
+    }
 }
 
 impl Given<'_> {
@@ -124,13 +131,15 @@ impl Given<'_> {
     pub(crate) fn search(&self, base: &Model) -> Result<Search, ModelError> {
         let confirmed = self.confirm(base, &[], None, &[])?;
         let mut stages = vec![self.stage(Vec::new(), confirmed)?];
-        for step in 0..MOST_EFFECTS {
-            let stage = &mut stages[step];
+        while let Some(stage) = stages.last_mut() {
             if stage.adequacy.holds() {
                 break;
             }
-            stage.tried = self.tried(base, stage);
             let room = MOST_EFFECTS - stage.added.len();
+            if room == 0 {
+                break;
+            }
+            stage.tried = self.tried(base, stage);
             let next = ranked(&stage.tried)
                 .into_iter()
                 .filter(|(best, _)| best.hypothesis.effects.len() <= room)

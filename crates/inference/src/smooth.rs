@@ -9,6 +9,7 @@
 use bulge_model::Record;
 
 use crate::as_set::as_set;
+use crate::chebyshev::chebyshev;
 
 /// Highest degree over the contraction.
 const CONTRACTION: usize = 12;
@@ -272,17 +273,6 @@ fn different(values: &[f64]) -> usize {
         seen[bin.min(11)] = true;
     }
     seen.iter().filter(|s| **s).count()
-}
-
-fn chebyshev(degree: usize, x: f64) -> f64 {
-    let (mut before, mut now) = (1.0, x);
-    if degree == 0 {
-        return before;
-    }
-    for _ in 1..degree {
-        (before, now) = (now, 2.0 * x * now - before);
-    }
-    now
 }
 
 #[cfg(test)]

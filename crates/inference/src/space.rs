@@ -6,6 +6,8 @@
 //! Priors of the model's numbers are further rows. The coordinates are those of an orthonormal frame over all columns that were asked for: thousands
 //! of rows become about a hundred numbers, in which bootstraps and all pairs cost next to nothing.
 
+use crate::dot::dot;
+
 /// A column whose part outside the frame is smaller than this part of it lies within the frame.
 const WITHIN: f64 = 1e-7;
 
@@ -101,11 +103,6 @@ fn remainder(column: &[f64], spans: &[&Vec<Vec<f64>>], within: f64) -> Option<(V
         }
         (left, length)
     })
-}
-
-/// Sum of products; zip stops at the shorter one: coordinates that a column doesn't have are 0.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 pub(crate) fn norm(a: &[f64]) -> f64 {

@@ -5,6 +5,8 @@ use bulge_muscles::Muscle;
 use bulge_muscles::Quantity;
 use rayon::prelude::*;
 
+use crate::dot::dot;
+
 /// Lags up to which correlations are summed.
 const MOST_LAGS: usize = 2000;
 
@@ -73,7 +75,7 @@ pub fn effective_rows(record: &Record, residuals: &[f64], used: &[bool]) -> f64 
     }
     let longest = sweeps.iter().map(Vec::len).max().unwrap_or(0);
     let correlation = |lag: usize| -> f64 {
-        sweeps.iter().filter_map(|s| Some(product(s, s.get(lag..)?))).sum::<f64>() / total
+        sweeps.iter().filter_map(|s| Some(dot(s, s.get(lag..)?))).sum::<f64>() / total
     };
     let mut sum = 0.0;
     let mut lag = 1;
@@ -93,18 +95,6 @@ pub fn effective_rows(record: &Record, residuals: &[f64], used: &[bool]) -> f64 
         batch = (2 * batch).min(64);
     }
     (rows / (1.0 + 2.0 * sum)).clamp(1.0, rows)
-}
-
-/// Sum of the products of two series as long as the shorter one, in eight interleaved parts, which are added at once.
-fn product(a: &[f64], b: &[f64]) -> f64 {
-    let (mut a, mut b) = (a[..a.len().min(b.len())].chunks_exact(8), b.chunks_exact(8));
-    let mut parts = [0.0; 8];
-    for (a, b) in a.by_ref().zip(b.by_ref()) {
-        for (part, (a, b)) in parts.iter_mut().zip(a.iter().zip(b)) {
-            *part += a * b;
-        }
-    }
-    parts.iter().sum::<f64>() + a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum::<f64>()
 }
 
 #[cfg(test)]

@@ -176,6 +176,10 @@ fn a_tolerance_is_what_matters() {
     let loose = with(Some(20.0));
     assert_eq!(loose.verdict, Verdict::Adequate, "{}", loose.says);
     assert!(loose.missing.is_empty() && loose.says.contains("20"), "{}", loose.says);
+    // Where nothing is named, no name stands anywhere as if it were.
+    assert!(loose.ladder.len() == 1 && loose.ladder[0].adequate && loose.explained.is_empty());
+    assert!(!loose.remaining.structured && loose.next_experiment.is_none());
+    assert!(loose.candidates.iter().all(|candidate| candidate.status != "confirmed"));
 }
 
 #[test]

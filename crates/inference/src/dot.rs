@@ -1,0 +1,30 @@
+//! Sums of products.
+
+/// Sum of the products of two series as long as the shorter one, in eight interleaved parts, which are added at once.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let length = a.len().min(b.len());
+    let (mut a, mut b) = (a[..length].chunks_exact(8), b[..length].chunks_exact(8));
+    let mut parts = [0.0; 8];
+    for (a, b) in a.by_ref().zip(b.by_ref()) {
+        for (part, (a, b)) in parts.iter_mut().zip(a.iter().zip(b)) {
+            *part += a * b;
+        }
+    }
+    parts.iter().sum::<f64>() + a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longer_series_is_cut() {
+        let a: Vec<f64> = (1..=19).map(f64::from).collect();
+        let sum = |n: f64| n * (n + 1.0) * (2.0 * n + 1.0) / 6.0;
+        for n in [0, 1, 7, 8, 9, 16, 19] {
+            for (x, y) in [(&a[..n], &a[..]), (&a[..], &a[..n])] {
+                assert!((dot(x, y) - sum(n as f64)).abs() < 1e-9, "{n}");
+            }
+        }
+    }
+}
