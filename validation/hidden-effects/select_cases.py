@@ -7,7 +7,8 @@ name that meets the wish of its kind (`WISHES`) and hides no effect that a chose
 leaves its turns to the other.
 
 OUT/<case> gets data.csv, muscle.toml and a truth.json with case, kind, family, expected and hidden: effect, d, acceptable and class. d is what the
-score goes by: beside the other hidden effects, and for an effect outside the catalogue beyond the two effects that explain most of it.
+score goes by: beside the other hidden effects, and for an effect outside the catalogue beyond the two effects that explain most of it. Under acceptable are
+all names that count as right, the variants of an effect too, so that a reader needs no table of names.
 """
 
 import argparse
@@ -17,7 +18,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from simulator.answers import clarity, truths
+from simulator.answers import clarity, truths, variants
 
 MOST_BYTES = 2_500_000
 NEARLY = 0.95
@@ -105,7 +106,7 @@ def _copy(case, target, truth):
     for name in ("data.csv", "muscle.toml"):
         shutil.copyfile(case / name, target / name)
     entries = [
-        {"effect": entry["effect"], "d": round(clarity(entry), 3), "acceptable": entry["acceptable"], "class": entry["class"]}
+        {"effect": entry["effect"], "d": round(clarity(entry), 3), "acceptable": variants(entry["acceptable"]), "class": entry["class"]}
         for entry in truth["hidden"]
     ]
     reduced = {**{name: truth[name] for name in ("case", "kind", "family", "expected")}, "hidden": entries}

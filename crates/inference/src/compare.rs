@@ -72,6 +72,8 @@ pub(crate) struct Analysis<'a> {
     pub(crate) folds: Option<Folds>,
     pub(crate) noise: Noise,
     pub(crate) full_scale: f64,
+    /// A model with all effects, and numbers near those of its best fit.
+    near: Option<(&'a Model, &'a [f64])>,
 }
 
 /// Compares.
@@ -80,11 +82,26 @@ pub(crate) struct Analysis<'a> {
 /// See [`InferenceError`]: too few rows, a muscle that doesn't match, an effect that doesn't fit the muscle or the data.
 pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
     // On a thread of the pool: small evaluations aren't handed over to it one by one.
-    rayon::scope(|_| compared(data, muscle, options))
+    rayon::scope(|_| compared(data, muscle, options, None))
 }
 
-fn compared(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
-    let mut analysis = Analysis::new(data, muscle, options)?;
+/// The same with the numbers of the last rung about known, of a model with the same effects.
+pub(crate) fn compare_near(
+    data: &Data,
+    muscle: &Muscle,
+    options: &Options,
+    near: (&Model, &[f64]),
+) -> Result<Comparison, InferenceError> {
+    compared(data, muscle, options, Some(near))
+}
+
+fn compared(
+    data: &Data,
+    muscle: &Muscle,
+    options: &Options,
+    near: Option<(&Model, &[f64])>,
+) -> Result<Comparison, InferenceError> {
+    let mut analysis = Analysis { near, ..Analysis::new(data, muscle, options)? };
     let first = analysis.climb(0, None)?;
     analysis.check_match(&first)?;
     let floor = analysis.measure_noise(&first);
@@ -199,7 +216,7 @@ impl<'a> Analysis<'a> {
         let folds = Folds::of(&record, &levels);
         // Until the noise is known: a hundredth of full scale.
         let noise = Noise::of(muscle, (0.01 * full_scale).max(f64::MIN_POSITIVE));
-        Ok(Self { data, muscle, options, record, used, levels, folds, noise, full_scale })
+        Ok(Self { data, muscle, options, record, used, levels, folds, noise, full_scale, near: None })
     }
 
     /// The base with what the muscle file states, but for those of the first `count` effects: they are fitted anew.
@@ -259,10 +276,20 @@ impl<'a> Analysis<'a> {
         if let Some(below) = below {
             carry_over(&below.prepared.model, &below.theta, &prepared.model, &mut theta);
         }
+        let near = self.near.filter(|_| count == self.options.effects.len());
+        if let Some((model, numbers)) = near {
+            carry_over(model, numbers, &prepared.model, &mut theta);
+        }
         let numbers = free(&prepared.model).len();
         if numbers > 0 {
             self.check_rows(numbers)?;
-            let task = Task { record: &self.record, used: &self.used.mask, noise: self.noise, quick: false };
+            let task = Task {
+                record: &self.record,
+                used: &self.used.mask,
+                noise: self.noise,
+                is_near: near.is_some(),
+                quick: false,
+            };
             let (fit, force) = fit_and_force(&prepared, &theta, &task).map_err(|error| self.about(error))?;
             return Ok(Climbed { prepared, theta: fit.theta.clone(), fit: Some(fit), force });
         }
@@ -388,7 +415,8 @@ impl<'a> Analysis<'a> {
                 return Ok(None);
             }
             let theta = if numbers > 0 {
-                let task = Task { record: &thin, used: &train, noise: self.noise, quick: true };
+                let task =
+                    Task { record: &thin, used: &train, noise: self.noise, is_near: true, quick: true };
                 fit(&climbed.prepared, &climbed.theta, &task)?.theta
             } else {
                 climbed.theta.clone()

@@ -6,7 +6,7 @@
 
 use bulge_effects::Effect;
 use bulge_model::{Model, ModelError};
-use bulge_numerics::least_squares::{Bounds, Minimum, Options, minimise};
+use bulge_numerics::least_squares::{Bounds, Minimum, Options};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -15,6 +15,7 @@ use crate::carry_over::carry_over;
 use crate::nuisance::{Prepared, with_nuisances};
 use crate::problem::{FitProblem, free};
 use crate::scene::Given;
+use crate::settle::settled;
 use crate::showing::{Showing, Sign, Size, sizes};
 
 /// Tolerance of the fits, as a part of what the residuals are.
@@ -98,7 +99,7 @@ impl Given<'_> {
                     max_evaluations: EVALUATIONS,
                     ..Options::default()
                 };
-                match minimise(&problem, &inside, &bounds, &options) {
+                match settled(&problem, &inside, &bounds, &options) {
                     Ok(minimum) => {
                         let theta = problem.theta(&minimum.theta);
                         Ok((minimum, theta))

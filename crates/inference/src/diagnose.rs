@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use crate::averaged::Averaged;
 use crate::classes::Class;
-use crate::compare::{Analysis, Climbed, Options, compare};
+use crate::compare::{Analysis, Climbed, Options, compare_near};
 use crate::confidence::{Confidence, confidence};
 use crate::diagnosis::Diagnosis;
 use crate::document::{Findings, cannot_tell, document};
@@ -126,7 +126,8 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
     let last = &search.stages[search.stages.len() - 1];
     let mut compared = options.base.clone();
     compared.effects.extend(last.added.iter().map(Arc::clone));
-    let comparison = compare(data, muscle, &compared)?;
+    let best = &last.confirmed;
+    let comparison = compare_near(data, muscle, &compared, (&best.prepared.model, &best.theta))?;
     let residual: Vec<f64> =
         analysis.record.force().iter().zip(&base.force).map(|(measured, force)| measured - force).collect();
     let classes: Vec<(Class, Confidence)> =

@@ -2,7 +2,7 @@
 
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
 use bulge_numerics::least_squares::{
-    Bounds, LeastSquaresError, Minimum, Options, Reason, Side, minimise, starts_in_box,
+    Bounds, LeastSquaresError, Minimum, Options, Reason, Side, starts_in_box,
 };
 
 use rayon::prelude::*;
@@ -11,6 +11,7 @@ use crate::fit::{Convergence, Fit, Fitted};
 use crate::interval;
 use crate::nuisance::Prepared;
 use crate::problem::{FitProblem, free};
+use crate::settle::settled;
 use crate::weights::{Noise, effective_rows};
 use bulge_muscles::units::significant;
 
@@ -39,7 +40,9 @@ pub(crate) struct Task<'a> {
     pub(crate) record: &'a Record,
     pub(crate) used: &'a [bool],
     pub(crate) noise: Noise,
-    /// Tries only the start that the model states, and makes no statement about uncertainty: for held-out errors.
+    /// Tries only the start that it is given: one that is known to be near the minimum.
+    pub(crate) is_near: bool,
+    /// Makes no statement about uncertainty: for held-out errors.
     pub(crate) quick: bool,
 }
 
@@ -59,7 +62,8 @@ pub(crate) fn fit_and_force(
     let mut minima = 1;
     let mut agreeing = 1;
     let mut tried = 1;
-    if !task.quick && !free(model).is_empty() {
+    let all_narrow = free(model).into_iter().all(|index| prepared.nuisance[index]);
+    if !(task.is_near || all_narrow) {
         let searched = search(prepared, start, task)?;
         (best, minima, agreeing, tried) = (searched.best, searched.minima, searched.agreeing, searched.tried);
     }
@@ -122,10 +126,8 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     starts.push(clamped(problem.coordinates(&nearly_off(model, start)), &bounds.lower, &bounds.upper));
     starts.extend(scattered(prepared, &problem, start, STARTS - 2));
     let tried = starts.len();
-    let followed: Vec<_> = starts
-        .par_iter()
-        .map(|coordinates| minimise(&problem_of(), coordinates, &bounds, &options))
-        .collect();
+    let followed: Vec<_> =
+        starts.par_iter().map(|coordinates| settled(&problem_of(), coordinates, &bounds, &options)).collect();
     let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
     let mut first_error = None;
     for end in followed {
@@ -235,7 +237,7 @@ fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimu
     // Numbers are then off by this part of sqrt(rows) standard deviations.
     let tolerance = if quick { 1e-4 } else { 1e-5 };
     let options = Options { check_curvature: false, tolerance, max_evaluations: 200, ..Options::default() };
-    minimise(problem, &start, &bounds, &options).map_err(|error| match error {
+    settled(problem, &start, &bounds, &options).map_err(|error| match error {
         LeastSquaresError::Start(error) => error,
         _ => ModelError::NotFinite {
             rows: Vec::new(),

@@ -54,8 +54,8 @@ impl Source<'_> {
             return Ok(Some(NoiseLaw::white(pure.sd_n, NoiseSource::Repeats, pure.degrees_of_freedom, says)));
         }
         let tangents = Tangents::of(prepared, theta, self.record)?;
-        let Tangents { set, force_as_set, residual, .. } = &tangents;
-        let showings = Showings::of(self.catalogue, None, prepared, theta, set, force_as_set);
+        let residual = &tangents.residual;
+        let showings = Showings::of(self.catalogue, None, prepared, theta, &tangents);
         let columns: Vec<&Vec<f64>> = showings.showings.iter().flat_map(|s| &s.columns).collect();
         let design = saturated(self.record, &tangents.columns, &columns);
         let n = self.record.len();

@@ -55,6 +55,7 @@ mod rivals;
 mod rows;
 mod scene;
 mod search;
+mod settle;
 mod showing;
 mod simplex;
 mod simulation;

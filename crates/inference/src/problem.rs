@@ -92,6 +92,20 @@ impl<'a> FitProblem<'a> {
         Bounds { lower: self.coordinates(&low), upper: self.coordinates(&high) }
     }
 
+    /// Solves the equilibria of the next evaluation only, see [`Warm::hold`].
+    pub(crate) fn hold(&self) {
+        self.warm.hold();
+    }
+
+    /// Solves those of each evaluation.
+    pub(crate) fn release(&self) {
+        self.warm.release();
+    }
+
+    pub(crate) fn is_held(&self) -> bool {
+        self.warm.is_held()
+    }
+
     /// The force of every row of the record \[N\] that goes with residuals; 0 where a row doesn't count.
     pub(crate) fn force(&self, residuals: &[f64]) -> Vec<f64> {
         let mut force = vec![0.0; self.record.len()];

@@ -62,8 +62,13 @@ fn fitted(analysis: &Analysis<'_>, law: &'static Law, values: &[f64]) -> Result<
         return Err(InferenceError::TooFewRows { rows, numbers });
     }
     // One start: most coefficients are linear, and the bounds of the others say little.
-    let task =
-        Task { record: &analysis.record, used: &analysis.used.mask, noise: analysis.noise, quick: true };
+    let task = Task {
+        record: &analysis.record,
+        used: &analysis.used.mask,
+        noise: analysis.noise,
+        is_near: true,
+        quick: true,
+    };
     let found = fit(&prepared, values, &task).map_err(|error| analysis.about(error))?;
     let theta = found.theta.clone();
     let prediction = prepared.model.evaluate(&analysis.record, &theta, &Wanted::default());

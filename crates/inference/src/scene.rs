@@ -98,8 +98,7 @@ impl Given<'_> {
             misfit[rows + place] = prior.1;
         }
         let mut space = Space::without(&tangents);
-        let showings =
-            Showings::of(self.catalogue, self.only, prepared, theta, &tangent.set, &tangent.force_as_set);
+        let showings = Showings::of(self.catalogue, self.only, prepared, theta, &tangent);
         let candidates = Candidate::all(&showings, &mut space, &whiten);
         let smooth = if self.only.is_some() {
             Vec::new()

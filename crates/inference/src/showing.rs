@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::nuisance::Prepared;
 use crate::requirements::check_needs;
+use crate::tangents::Tangents;
 
 /// Values of each number that is not a size (a distance, a time) at which an effect is looked at.
 const GRID: usize = 5;
@@ -86,20 +87,21 @@ struct Ground<'a> {
     /// Force of the model \[N\].
     force: &'a [f64],
     full_scale: f64,
+    /// What is remembered of its equilibria.
+    warm: &'a Warm,
 }
 
 impl Showings {
-    /// Of all effects of the catalogue (of some `only`, by name) that the model doesn't have, at the numbers `theta`, where it has the force `force`.
+    /// Of all effects of the catalogue (of some `only`, by name) that the model doesn't have, at the numbers `theta`, in the history as it was set.
     pub(crate) fn of(
         catalogue: &Catalogue,
         only: Option<&[String]>,
         prepared: &Prepared,
         theta: &[f64],
-        record: &Record,
-        force: &[f64],
+        Tangents { set: record, force_as_set: force, warm, .. }: &Tangents,
     ) -> Self {
         let full_scale = force.iter().fold(f64::MIN_POSITIVE, |most, f| most.max(f.abs()));
-        let ground = Ground { prepared, theta, record, force, full_scale };
+        let ground = Ground { prepared, theta, record, force, full_scale, warm };
         let mut effects = Vec::new();
         for effect in catalogue.iter() {
             let card = effect.card();
@@ -282,7 +284,8 @@ impl Ground<'_> {
     /// The effect as a whole, beside the model without it.
     fn whole(&self, place: usize, model: &Model, values: &[f64]) -> Option<Showing> {
         let theta: Vec<f64> = self.theta.iter().chain(values).copied().collect();
-        let Ok(with) = model.evaluate_warm(self.record, &theta, &Wanted::default(), &Warm::new()) else {
+        let Ok(with) = model.evaluate_warm(self.record, &theta, &Wanted::default(), &self.warm.shared())
+        else {
             // No equilibrium everywhere: nothing that these data could have been.
             return None;
         };
@@ -344,7 +347,8 @@ impl Ground<'_> {
             let step = (sign * SECANT * size.scale).clamp(card.low - card.off, card.high - card.off);
             let mut moved = theta.clone();
             moved[*parameter] += step;
-            let Ok(with) = model.evaluate_warm(self.record, &moved, &Wanted::default(), &Warm::new()) else {
+            let Ok(with) = model.evaluate_warm(self.record, &moved, &Wanted::default(), &self.warm.shared())
+            else {
                 return Ok(None);
             };
             *column =
@@ -372,7 +376,7 @@ impl Ground<'_> {
         parameters: &[usize],
     ) -> Result<Vec<Vec<f64>>, ModelError> {
         let wanted = Wanted { parameters: parameters.to_vec(), readings: false };
-        let prediction = model.evaluate_warm(self.record, theta, &wanted, &Warm::new())?;
+        let prediction = model.evaluate_warm(self.record, theta, &wanted, &self.warm.shared())?;
         let k = parameters.len();
         Ok((0..k).map(|j| prediction.jacobian.iter().skip(j).step_by(k).copied().collect()).collect())
     }

@@ -20,19 +20,23 @@ pub(crate) struct Tangents {
     pub(crate) free: Vec<usize>,
     /// Derivative of the force by each of them, column by column.
     pub(crate) columns: Vec<Vec<f64>>,
+    /// What is remembered of the equilibria as set.
+    pub(crate) warm: Warm,
 }
 
 impl Tangents {
     /// Of a model with the numbers `theta`.
     pub(crate) fn of(prepared: &Prepared, theta: &[f64], record: &Record) -> Result<Self, ModelError> {
         let model = &prepared.model;
-        let force = model.evaluate_warm(record, theta, &Wanted::default(), &Warm::new())?.force;
         let wanted = Wanted { parameters: free(model), readings: false };
         let set = as_set(record);
-        let at_set = model.evaluate_warm(&set, theta, &wanted, &Warm::new())?;
+        let warm = Warm::new();
+        warm.hold();
+        let at_set = model.evaluate_warm(&set, theta, &wanted, &warm)?;
+        let force = model.evaluate_warm(record, theta, &Wanted::default(), &warm.shared())?.force;
         let residual = record.force().iter().zip(&force).map(|(measured, force)| measured - force).collect();
         let k = wanted.parameters.len();
         let columns = (0..k).map(|j| at_set.jacobian.iter().skip(j).step_by(k).copied().collect()).collect();
-        Ok(Self { set, force, force_as_set: at_set.force, residual, free: wanted.parameters, columns })
+        Ok(Self { set, force, force_as_set: at_set.force, residual, free: wanted.parameters, columns, warm })
     }
 }

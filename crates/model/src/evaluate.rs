@@ -2,10 +2,11 @@
 
 use bulge_effects::{Effect, Input, Jet, LANES, Moment, Place, Setting, Stage};
 use bulge_fibre::{FibreError, Start};
+use bulge_muscles::Muscle;
 use bulge_numerics::{Dual, Real};
 use rayon::prelude::*;
-use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::answer::SHAPE;
 use crate::base::Equilibrium;
@@ -14,7 +15,7 @@ use crate::lattice::{FEWEST_NODES, Lattice};
 use crate::model::{AtRest, Base, Model};
 use crate::record::Record;
 use crate::row::NORMAL;
-use crate::warm::{Slots, Warm};
+use crate::warm::{Held, Slots, Warm};
 
 /// What is wanted of [`Model::evaluate`] besides the force.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -41,6 +42,8 @@ pub struct Prediction {
 /// Rows handed to one core at a time, where nothing is remembered from row to row, and where each of them takes a search. Fixed, so that results
 /// don't depend on the number of threads.
 const CHUNK: [usize; 2] = [256, 8];
+/// Evaluations that a lattice serves at least, where it is held.
+const HELD_FOR: usize = 4;
 
 /// Everything that stays the same for all rows of one evaluation.
 pub(crate) struct Run<'a> {
@@ -123,7 +126,7 @@ impl Model {
         slots: &mut Slots,
     ) -> Result<Prediction, ModelError> {
         let counts = |row: usize| warm.is_none_or(|warm| warm.counts(row));
-        let mut run = self.run(record, theta, &wanted.parameters, &counts, &mut slots.nodes)?;
+        let mut run = self.run(record, theta, &wanted.parameters, &counts, slots)?;
         run.within_fit = warm.is_some();
         let segments = run.segments(record);
         slots.fit(segments.iter().map(Range::len));
@@ -150,7 +153,7 @@ impl Model {
         theta: &'a [f64],
         wanted: &[usize],
         counts: &dyn Fn(usize) -> bool,
-        nodes: &mut HashMap<[i64; 2], Start>,
+        slots: &mut Slots,
     ) -> Result<Run<'a>, ModelError> {
         if theta.len() != self.parameters().len() {
             return Err(ModelError::Values { given: theta.len(), expected: self.parameters().len() });
@@ -185,12 +188,9 @@ impl Model {
         run.setting = Setting { fibres: found.fibres, has_bladder: found.has_bladder, ..self.setting };
         run.shapes = variables.iter().map(|(index, _)| *index).collect();
         if equilibrium.is_costly() && record.len() > FEWEST_NODES {
-            let rows = run.inputs(record);
-            let counted = || rows.iter().enumerate().filter(|(row, _)| counts(*row)).map(|(_, row)| row);
-            let lattice = Lattice::around(&equilibrium, run.shapes.len(), self.refinement, counted());
-            // A node costs what a row costs.
-            if lattice.needed() < counted().count() {
-                run.lattice = Some(lattice.solved(&equilibrium, nodes));
+            run.lattice = slots.held_at(&muscle, theta, &run.shapes);
+            if run.lattice.is_none() {
+                run.lattice = run.solved(record, &muscle, &equilibrium, counts, slots);
             }
         }
         run.equilibrium = Some(equilibrium);
@@ -231,7 +231,7 @@ impl Model {
     pub(crate) fn rest(&self, theta: &[f64], moment: &Moment) -> Result<AtRest, ModelError> {
         let record = Record::from_moments(vec![*moment], vec![0.0], std::iter::once(0..1).collect());
         let Some(record) = record else { return Err(ModelError::Values { given: 0, expected: 1 }) };
-        let run = self.run(&record, theta, &[], &|_| true, &mut HashMap::new())?;
+        let run = self.run(&record, theta, &[], &|_| true, &mut Slots::default())?;
         let pass = Pass {
             theta: theta.iter().map(|v| Jet::from(*v)).collect(),
             pressure_lane: None,
@@ -260,6 +260,32 @@ struct Task<'a> {
 }
 
 impl Run<'_> {
+    /// The lattice for the rows that count, if it is worth its while; held, if it is to be.
+    fn solved(
+        &self,
+        record: &Record,
+        muscle: &Muscle,
+        equilibrium: &Equilibrium,
+        counts: &dyn Fn(usize) -> bool,
+        slots: &mut Slots,
+    ) -> Option<Lattice> {
+        let rows = self.inputs(record);
+        let counted = || rows.iter().enumerate().filter(|(row, _)| counts(*row)).map(|(_, row)| row);
+        let lattice = Lattice::around(equilibrium, self.shapes.len(), self.model.refinement, counted());
+        // A node costs what a row costs, in one evaluation; what is held serves many.
+        let evaluations = if slots.holds { HELD_FOR } else { 1 };
+        if lattice.needed() >= evaluations * counted().count() {
+            return None;
+        }
+        let lattice = lattice.solved(equilibrium, &mut slots.nodes);
+        if slots.holds {
+            let (shapes, theta) = (self.shapes.clone(), self.theta.to_vec());
+            slots.held =
+                Some(Arc::new(Held { shapes, theta, muscle: muscle.clone(), lattice: lattice.clone() }));
+        }
+        Some(lattice)
+    }
+
     fn remembers(&self) -> bool {
         self.model.effects.iter().any(|chosen| chosen.effect.memory() > 0)
     }

@@ -29,18 +29,19 @@ pub(crate) const FEWEST_NODES: usize = WIDTH * WIDTH;
 const STEP: [f64; 2] = [0.125, 0.1];
 /// Contraction below which the lattice is even, above which it is logarithmic.
 const BEND: f64 = 0.02;
-/// Numbers per node: four outputs, each with its shape derivatives.
-const NUMBERS: usize = 4 * (1 + SHAPE);
+/// Outputs of a node: force, tension, radius, volume.
+const OUTPUTS: usize = 4;
 
 /// Contraction at which the search for the nodes of one pressure begins.
 const PULLS: f64 = 0.02;
 
-type Node = Box<[f64; NUMBERS]>;
+/// The outputs of an equilibrium, then their derivatives by each of the shape parameters.
+type Node = Vec<[f64; OUTPUTS]>;
 /// Column of a node, its numbers, and where its search ended.
 type Solved = (usize, Node, Option<Start>);
 
 /// Solved equilibria at the nodes that were asked for.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Lattice {
     singular: bool,
     scale_free: bool,
@@ -51,7 +52,10 @@ pub(crate) struct Lattice {
     count: [usize; 2],
     /// Whether a row needs a node.
     needed: Vec<bool>,
-    nodes: Vec<Option<Node>>,
+    /// Whether a node has an equilibrium.
+    is_solved: Vec<bool>,
+    /// One node after the other, `1 + shapes` entries each.
+    nodes: Vec<[f64; OUTPUTS]>,
 }
 
 /// Where a row lies in the lattice: first node of the stencil and the distance from it in steps.
@@ -77,6 +81,7 @@ impl Lattice {
             low: [0, 0],
             count: [0, 0],
             needed: Vec::new(),
+            is_solved: Vec::new(),
             nodes: Vec::new(),
         };
         let spans: Vec<[[i64; 2]; 2]> = rows.filter_map(|row| lattice.span(row)).collect();
@@ -115,18 +120,35 @@ impl Lattice {
         let lines: Vec<Vec<Solved>> =
             (0..self.count[0]).into_par_iter().map(|row| self.line(equilibrium, row, slots)).collect();
         let columns = self.count[1];
-        let mut nodes: Vec<Option<Node>> = vec![None; self.needed.len()];
+        let stride = 1 + self.shapes;
+        self.is_solved = vec![false; self.needed.len()];
+        self.nodes = vec![[0.0; OUTPUTS]; stride * self.needed.len()];
         slots.clear();
         for (row, line) in lines.into_iter().enumerate() {
             for (column, node, start) in line {
                 if let Some(start) = start {
                     slots.insert(self.key(row, column), start);
                 }
-                nodes[row * columns + column] = Some(node);
+                let place = row * columns + column;
+                self.is_solved[place] = true;
+                self.nodes[place * stride..][..stride].copy_from_slice(&node);
             }
         }
-        self.nodes = nodes;
         self
+    }
+
+    /// The lattice of a shape whose parameters differ by `moved`, to first order.
+    pub(crate) fn moved(&self, moved: &[f64]) -> Self {
+        let mut lattice = self.clone();
+        for node in lattice.nodes.chunks_exact_mut(1 + self.shapes) {
+            let Some((outputs, slopes)) = node.split_first_mut() else { continue };
+            for (slope, moved) in slopes.iter().zip(moved) {
+                for (output, slope) in outputs.iter_mut().zip(slope) {
+                    *output += slope * moved;
+                }
+            }
+        }
+        lattice
     }
 
     /// Nodes of one pressure: outwards from the contraction where every muscle pulls. A direction ends where equilibria end: nothing far beyond is
@@ -216,21 +238,15 @@ impl Lattice {
         let logarithm = (self.low[0] as f64 + row as f64) * self.steps[0];
         let pressure = if self.scale_free { 1e5 } else { logarithm.exp() };
         let (answer, start) = equilibrium.answer(pressure, self.contraction(column), from).ok()?;
-        let mut node = Box::new([0.0; NUMBERS]);
         let outputs = [
             (&answer.force, pressure),
             (&answer.tension, pressure),
             (&answer.mid_radius, 1.0),
             (&answer.volume, 1.0),
         ];
-        for (k, (output, unit)) in outputs.into_iter().enumerate() {
-            let base = k * (1 + SHAPE);
-            node[base] = output.value / unit;
-            for j in 0..self.shapes {
-                node[base + 1 + j] = output.by_shape[j] / unit;
-            }
-        }
-        Some((node, start))
+        let values = outputs.map(|(output, unit)| output.value / unit);
+        let slopes = (0..self.shapes).map(|j| outputs.map(|(output, unit)| output.by_shape[j] / unit));
+        Some((std::iter::once(values).chain(slopes).collect(), start))
     }
 
     /// The interpolated answer; none where the lattice has no node.
@@ -242,20 +258,27 @@ impl Lattice {
         let (ws, ds) = weights(along_s.offset);
         let first = if self.scale_free { 0 } else { along_p.first };
         let rows = if self.scale_free { 1 } else { WIDTH };
-        // Value with its shape derivatives, and the value's slopes in steps.
-        let mut sums = [[0.0; 1 + SHAPE]; 4];
-        let mut slopes = [[0.0; 2]; 4];
+        // Values with their shape derivatives, and the values' slopes in steps.
+        let mut sums = [[0.0; OUTPUTS]; 1 + SHAPE];
+        let mut slopes = [[0.0; OUTPUTS]; 2];
+        let stride = 1 + self.shapes;
         for (row, i) in (first..).zip(0..rows) {
-            for (column, j) in (along_s.first..).zip(0..WIDTH) {
-                let node = self.nodes.get(self.index(row, column)?)?.as_ref()?;
+            let start = self.index(row, along_s.first)?;
+            self.index(row, along_s.first + SPAN - 1)?;
+            if !self.is_solved.get(start..start + WIDTH)?.iter().all(|solved| *solved) {
+                return None;
+            }
+            let nodes = self.nodes[start * stride..].chunks_exact(stride);
+            for (node, j) in nodes.zip(0..WIDTH) {
                 let w = wp[i] * ws[j];
                 let [w_p, w_s] = [dp[i] * ws[j], wp[i] * ds[j]];
-                for k in 0..4 {
-                    let base = k * (1 + SHAPE);
-                    slopes[k][0] += w_p * node[base];
-                    slopes[k][1] += w_s * node[base];
-                    for n in 0..=self.shapes {
-                        sums[k][n] += w * node[base + n];
+                for (k, value) in node[0].iter().enumerate() {
+                    slopes[0][k] += w_p * value;
+                    slopes[1][k] += w_s * value;
+                }
+                for (sum, entry) in sums.iter_mut().zip(node) {
+                    for (sum, value) in sum.iter_mut().zip(entry) {
+                        *sum += w * value;
                     }
                 }
             }
@@ -266,18 +289,18 @@ impl Lattice {
             1.0 / (contraction * contraction + BEND * BEND).sqrt()
         };
         let output = |k: usize| {
-            let per_p = slopes[k][0] / self.steps[0];
-            let by_contraction = slopes[k][1] / self.steps[1] * s_by_contraction;
+            let per_p = slopes[0][k] / self.steps[0];
+            let by_contraction = slopes[1][k] / self.steps[1] * s_by_contraction;
             let is_force = k < 2;
             let unit = if is_force { pressure } else { 1.0 };
             let mut by_shape = [0.0; SHAPE];
             for (j, slope) in by_shape.iter_mut().enumerate().take(self.shapes) {
-                *slope = unit * sums[k][1 + j];
+                *slope = unit * sums[1 + j][k];
             }
             Graded {
-                value: unit * sums[k][0],
+                value: unit * sums[0][k],
                 // F = p X(ln p): X + X'.
-                by_pressure: if is_force { sums[k][0] + per_p } else { per_p / pressure },
+                by_pressure: if is_force { sums[0][k] + per_p } else { per_p / pressure },
                 by_contraction: unit * by_contraction,
                 by_shape,
             }

@@ -6,8 +6,11 @@
 //! doesn't get anywhere from there begins anew, so they depend on the slots no further than the accuracy of the solver.
 
 use bulge_fibre::Start;
+use bulge_muscles::Muscle;
 use std::collections::HashMap;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::lattice::Lattice;
 
 /// Memory of the equilibria between the evaluations of one fit, for [`crate::Model::evaluate_warm`].
 ///
@@ -24,6 +27,40 @@ pub struct Warm {
 pub(crate) struct Slots {
     pub(crate) rows: Vec<Vec<Option<Start>>>,
     pub(crate) nodes: HashMap<[i64; 2], Start>,
+    /// Whether the next lattice that is solved is held.
+    pub(crate) holds: bool,
+    pub(crate) held: Option<Arc<Held>>,
+    /// Whether what is held comes from another model: it then serves for the same muscle only.
+    is_shared: bool,
+}
+
+/// A solved lattice from which those of neighbouring shapes are found by its derivatives.
+#[derive(Debug)]
+pub(crate) struct Held {
+    /// Parameters that change the shape, in the order of the derivatives.
+    pub(crate) shapes: Vec<usize>,
+    /// All parameters where it was solved.
+    pub(crate) theta: Vec<f64>,
+    /// The muscle that they make.
+    pub(crate) muscle: Muscle,
+    pub(crate) lattice: Lattice,
+}
+
+impl Held {
+    /// The lattice of a muscle with other parameters, to first order in what changes the shape; none if it lacks the derivatives asked for.
+    fn near(&self, theta: &[f64], shapes: &[usize]) -> Option<Lattice> {
+        let serves = shapes.is_empty() || shapes == self.shapes;
+        serves.then(|| {
+            let moved: Vec<f64> = self.shapes.iter().map(|i| theta[*i] - self.theta[*i]).collect();
+            self.lattice.moved(&moved)
+        })
+    }
+
+    /// The lattice of this very muscle; none if it is another, or if the lattice lacks the derivatives asked for.
+    fn of(&self, muscle: &Muscle, shapes: &[usize]) -> Option<Lattice> {
+        let serves = (shapes.is_empty() || shapes == self.shapes) && *muscle == self.muscle;
+        serves.then(|| self.lattice.clone())
+    }
 }
 
 impl Warm {
@@ -38,6 +75,36 @@ impl Warm {
     #[must_use]
     pub fn of_rows(counts: &[bool]) -> Self {
         Self { counts: Some(counts.to_vec()), ..Self::default() }
+    }
+
+    /// Solves the equilibria of the next evaluation, and those after it by their derivatives, to first order in the parameters of the shape: until this is
+    /// called again, or [`Warm::release`].
+    ///
+    /// Only where equilibria are shot for and interpolated; elsewhere nothing is held, see [`Warm::is_held`].
+    pub fn hold(&self) {
+        let mut slots = self.lock();
+        (slots.holds, slots.held) = (true, None);
+    }
+
+    /// Solves the equilibria of each evaluation again.
+    pub fn release(&self) {
+        let mut slots = self.lock();
+        (slots.holds, slots.held) = (false, None);
+    }
+
+    /// Whether evaluations are to first order from one that was solved.
+    #[must_use]
+    pub fn is_held(&self) -> bool {
+        self.lock().held.is_some()
+    }
+
+    /// A memory of its own that has what is held here: for evaluations at the same time, of this model or
+    /// of others that add effects to it. It serves those that leave the muscle as it was.
+    #[must_use]
+    pub fn shared(&self) -> Self {
+        let held = self.lock().held.clone();
+        let slots = Slots { held, is_shared: true, ..Slots::default() };
+        Self { counts: self.counts.clone(), slots: Mutex::new(slots) }
     }
 
     /// Whether a row counts; those beyond the list do.
@@ -61,6 +128,12 @@ impl Warm {
 }
 
 impl Slots {
+    /// The lattice of a muscle with the parameters `theta` from what is held.
+    pub(crate) fn held_at(&self, muscle: &Muscle, theta: &[f64], shapes: &[usize]) -> Option<Lattice> {
+        let held = self.held.as_ref()?;
+        if self.is_shared { held.of(muscle, shapes) } else { held.near(theta, shapes) }
+    }
+
     /// One slot for each row of each segment, kept if there are as many as before.
     pub(crate) fn fit(&mut self, lengths: impl Iterator<Item = usize>) {
         let lengths: Vec<usize> = lengths.collect();

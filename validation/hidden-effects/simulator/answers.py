@@ -33,6 +33,11 @@ def family(name):
     return FAMILY.get(name, name)
 
 
+def variants(names):
+    """All names that count under one of these."""
+    return sorted({*names, *(name for name, counted in FAMILY.items() if counted in names)})
+
+
 def clarity(entry):
     """Detectability of a hidden effect beside the other hidden ones; of one outside the catalogue, beyond the best two rivals."""
     return entry.get("d_beyond_two", entry["d_given_others"])
