@@ -1,8 +1,10 @@
 //! `bulge demo`: the tour, on shipped muscles.
 
+mod hidden;
+
 use bulge_effects::Catalogue;
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response, isobars};
-use bulge_inference::{Comparison, Options, compare};
+use bulge_inference::{Comparison, Diagnosis, Options, Verdict, compare};
 use bulge_measurements::Data;
 use bulge_muscles::{
     Bladder, Braided, Construction, Ends, Length, Muscle, MuscleError, Pressure, from_toml, preset,
@@ -65,7 +67,30 @@ struct Document {
     braid: Vec<Step>,
     /// Titles of the rungs with their errors \[N\].
     ladder: Vec<(String, f64)>,
+    /// What was found in measurements with a hidden effect, and what when it was added.
+    hidden: [Found; 2],
     files: Vec<PathBuf>,
+}
+
+/// The gist of a diagnosis.
+#[derive(Debug, Serialize)]
+struct Found {
+    verdict: Verdict,
+    missing: Vec<String>,
+    /// Error of the model with what is missing, and of the noise \[N\].
+    rmse_n: f64,
+    noise_floor_n: f64,
+}
+
+impl Found {
+    fn of(diagnosis: &Diagnosis) -> Self {
+        Self {
+            verdict: diagnosis.verdict,
+            missing: diagnosis.missing.iter().map(|missing| missing.effect.clone()).collect(),
+            rmse_n: diagnosis.ladder.last().map_or(0.0, |step| step.rmse_n),
+            noise_floor_n: diagnosis.noise_floor_n,
+        }
+    }
 }
 
 impl Demo {
@@ -76,6 +101,7 @@ impl Demo {
         let (pleated, difference) = pleated(&self.out, &mut text, &mut written)?;
         let braid = braid(&self.out, &mut text, &mut written)?;
         let comparison = measured(&self.out, &mut text, &mut written)?;
+        let hidden = hidden::hidden(&self.out, &mut text, &mut written)?;
         if self.json {
             let document = Document {
                 schema: "bulge.demo/1",
@@ -83,6 +109,7 @@ impl Demo {
                 shooting_minus_closed_form: difference,
                 braid,
                 ladder: comparison.ladder.iter().map(|rung| (rung.title.clone(), rung.rmse_n)).collect(),
+                hidden: [Found::of(&hidden[0]), Found::of(&hidden[1])],
                 files: written,
             };
             return Ok(serde_json::to_string_pretty(&document)? + "\n");

@@ -34,7 +34,7 @@ pub(crate) struct DiagnoseCommand {
     /// Your own effects, as expressions in a TOML file: they are looked for too
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// RMS misfit that doesn't matter: `--tolerance "5 N"` [default: the accuracy of the instruments]
+    /// RMS misfit that doesn't matter: `--tolerance "5 N"` [default: whatever stands out of the noise and of what the data sheets allow]
     #[arg(long, value_name = "FORCE")]
     tolerance: Option<String>,
     /// Seed of the random numbers: the same seed gives the same answer
@@ -96,7 +96,7 @@ fn tolerance(text: &str) -> Result<f64, Failure> {
 }
 
 /// Writes the report: a page, its plots one by one, and the numbers. Returns what to look at first.
-fn report(folder: &Path, diagnosis: &Diagnosis, document: &str) -> Result<[PathBuf; 2], Failure> {
+pub(crate) fn report(folder: &Path, diagnosis: &Diagnosis, document: &str) -> Result<[PathBuf; 2], Failure> {
     // Everything is made before anything is written.
     let page = html(diagnosis)?;
     let plots = plots(diagnosis)?;

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use crate::confirm::Confirmed;
 use crate::dot::dot;
 use crate::scene::{Given, Scene};
-use crate::search::{Hypothesis, Stage, Tried, singles, tempered};
+use crate::search::{Hypothesis, Stage, Tried, WORTH, singles, tempered};
 
 /// Rivals whose log evidence is less than this below stay in the class.
 pub(crate) const EVIDENCE: f64 = 3.0;
@@ -173,7 +173,8 @@ impl Given<'_> {
         let undecided = log_evidence > named - EVIDENCE
             || separation < SEPARATION && log_evidence > named - DECIDED
             || separation < SAME;
-        let in_class = tried.is_some() && log_evidence.is_finite() && log_evidence > 0.0 && undecided;
+        let worth = WORTH[usize::from(!without.added.is_empty())];
+        let in_class = tried.is_some() && log_evidence.is_finite() && log_evidence > worth && undecided;
         let effect = Arc::clone(&without.scene.showings.effects[place].effect);
         Rival { effect, log_evidence, separation, in_class, fit: tried.and_then(|tried| tried.confirmed) }
     }

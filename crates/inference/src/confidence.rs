@@ -1,24 +1,32 @@
 //! How often a claim is right on data like these: the whole decision simulated on the user's own design, in the coordinates of the screen.
 //!
 //! A truth is drawn from what the data leave possible (nothing, or one of the effects, with a size that they allow), the misfit with its noise from that truth, and the
-//! decision is made as on the real data. Of the simulated data sets that lead to the same claim, the part in which it is right is the confidence.
+//! decision is made as on the real data. Of the simulated data sets that lead to the same claim, as clearly as the real ones do, the part in which it is right is the
+//! confidence: less the chance that no effect of the catalogue is the right one.
 
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::candidates::{Candidate, log_evidence};
-use crate::classes::{Class, DECIDED, EVIDENCE, SAME, SEPARATION};
+use crate::classes::{Class, DECIDED, EVIDENCE, Rival, SAME, SEPARATION};
 use crate::dot::dot;
 use crate::null::{Null, Statistics};
 use crate::random::Random;
 use crate::scene::{Given, Scene};
-use crate::search::{ALARM, Tried, ticket};
+use crate::search::{ALARM, Tried, WORTH, ticket};
 use crate::showing::Screened;
 
 /// Simulated data sets.
-const DRAWS: usize = 2000;
+const DRAWS: usize = 4000;
 /// Data sets from one stream of random numbers.
 const PER_STREAM: usize = 100;
+/// A claim is as clear as another if the lead of its log evidence over the next effect differs by less than this part of the lead, or this much.
+const AS_CLEAR: [f64; 2] = [0.3, 1.0];
+/// A claim with a larger lead is as clear as one with this lead.
+const CLEAR: f64 = DECIDED;
+/// Chance that an effect explains the data and is the wrong one all the same, because the right one is not in the catalogue or its formula is not exact: no
+/// catalogue is complete. No claim is surer than that.
+const OUTSIDE: f64 = 0.1;
 /// Fewest claims of the same kind from which a rate is stated.
 const ENOUGH: usize = 20;
 
@@ -69,6 +77,9 @@ pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &
     };
     let tickets: Vec<f64> = (0..scene.showings.effects.len()).map(|i| ticket(scene, i)).collect();
     let truths = truths(scene, &found, &tickets, class, named);
+    let family = class.effect.card().family;
+    let rivals = class.rivals.iter().filter(|rival| rival.effect.card().family != family);
+    let lead = class.log_evidence - rivals.map(|rival| rival.log_evidence).fold(0.0, f64::max);
     let counted: Vec<[usize; 3]> = (0..DRAWS / PER_STREAM)
         .into_par_iter()
         .map(|stream| {
@@ -78,7 +89,7 @@ pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &
                 let truth = drawn(&truths, random.uniform());
                 let z = misfit(given, scene, truth, &mut random);
                 let Some(claim) = Claim::of(scene, null, &tickets, &z) else { continue };
-                if claim.named != named {
+                if claim.named != named || !is_as_clear(claim.lead(scene), lead) {
                     continue;
                 }
                 counts[0] += 1;
@@ -92,11 +103,28 @@ pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &
         counted.into_iter().fold([0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
     if claims < ENOUGH {
         // The claim would hardly come again: what is left is the weight of the evidence.
-        let own = truths.iter().filter(|t| t.effect == Some(named)).map(|t| t.weight).sum::<f64>();
-        return Confidence { named: own, class: own, interval: [0.0, 1.0], claims };
+        let of = |counts: &dyn Fn(&Rival) -> bool| {
+            let is_one = |effect: usize| {
+                let name = scene.showings.effects[effect].effect.card().name;
+                let rival = class.rivals.iter().find(|rival| rival.effect.card().name == name);
+                effect == named
+                    || rival.is_some_and(|rival| rival.effect.card().family == family || counts(rival))
+            };
+            let right = truths.iter().filter(|t| t.effect.is_some_and(is_one));
+            (1.0 - OUTSIDE) * right.map(|t| t.weight).sum::<f64>()
+        };
+        let (named, class) = (of(&|rival| rival.separation < SAME), of(&|rival| rival.in_class));
+        return Confidence { named, class, interval: [0.0, 1.0], claims };
     }
-    let part = |count: usize| count as f64 / claims as f64;
-    Confidence { named: part(right), class: part(held), interval: wilson(right, claims), claims }
+    let part = |count: usize| (1.0 - OUTSIDE) * count as f64 / claims as f64;
+    let interval = wilson(right, claims).map(|end| (1.0 - OUTSIDE) * end);
+    Confidence { named: part(right), class: part(held), interval, claims }
+}
+
+/// Whether a claim with one lead is as clear as one with another.
+fn is_as_clear(lead: f64, other: f64) -> bool {
+    let (lead, other) = (lead.min(CLEAR), other.min(CLEAR));
+    (lead - other).abs() <= (AS_CLEAR[0] * other).max(AS_CLEAR[1])
 }
 
 /// Everything that the data leave possible, with weights that add up to 1.
@@ -206,7 +234,7 @@ impl Claim {
             }
         }
         let named = (0..evidence.len()).max_by(|a, b| evidence[*a].total_cmp(&evidence[*b]))?;
-        let (_, candidate, sizes) = best.filter(|_| evidence[named] > 0.0)?;
+        let (_, candidate, sizes) = best.filter(|_| evidence[named] > WORTH[0])?;
         let length = candidate.columns.iter().map(Vec::len).max().unwrap_or(0);
         let mut signal = vec![0.0; length];
         for (column, size) in candidate.columns.iter().zip(&sizes) {
@@ -215,6 +243,13 @@ impl Claim {
             }
         }
         Some(Self { named, evidence, signal })
+    }
+
+    /// Log evidence over that of the next effect of another family, and over none.
+    fn lead(&self, scene: &Scene) -> f64 {
+        let family = |effect: usize| scene.showings.effects[effect].effect.card().family;
+        let others = (0..self.evidence.len()).filter(|effect| family(*effect) != family(self.named));
+        self.evidence[self.named] - others.map(|effect| self.evidence[effect]).fold(0.0, f64::max)
     }
 
     fn separation(&self, scene: &Scene, effect: usize) -> f64 {
@@ -239,7 +274,7 @@ impl Claim {
     fn holds(&self, scene: &Scene, truth: &Truth<'_>) -> bool {
         self.is_same(scene, truth)
             || truth.effect.is_some_and(|effect| {
-                self.evidence[effect] > 0.0
+                self.evidence[effect] > WORTH[0]
                     && (self.evidence[effect] > self.evidence[self.named] - EVIDENCE
                         || self.evidence[effect] > self.evidence[self.named] - DECIDED
                             && self.separation(scene, effect) < SEPARATION)

@@ -37,6 +37,16 @@ pub(crate) struct Confirmed {
 }
 
 impl Confirmed {
+    /// Whether a number of these effects is at the end of all that was searched, and beyond what is plausible: that explains nothing.
+    pub(crate) fn is_absurd(&self, effects: &[Arc<dyn Effect>]) -> bool {
+        let model = &self.prepared.model;
+        free(model).into_iter().zip(&self.minimum.certificate.at_bound).any(|(index, at_bound)| {
+            let (p, value) = (&model.parameters()[index], self.theta[index]);
+            let is_of = effects.iter().any(|effect| effect.card().name == p.effect);
+            is_of && at_bound.is_some() && !(p.plausible.0..=p.plausible.1).contains(&value)
+        })
+    }
+
     /// The sum of squares of whitened residuals and priors.
     pub(crate) fn cost(&self) -> f64 {
         self.minimum.cost

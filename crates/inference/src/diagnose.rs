@@ -168,14 +168,18 @@ fn ground(
         .zip(averaged.counts())
         .map(|((p, e), count)| ((p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)) / count)
         .collect();
+    let counts: Vec<f64> = averaged.counts().collect();
     let source = Source {
         catalogue: &options.base.catalogue,
         muscle: analysis.muscle,
         record: &record,
         input_variances: &input_variances,
+        slopes: [&at_means.by_contraction, &at_means.by_pressure],
+        counts: &counts,
         pure_error: analysis.data.repeats(analysis.muscle.length().si()).pure_error(),
     };
-    let law = source.law(&base.prepared, &base.theta).map_err(|error| analysis.about(error))?;
+    let found = source.law(&base.prepared, &base.theta).map_err(|error| analysis.about(error))?;
+    let (law, input_variances) = found.map_or((None, input_variances), |(law, inputs)| (Some(law), inputs));
     Ok(Ground { averaged, record, input_variances, law })
 }
 

@@ -238,7 +238,10 @@ impl Findings<'_> {
                 ),
             );
         }
-        if !names.is_empty() && last.scene.structure() < FORWARD * self.search.stages[0].scene.structure() {
+        let most = last.scene.structure() < FORWARD * self.search.stages[0].scene.structure();
+        // Where something remains, numbers that no muscle has are a cure of the wrong thing.
+        let sound = last.added.iter().all(|effect| self.plausible(effect.card().name));
+        if !names.is_empty() && most && sound {
             let says = format!(
                 "missing: {}; that explains most of the misfit, and {size} of structure remain that no further effect explains",
                 names.join(" and ")

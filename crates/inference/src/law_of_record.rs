@@ -6,6 +6,7 @@ use bulge_model::{ModelError, Record};
 use bulge_muscles::Muscle;
 
 use crate::as_set::as_set;
+use crate::input_noise::input_noise;
 use crate::levels::Levels;
 use crate::noise_law::{NoiseLaw, NoiseSource};
 use crate::nuisance::Prepared;
@@ -41,17 +42,28 @@ pub(crate) struct Source<'a> {
     pub(crate) record: &'a Record,
     /// Of the means \[N^2\], from noise of pressure and contraction.
     pub(crate) input_variances: &'a [f64],
+    /// Derivatives of the force by contraction and pressure at the means.
+    pub(crate) slopes: [&'a [f64]; 2],
+    /// How many readings each mean has.
+    pub(crate) counts: &'a [f64],
     pub(crate) pure_error: Option<PureError>,
 }
 
 impl Source<'_> {
-    /// The law, under a base model with the numbers `theta`; none if nothing is known of the noise.
-    pub(crate) fn law(&self, prepared: &Prepared, theta: &[f64]) -> Result<Option<NoiseLaw>, ModelError> {
+    /// The law, under a base model with the numbers `theta`, and the variances that come on top of it from noise of the inputs: those stated, else those that
+    /// the scatter shows. None if nothing is known of the noise.
+    pub(crate) fn law(
+        &self,
+        prepared: &Prepared,
+        theta: &[f64],
+    ) -> Result<Option<(NoiseLaw, Vec<f64>)>, ModelError> {
+        let stated_inputs = self.input_variances.to_vec();
         if let Some(pure) =
             self.pure_error.filter(|p| !self.record.is_path() && p.degrees_of_freedom >= ENOUGH_REPEATS)
         {
             let says = format!("repeated points, {:.0} degrees of freedom", pure.degrees_of_freedom);
-            return Ok(Some(NoiseLaw::white(pure.sd_n, NoiseSource::Repeats, pure.degrees_of_freedom, says)));
+            let law = NoiseLaw::white(pure.sd_n, NoiseSource::Repeats, pure.degrees_of_freedom, says);
+            return Ok(Some((law, stated_inputs)));
         }
         let tangents = Tangents::of(prepared, theta, self.record)?;
         let residual = &tangents.residual;
@@ -63,15 +75,20 @@ impl Source<'_> {
         let left = n as f64 - design.len() as f64;
         let found = (left >= FEWEST)
             .then(|| {
+                let is_stated = stated_inputs.iter().any(|variance| *variance > 0.0);
+                let shown =
+                    if is_stated { None } else { input_noise(residual, &design, self.slopes, self.counts) };
+                let inputs = shown.unwrap_or_else(|| stated_inputs.clone());
                 let rows: Vec<f64> =
                     (0..n).flat_map(|i| design.iter().map(move |column| column[i])).collect();
-                NoiseLaw::estimate(self.record, &vec![true; n], self.input_variances, &rows, residual).ok()
+                let law = NoiseLaw::estimate(self.record, &vec![true; n], &inputs, &rows, residual).ok()?;
+                Some((law, inputs))
             })
             .flatten();
         Ok(found.or_else(|| {
             (stated > 0.0).then(|| {
                 let says = "the data sheet of the load cell: these rows are too few to say".to_owned();
-                NoiseLaw::white(stated, NoiseSource::Instruments, 0.0, says)
+                (NoiseLaw::white(stated, NoiseSource::Instruments, 0.0, says), stated_inputs)
             })
         }))
     }

@@ -27,6 +27,7 @@ mod fit;
 mod fitting;
 mod floor;
 mod hints;
+mod input_noise;
 mod interval;
 mod law_of_record;
 mod levels;

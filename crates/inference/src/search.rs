@@ -11,7 +11,10 @@ use crate::null::Null;
 use crate::scene::{Given, Scene};
 
 /// Chance with which the screen may raise a false alarm, and the smooth test.
-pub(crate) const ALARM: [f64; 2] = [0.05, 0.006];
+pub(crate) const ALARM: [f64; 2] = [0.03, 0.006];
+/// Log evidence from which the first effect is worth naming: before any data it is seven times as likely that something is missing in a model of a real muscle
+/// as that nothing is. That a second effect is missing too is no more likely than not.
+pub(crate) const WORTH: [f64; 2] = [-2.0, 0.0];
 /// Effects that are added at most: a misfit that takes more is one that the catalogue doesn't hold.
 const MOST_EFFECTS: usize = 3;
 /// Hypotheses whose linear evidence is this much below the best are not fitted.
@@ -160,16 +163,19 @@ impl Given<'_> {
     /// The stage that a hypothesis leads to, and whether the step stands out of what remains; none if it isn't worth its price, or nothing can be seen
     /// from there.
     fn step(&self, stage: &Stage, tried: &Tried, confirmed: &Confirmed) -> Option<(Stage, bool)> {
-        if tried.log_evidence <= 0.0 {
+        let worth = WORTH[usize::from(!stage.added.is_empty())];
+        let effects = &stage.scene.showings.effects;
+        let new: Vec<Arc<dyn Effect>> =
+            tried.hypothesis.effects.iter().map(|i| Arc::clone(&effects[*i].effect)).collect();
+        if tried.log_evidence <= worth || confirmed.is_absurd(&new) {
             return None;
         }
         let mut added = stage.added.clone();
-        let effects = &stage.scene.showings.effects;
-        added.extend(tried.hypothesis.effects.iter().map(|i| Arc::clone(&effects[*i].effect)));
+        added.extend(new);
         let gain = stage.confirmed.cost() - confirmed.cost();
         let next = self.stage(added, confirmed.clone()).ok()?;
         // Where something unknown remains, its scatter counts as noise: a step must stand out of that too.
-        let stands_out = tempered(tried.log_evidence, gain, next.scatter()) > 0.0;
+        let stands_out = tempered(tried.log_evidence, gain, next.scatter()) > worth;
         Some((next, stands_out))
     }
 

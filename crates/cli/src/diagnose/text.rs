@@ -77,7 +77,7 @@ fn measured(out: &mut String, diagnosis: &Diagnosis) {
 }
 
 /// The verdict in plain words, and each effect with its class and numbers.
-fn verdict(out: &mut String, diagnosis: &Diagnosis) {
+pub(crate) fn verdict(out: &mut String, diagnosis: &Diagnosis) {
     out.push('\n');
     let mut missing = diagnosis.missing.iter();
     for line in headlines(diagnosis) {
@@ -120,7 +120,7 @@ fn found(out: &mut String, missing: &Missing, is_claimed: bool) {
 }
 
 /// Errors from the base to the last effect, as `bulge compare` prints them.
-fn ladder(out: &mut String, diagnosis: &Diagnosis) {
+pub(crate) fn ladder(out: &mut String, diagnosis: &Diagnosis) {
     let base = base_name(diagnosis);
     let name = |step: &LadderStep| step.added.clone().unwrap_or_else(|| base.clone());
     let width = diagnosis.ladder.iter().map(|step| name(step).len()).max().unwrap_or(0).max(14);

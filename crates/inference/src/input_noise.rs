@@ -1,0 +1,116 @@
+//! Noise of the inputs where no data sheet states it: what the scatter of the rows says, which is larger where the force is steeper.
+//!
+//! ```text
+//! s_i^2 = w (1 + k (dF/dx_i)^2 / mean),    x the contraction or the pressure;   w and k by maximum likelihood on what a saturated model leaves
+//! ```
+//! The likelihood ratio against k = 0 is divided by what heavy tails add to its scatter, (kurtosis - 1)/2, before it is believed.
+
+use crate::dot::dot;
+
+/// Ratios k that are tried, evenly on a logarithmic scale.
+const RATIOS: (f64, f64, u32) = (0.02, 200.0, 60);
+/// Likelihood ratio from which the scatter is not the same everywhere: one chance in a thousand (chi-squared, one degree of freedom).
+const CLEAR: f64 = 10.83;
+/// Rows below which nothing is said.
+const FEWEST: usize = 60;
+/// Kurtosis of normal numbers.
+const NORMAL: f64 = 3.0;
+
+/// Variance of each row from noise of an input \[N^2\]; none if the scatter is the same everywhere.
+///
+/// - `residual`: measured less predicted force \[N\],
+/// - `design`: orthonormal columns of a saturated model,
+/// - `slopes`: derivative of the force by each of the inputs,
+/// - `counts`: how many readings each row is the mean of.
+pub(crate) fn input_noise(
+    residual: &[f64],
+    design: &[Vec<f64>],
+    slopes: [&[f64]; 2],
+    counts: &[f64],
+) -> Option<Vec<f64>> {
+    if residual.len() < FEWEST {
+        return None;
+    }
+    let squares = left(residual, design);
+    let fits = slopes.map(|slope| {
+        let shape: Vec<f64> = slope.iter().zip(counts).map(|(s, count)| s * s / count).collect();
+        let mean = shape.iter().sum::<f64>() / shape.len() as f64;
+        let shape: Vec<f64> = shape.iter().map(|s| s / mean).collect();
+        shape.iter().all(|s| s.is_finite()).then(|| fitted(&squares, &shape)).flatten()
+    });
+    let best = fits.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (best.0 > CLEAR).then_some(best.1)
+}
+
+/// Squares of what the columns leave, each made up for what it lost to them.
+fn left(residual: &[f64], design: &[Vec<f64>]) -> Vec<f64> {
+    let mut left = residual.to_vec();
+    let mut free = vec![1.0; left.len()];
+    for column in design {
+        let part = dot(column, residual);
+        for ((value, free), c) in left.iter_mut().zip(&mut free).zip(column) {
+            *value -= part * c;
+            *free -= c * c;
+        }
+    }
+    left.iter().zip(&free).map(|(value, free)| value * value / free.max(0.05)).collect()
+}
+
+/// Likelihood ratio and variances at the best ratio.
+fn fitted(squares: &[f64], shape: &[f64]) -> Option<(f64, Vec<f64>)> {
+    let n = squares.len() as f64;
+    let of = |ratio: f64| {
+        let scale = squares.iter().zip(shape).map(|(r, s)| r / (1.0 + ratio * s)).sum::<f64>() / n;
+        let logs: f64 = shape.iter().map(|s| (1.0 + ratio * s).ln()).sum();
+        (n * scale.ln() + logs, scale)
+    };
+    let (low, high, count) = RATIOS;
+    let ratios = (0..count).map(|i| low * (high / low).powf(f64::from(i) / f64::from(count - 1)));
+    let (ratio, (deviance, scale)) =
+        ratios.map(|ratio| (ratio, of(ratio))).min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
+    let fourth = squares.iter().zip(shape).map(|(r, s)| (r / (scale * (1.0 + ratio * s))).powi(2));
+    let kurtosis = (fourth.sum::<f64>() / n).max(NORMAL);
+    let clear = (of(0.0).0 - deviance) * (NORMAL - 1.0) / (kurtosis - 1.0);
+    Some((clear, shape.iter().map(|s| scale * ratio * s).collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    fn steep(n: usize) -> Vec<f64> {
+        (0..n).map(|i| 1.0 / (0.05 + i as f64 / n as f64)).collect()
+    }
+
+    fn scatter(n: usize, input: f64, tails: bool) -> Vec<f64> {
+        let mut random = Random::new(4, 0);
+        let slope = steep(n);
+        (0..n)
+            .map(|i| {
+                // One in ten is three times as large.
+                let wide = if tails && random.uniform() < 0.1 { 3.0 } else { 1.0 };
+                wide * random.normal() + input * slope[i] * random.normal()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn scatter_that_grows_with_the_slope_is_found_with_its_size() {
+        let n = 600;
+        let (slope, flat, ones) = (steep(n), vec![1.0; n], vec![1.0; n]);
+        let found = input_noise(&scatter(n, 0.4, false), &[], [&slope, &flat], &ones).unwrap();
+        let sd = (found[0] / (slope[0] * slope[0])).sqrt();
+        assert!((0.3..0.5).contains(&sd), "{sd}");
+    }
+
+    #[test]
+    fn scatter_that_is_the_same_everywhere_is_left_alone() {
+        let n = 600;
+        let (slope, flat, ones) = (steep(n), vec![1.0; n], vec![1.0; n]);
+        for tails in [false, true] {
+            assert!(input_noise(&scatter(n, 0.0, tails), &[], [&slope, &flat], &ones).is_none());
+        }
+        assert!(input_noise(&[1.0; 20], &[], [&[1.0; 20], &[1.0; 20]], &[1.0; 20]).is_none());
+    }
+}

@@ -1,0 +1,97 @@
+//! Equilibria that are held: exact where they were solved, to first order beside it, and shared with models that leave the muscle as it is.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
+
+use bulge_effects::{Catalogue, Moment};
+use bulge_model::{Model, Record, Wanted, Warm};
+use bulge_muscles::from_toml;
+
+const THETA: [f64; 3] = [0.0102, -0.02, 1e-4];
+
+fn model(effects: &[&str]) -> Model {
+    let file = "name = \"b\"\nkind = \"braided\"\nlength = \"300 mm\"\nradius = \"10 mm\"\nwall = \"1.8 mm\"\n\
+                braid_angle = \"28.6 deg\"\nends = \"clamped\"\n";
+    let catalogue = Catalogue::builtin();
+    let base = Model::new(&from_toml(file, "braid").unwrap());
+    effects.iter().fold(base, |model, name| model.with(catalogue.find(name).unwrap(), None).unwrap())
+}
+
+/// Slow strokes at three pressures: so many rows that a lattice is worth its while.
+fn record() -> Record {
+    let moment = |i: u32| Moment {
+        direction: 1.0,
+        begins: i.is_multiple_of(200),
+        ..Moment::at_rest(2e5 + 1e5 * f64::from(i / 200), 0.01 + 0.000_8 * f64::from(i % 200))
+    };
+    let sweeps = (0..3).map(|i| 200 * i..200 * (i + 1)).collect();
+    Record::from_moments((0..600).map(moment).collect(), vec![0.0; 600], sweeps).unwrap()
+}
+
+fn base() -> Model {
+    model(&["radius-error", "braid-angle-error", "length-zero-error"])
+}
+
+fn wanted() -> Wanted {
+    Wanted { parameters: vec![0, 1, 2], readings: false }
+}
+
+/// The shape changed by a part of what a data sheet leaves open, and a number of the input as well.
+fn moved(part: f64) -> Vec<f64> {
+    vec![THETA[0] * (1.0 + 0.01 * part), THETA[1] + 0.003 * part, THETA[2] + 2e-4 * part]
+}
+
+#[test]
+fn what_is_held_is_exact_where_it_was_solved() {
+    let (model, record) = (base(), record());
+    let warm = Warm::new();
+    warm.hold();
+    let solved = model.evaluate_warm(&record, &THETA, &wanted(), &warm).unwrap();
+    assert!(warm.is_held());
+    assert_eq!(solved, model.evaluate_warm(&record, &THETA, &wanted(), &warm).unwrap());
+    // Inputs are not linear in anything: only the shape is.
+    let shifted = vec![THETA[0], THETA[1], 5e-4];
+    let held = model.evaluate_warm(&record, &shifted, &wanted(), &warm).unwrap();
+    let full = model.evaluate(&record, &shifted, &wanted()).unwrap();
+    for (held, full) in held.force.iter().zip(&full.force) {
+        assert!((held - full).abs() < 1e-6 * 1500.0, "{held} {full}");
+    }
+    warm.release();
+    assert!(!warm.is_held());
+}
+
+#[test]
+fn beside_it_the_error_falls_with_the_square() {
+    let (model, record) = (base(), record());
+    let error = |part: f64| {
+        let warm = Warm::new();
+        warm.hold();
+        model.evaluate_warm(&record, &THETA, &wanted(), &warm).unwrap();
+        let held = model.evaluate_warm(&record, &moved(part), &Wanted::default(), &warm).unwrap();
+        let full = model.evaluate(&record, &moved(part), &Wanted::default()).unwrap();
+        held.force.iter().zip(&full.force).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let errors = [1.0, 0.5, 0.25].map(error);
+    let order = (errors[0] / errors[2]).log2() / 2.0;
+    assert!((order - 2.0).abs() < 0.1 && errors[0] < 2.0 && errors[0] > 0.01, "{errors:?}");
+}
+
+#[test]
+fn what_is_shared_serves_the_same_muscle_only() {
+    let record = record();
+    let warm = Warm::new();
+    warm.hold();
+    let base = base();
+    base.evaluate_warm(&record, &THETA, &wanted(), &warm).unwrap();
+    let all = ["radius-error", "braid-angle-error", "length-zero-error"];
+    for (effect, value) in
+        [("coulomb-friction", 8.0), ("bladder-elasticity", 2e5), ("pressure-offset", 500.0)]
+    {
+        let more = model(&[&all[..], &[effect]].concat());
+        let theta = [&THETA[..], &[value]].concat();
+        let shared = more.evaluate_warm(&record, &theta, &Wanted::default(), &warm.shared()).unwrap();
+        let full = more.evaluate(&record, &theta, &Wanted::default()).unwrap();
+        for (shared, full) in shared.force.iter().zip(&full.force) {
+            assert!((shared - full).abs() < 1e-6 * 1500.0, "{effect}: {shared} {full}");
+        }
+    }
+}
