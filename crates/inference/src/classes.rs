@@ -53,6 +53,8 @@ pub(crate) struct Class {
     pub(crate) detectability: f64,
     /// How much more than chance the misfit of the whole model scatters, as a ratio of variances.
     pub(crate) scatter: f64,
+    /// Whether other effects were named besides.
+    pub(crate) is_further: bool,
     pub(crate) rivals: Vec<Rival>,
 }
 
@@ -62,7 +64,15 @@ impl Class {
         let effect = Arc::clone(&stage.added[place]);
         let scatter = stage.scatter();
         let gain = (base.confirmed.cost() - stage.confirmed.cost()).max(0.0) / scatter;
-        Self { effect, log_evidence: 0.5 * gain, detectability: gain.sqrt(), scatter, rivals: Vec::new() }
+        let is_further = stage.added.len() > 1;
+        Self {
+            effect,
+            log_evidence: 0.5 * gain,
+            detectability: gain.sqrt(),
+            scatter,
+            is_further,
+            rivals: Vec::new(),
+        }
     }
 }
 
@@ -114,7 +124,8 @@ impl Given<'_> {
             })
             .collect();
         let detectability = dot(&signal, &signal).sqrt() / scatter.sqrt();
-        Some((Class { effect, log_evidence, detectability, scatter, rivals }, without))
+        let is_further = stage.added.len() > 1;
+        Some((Class { effect, log_evidence, detectability, scatter, is_further, rivals }, without))
     }
 
     /// A stage with the best rival instead of an effect, where that is clearly better and explains the data no less.
@@ -128,6 +139,9 @@ impl Given<'_> {
         let mut added = stage.added.clone();
         added.remove(place);
         added.push(Arc::clone(&rival.effect));
+        if rival.fit.as_ref()?.is_absurd(&[Arc::clone(&rival.effect)]) {
+            return None;
+        }
         let other = self.stage(added, rival.fit.clone()?).ok()?;
         (other.adequate || !stage.adequate).then_some(other)
     }
@@ -140,7 +154,7 @@ impl Given<'_> {
         stage: &Stage,
         others: &[Arc<dyn Effect>],
     ) -> Result<Confirmed, ModelError> {
-        let carried = self.confirm(base, others, Some(&stage.confirmed), &[]);
+        let carried = self.confirm(base, others, Some(stage.confirmed.numbers()), &[]);
         let mut best = carried;
         for part in [1.0, 0.1] {
             if best.as_ref().is_ok_and(|found| found.converged) {

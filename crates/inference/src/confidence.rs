@@ -52,7 +52,7 @@ impl Confidence {
             |t: &&Tried| t.hypothesis.effects.iter().any(|i| effects[*i].effect.card().name == effect);
         let all: f64 = tried.iter().map(weight).sum();
         let own: f64 = tried.iter().filter(holds).map(weight).sum();
-        let share = if all > 0.0 { own / all } else { 0.0 };
+        let share = if all > 0.0 { (1.0 - OUTSIDE) * own / all } else { 0.0 };
         Self { named: share, class: share, interval: [0.0, 1.0], claims: 0 }
     }
 }
@@ -75,6 +75,7 @@ pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &
     let Some(named) = place(class.effect.card().name) else {
         return Confidence { named: 0.0, class: 0.0, interval: [0.0, 1.0], claims: 0 };
     };
+    let worth = WORTH[usize::from(class.is_further)];
     let tickets: Vec<f64> = (0..scene.showings.effects.len()).map(|i| ticket(scene, i)).collect();
     let truths = truths(scene, &found, &tickets, class, named);
     let family = class.effect.card().family;
@@ -88,7 +89,7 @@ pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &
             for _ in 0..PER_STREAM {
                 let truth = drawn(&truths, random.uniform());
                 let z = misfit(given, scene, truth, &mut random);
-                let Some(claim) = Claim::of(scene, null, &tickets, &z) else { continue };
+                let Some(claim) = Claim::of(scene, null, &tickets, worth, &z) else { continue };
                 if claim.named != named || !is_as_clear(claim.lead(scene), lead) {
                     continue;
                 }
@@ -208,11 +209,13 @@ struct Claim {
     evidence: Vec<f64>,
     /// What the named effect would change.
     signal: Vec<f64>,
+    /// Log evidence from which an effect counts.
+    worth: f64,
 }
 
 impl Claim {
     /// The decision on a misfit: none if nothing would be named.
-    fn of(scene: &Scene, null: &Null, tickets: &[f64], z: &[f64]) -> Option<Self> {
+    fn of(scene: &Scene, null: &Null, tickets: &[f64], worth: f64, z: &[f64]) -> Option<Self> {
         let statistics = Statistics::of(z, &scene.candidates, &[]);
         if null.chance(&statistics)[0] >= ALARM[0] {
             return None;
@@ -234,7 +237,7 @@ impl Claim {
             }
         }
         let named = (0..evidence.len()).max_by(|a, b| evidence[*a].total_cmp(&evidence[*b]))?;
-        let (_, candidate, sizes) = best.filter(|_| evidence[named] > WORTH[0])?;
+        let (_, candidate, sizes) = best.filter(|_| evidence[named] > worth)?;
         let length = candidate.columns.iter().map(Vec::len).max().unwrap_or(0);
         let mut signal = vec![0.0; length];
         for (column, size) in candidate.columns.iter().zip(&sizes) {
@@ -242,7 +245,7 @@ impl Claim {
                 *value += size * c;
             }
         }
-        Some(Self { named, evidence, signal })
+        Some(Self { named, evidence, signal, worth })
     }
 
     /// Log evidence over that of the next effect of another family, and over none.
@@ -274,7 +277,7 @@ impl Claim {
     fn holds(&self, scene: &Scene, truth: &Truth<'_>) -> bool {
         self.is_same(scene, truth)
             || truth.effect.is_some_and(|effect| {
-                self.evidence[effect] > WORTH[0]
+                self.evidence[effect] > self.worth
                     && (self.evidence[effect] > self.evidence[self.named] - EVIDENCE
                         || self.evidence[effect] > self.evidence[self.named] - DECIDED
                             && self.separation(scene, effect) < SEPARATION)

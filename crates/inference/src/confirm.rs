@@ -37,6 +37,11 @@ pub(crate) struct Confirmed {
 }
 
 impl Confirmed {
+    /// The model and its numbers, for others to start from.
+    pub(crate) fn numbers(&self) -> (&Model, &[f64]) {
+        (&self.prepared.model, &self.theta)
+    }
+
     /// Whether a number of these effects is at the end of all that was searched, and beyond what is plausible: that explains nothing.
     pub(crate) fn is_absurd(&self, effects: &[Arc<dyn Effect>]) -> bool {
         let model = &self.prepared.model;
@@ -59,7 +64,7 @@ impl Given<'_> {
         &self,
         base: &Model,
         effects: &[Arc<dyn Effect>],
-        from: Option<&Confirmed>,
+        from: Option<(&Model, &[f64])>,
         starts: &[Vec<f64>],
     ) -> Result<Confirmed, ModelError> {
         let mut model = base.clone();
@@ -68,8 +73,8 @@ impl Given<'_> {
         }
         let prepared = with_nuisances(&model, self.catalogue)?;
         let mut first = prepared.model.start();
-        if let Some(from) = from {
-            carry_over(&from.prepared.model, &from.theta, &prepared.model, &mut first);
+        if let Some((model, numbers)) = from {
+            carry_over(model, numbers, &prepared.model, &mut first);
         }
         let own: usize = base.parameters().len();
         let all: usize = model.parameters().len() - own;

@@ -81,6 +81,8 @@ struct Ground {
     averaged: Averaged,
     record: Record,
     input_variances: Vec<f64>,
+    /// Mean variance of a single row from noise of the inputs that data sheets state \[N^2\].
+    stated: f64,
     law: Option<NoiseLaw>,
 }
 
@@ -100,17 +102,22 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
     };
     let used = vec![true; ground.record.len()];
     let whitening = Whitening::new(law, &ground.record, &used, &ground.input_variances)?;
+    let residual: Vec<f64> =
+        analysis.record.force().iter().zip(&base.force).map(|(measured, force)| measured - force).collect();
     let given = Given {
         catalogue: &options.base.catalogue,
         record: &ground.record,
         whitening: &whitening,
         law,
+        row_n: (white_of_row(law, &ground, &residual) - ground.stated).max(law.white_n.powi(2)).sqrt(),
         seed: options.seed,
+        tolerance_n: options.tolerance_n,
         only: None,
     };
     let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
     progress.at(0.25, "the catalogue");
-    let mut search = given.search(&model).map_err(|error| analysis.about(error))?;
+    let near = (&base.prepared.model, &base.theta[..]);
+    let mut search = given.search(&model, near).map_err(|error| analysis.about(error))?;
     progress.at(0.6, "rivals");
     let mut judged = classes(&given, &model, &search);
     for _ in 0..MOST_SWAPS {
@@ -123,25 +130,23 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
     progress.at(0.75, "the next experiment");
     let next = next_experiment(&given, &judged, &Limits::of(&ground.record, options.limits));
     progress.at(0.85, "the ladder");
-    let last = &search.stages[search.stages.len() - 1];
-    let mut compared = options.base.clone();
-    compared.effects.extend(last.added.iter().map(Arc::clone));
-    let best = &last.confirmed;
-    let comparison = compare_near(data, muscle, &compared, (&best.prepared.model, &best.theta))?;
-    let residual: Vec<f64> =
-        analysis.record.force().iter().zip(&base.force).map(|(measured, force)| measured - force).collect();
     let classes: Vec<(Class, Confidence)> =
         judged.into_iter().map(|judged| (judged.class, judged.confidence)).collect();
+    let sd_n = row_sd(law, &ground, &residual);
     let found = Findings {
         given: &given,
         search: &search,
         classes: &classes,
-        sd_n: row_sd(law, &ground, &residual),
-        effective_rows: whitening.effective_rows(),
+        sd_n,
+        effective_rows: effective_rows(law, &ground, &whitening, sd_n),
         known: options.base.effects.len(),
         tolerance_n: options.tolerance_n,
         next,
     };
+    let mut compared = options.base.clone();
+    compared.effects.extend(found.shown().iter().map(Arc::clone));
+    let last = &search.stages[search.stages.len() - 1].confirmed;
+    let comparison = compare_near(data, muscle, &compared, last.numbers())?;
     progress.at(1.0, "done");
     Ok(document(muscle, &found, comparison))
 }
@@ -169,6 +174,10 @@ fn ground(
         .map(|((p, e), count)| ((p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)) / count)
         .collect();
     let counts: Vec<f64> = averaged.counts().collect();
+    let stated = mean_of_rows(&input_variances, &counts);
+    let residual: Vec<f64> =
+        analysis.record.force().iter().zip(&base.force).map(|(measured, force)| measured - force).collect();
+    let extra = unequal(&averaged, &counts, &residual, analysis.record.force_sd());
     let source = Source {
         catalogue: &options.base.catalogue,
         muscle: analysis.muscle,
@@ -176,11 +185,12 @@ fn ground(
         input_variances: &input_variances,
         slopes: [&at_means.by_contraction, &at_means.by_pressure],
         counts: &counts,
+        unequal: &extra,
         pure_error: analysis.data.repeats(analysis.muscle.length().si()).pure_error(),
     };
     let found = source.law(&base.prepared, &base.theta).map_err(|error| analysis.about(error))?;
     let (law, input_variances) = found.map_or((None, input_variances), |(law, inputs)| (Some(law), inputs));
-    Ok(Ground { averaged, record, input_variances, law })
+    Ok(Ground { averaged, record, input_variances, stated, law })
 }
 
 /// Each named effect with its rivals, and how often such a claim is right.
@@ -200,13 +210,44 @@ fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
     (0..last.added.len()).map(of).collect()
 }
 
+/// Variances by which the means differ, on top of what they share \[N^2\]: a mean of fewer rows knows less, and a file may state a scatter for each row.
+fn unequal(averaged: &Averaged, counts: &[f64], residual: &[f64], stated: Option<&[f64]>) -> Vec<f64> {
+    let (sum, freedom) = averaged.within(residual);
+    let within = if freedom > 0.0 { sum / freedom } else { 0.0 };
+    let most = counts.iter().copied().fold(1.0, f64::max);
+    let squares = stated.map(|sd| averaged.means(&sd.iter().map(|sd| sd * sd).collect::<Vec<_>>()));
+    let least = squares.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    let of = |(place, count): (usize, &f64)| {
+        let own = squares.as_ref().map_or(0.0, |squares| (squares[place] - least) / count);
+        within * (1.0 / count - 1.0 / most) + own
+    };
+    counts.iter().enumerate().map(of).collect()
+}
+
+/// Rows that count as independent: as many single rows as would know a constant as well as the means do.
+fn effective_rows(law: &NoiseLaw, ground: &Ground, whitening: &Whitening, sd_n: f64) -> f64 {
+    let means = ground.input_variances.len().max(1) as f64;
+    let inputs = ground.input_variances.iter().sum::<f64>() / means;
+    let of_mean = law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs;
+    let rows: f64 = ground.averaged.counts().sum();
+    if of_mean > 0.0 { (whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
+}
+
 /// Standard deviation of a single row: the law of the means, what the means have averaged, and what noise of pressure and contraction makes of it.
 fn row_sd(law: &NoiseLaw, ground: &Ground, residual: &[f64]) -> f64 {
-    let means = ground.input_variances.iter().zip(ground.averaged.counts());
-    let inputs = means.map(|(variance, count)| variance * count).sum::<f64>()
-        / ground.input_variances.len().max(1) as f64;
+    (white_of_row(law, ground, residual) + law.correlated_n.powi(2) + law.offset_n.powi(2)).sqrt()
+}
+
+/// Variance of a single row without what it shares with its neighbours \[N^2\].
+fn white_of_row(law: &NoiseLaw, ground: &Ground, residual: &[f64]) -> f64 {
+    let counts: Vec<f64> = ground.averaged.counts().collect();
     let (sum, freedom) = ground.averaged.within(residual);
-    let own = law.white_n.powi(2) + inputs;
-    let white = if freedom > 0.0 { (sum / freedom).max(own) } else { own };
-    (white + law.correlated_n.powi(2) + law.offset_n.powi(2)).sqrt()
+    let own = law.white_n.powi(2) + mean_of_rows(&ground.input_variances, &counts);
+    if freedom > 0.0 { (sum / freedom).max(own) } else { own }
+}
+
+/// Mean variance of single rows from those of means.
+fn mean_of_rows(variances: &[f64], counts: &[f64]) -> f64 {
+    let sum: f64 = variances.iter().zip(counts).map(|(variance, count)| variance * count).sum();
+    sum / variances.len().max(1) as f64
 }

@@ -24,6 +24,8 @@ pub struct Diagnosis {
     pub says: String,
     /// Effects that are missing, in the order of adding.
     pub missing: Vec<Missing>,
+    /// Where the verdict is *unknown*: effects that lower the error and leave the structure. Nothing is claimed of them.
+    pub nearest: Vec<Missing>,
     /// All effects that were looked at.
     pub candidates: Vec<CandidateResult>,
     /// Errors from the base to the last effect.
@@ -43,6 +45,14 @@ pub struct Diagnosis {
     /// The comparison with the effects that were found, for curves and plots; its ladder is empty where there were too few rows.
     #[serde(skip)]
     pub comparison: Comparison,
+}
+
+impl Diagnosis {
+    /// The effects that were added: those that are missing, or where the verdict is *unknown* the nearest ones.
+    #[must_use]
+    pub fn added(&self) -> &[Missing] {
+        if self.missing.is_empty() { &self.nearest } else { &self.missing }
+    }
 }
 
 /// The four verdicts.

@@ -54,12 +54,13 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
     let Findings { given, search, classes, sd_n, .. } = *found;
     let (verdict, says) = found.verdict();
     // Where no effect is named, none is shown: what is left is what the base leaves.
-    let named = matches!(verdict, Verdict::Missing | Verdict::Unknown);
+    let named = shows_effects(verdict);
     let classes = if named { classes } else { &[] };
     let last = if named { found.last() } else { &search.stages[0] };
     let adequate = last.adequate || verdict == Verdict::Adequate;
     let (misfit_n, misfit_interval_n) = misfit(&last.scene, given.seed);
     let left = located(&last.scene);
+    let added = || classes.iter().map(|(class, sure)| found.missing(class, *sure)).collect::<Vec<_>>();
     Diagnosis {
         schema: "bulge.diagnosis/1",
         muscle: muscle.name().to_owned(),
@@ -79,8 +80,9 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
         },
         verdict,
         says,
-        missing: classes.iter().map(|(class, sure)| found.missing(class, *sure)).collect(),
-        candidates: found.candidates(classes),
+        missing: if verdict == Verdict::Missing { added() } else { Vec::new() },
+        nearest: if verdict == Verdict::Unknown { added() } else { Vec::new() },
+        candidates: found.candidates(classes, verdict == Verdict::Missing),
         ladder: found.ladder(&comparison, last.added.len(), adequate),
         noise_floor_n: sd_n,
         r#where: located(&search.stages[0].scene),
@@ -96,6 +98,10 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
         warnings: comparison.warnings.clone(),
         comparison,
     }
+}
+
+const fn shows_effects(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Missing | Verdict::Unknown)
 }
 
 /// Too few rows for any statement.
@@ -119,6 +125,7 @@ pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnos
             "these data can't tell: {reason}. Measure at least three pressures with 20 rows each, shortening and lengthening, with a column `time`"
         ),
         missing: Vec::new(),
+        nearest: Vec::new(),
         candidates: Vec::new(),
         ladder: Vec::new(),
         noise_floor_n: stated,
@@ -184,6 +191,11 @@ const fn source(source: NoiseSource) -> &'static str {
 }
 
 impl Findings<'_> {
+    /// Effects that the answer shows as added.
+    pub(crate) fn shown(&self) -> &[Arc<dyn Effect>] {
+        if shows_effects(self.verdict().0) { &self.last().added } else { &[] }
+    }
+
     fn last(&self) -> &Stage {
         &self.search.stages[self.search.stages.len() - 1]
     }
@@ -296,7 +308,10 @@ impl Findings<'_> {
             self.given.record.moments().iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], m| {
                 [l.min(m.contraction), h.max(m.contraction)]
             });
-        let is_short = card.family == HYSTERESIS && distance.is_some_and(|d| d < SHORT * (high - low));
+        // Beside Coulomb's friction it is what that lacks.
+        let has_coulomb = confirmed.prepared.model.effects().iter().any(|c| c.effect.card().name == COULOMB);
+        let is_short =
+            card.family == HYSTERESIS && !has_coulomb && distance.is_some_and(|d| d < SHORT * (high - low));
         if is_short { COULOMB.to_owned() } else { card.name.to_owned() }
     }
 
@@ -393,7 +408,7 @@ fn rival_result(rival: &Rival, class: &Class) -> RivalResult {
 
 impl Findings<'_> {
     /// Every effect of the catalogue, beside the base.
-    fn candidates(&self, classes: &[(Class, Confidence)]) -> Vec<CandidateResult> {
+    fn candidates(&self, classes: &[(Class, Confidence)], is_claimed: bool) -> Vec<CandidateResult> {
         let given = self.given;
         let stage = &self.search.stages[0];
         let scene = &stage.scene;
@@ -406,9 +421,12 @@ impl Findings<'_> {
             let tried = stage.tried.iter().find(|t| t.hypothesis.effects == [place]);
             let is_rival =
                 |class: &Class| class.rivals.iter().any(|r| r.in_class && r.effect.card().name == name);
-            let status = if classes.iter().any(|(class, _)| self.label(&class.effect) == name) {
+            let is_named = classes.iter().any(|(class, _)| self.label(&class.effect) == name);
+            let status = if is_named && is_claimed {
                 "confirmed"
-            } else if classes.iter().any(|(class, _)| is_rival(class) || class.effect.card().name == name) {
+            } else if is_named
+                || classes.iter().any(|(class, _)| is_rival(class) || class.effect.card().name == name)
+            {
                 "rival"
             } else if screened.untestable.is_some() || alone.is_none() {
                 "not-testable"
@@ -433,7 +451,10 @@ impl Findings<'_> {
                 log_evidence: fitted.or(alone.map(|h| h.log_evidence)).unwrap_or(0.0),
                 score: alone.map_or(0.0, |h| h.gain),
                 status,
-                detection_limit: number.and_then(|n| Some(limit? / n.factor)),
+                // What is there or not has no size.
+                detection_limit: number
+                    .filter(|_| candidate.is_some_and(|c| !c.whole))
+                    .and_then(|n| Some(limit? / n.factor)),
                 unit: number.map_or(String::new(), |n| n.unit.to_owned()),
                 detection_limit_n: limit.zip(rms).map(|(limit, rms)| limit * rms),
                 compensation: candidate.map_or(1.0, |c| c.compensated),

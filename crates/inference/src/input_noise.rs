@@ -3,7 +3,10 @@
 //! ```text
 //! s_i^2 = w (1 + k (dF/dx_i)^2 / mean),    x the contraction or the pressure;   w and k by maximum likelihood on what a saturated model leaves
 //! ```
-//! The likelihood ratio against k = 0 is divided by what heavy tails add to its scatter, (kurtosis - 1)/2, before it is believed.
+//! Along a path the scatter is that of neighbours against each other, (r_i - r_(i-1))^2/2, which slow noise leaves alone. The likelihood ratio against k = 0 is divided by what heavy
+//! tails and shared neighbours add to its scatter, (kurtosis - 1)/2 and 3/2, before it is believed.
+
+use std::ops::Range;
 
 use crate::dot::dot;
 
@@ -13,17 +16,20 @@ const RATIOS: (f64, f64, u32) = (0.02, 200.0, 60);
 const CLEAR: f64 = 10.83;
 /// Rows below which nothing is said.
 const FEWEST: usize = 60;
+/// Squares of neighbouring differences share a row: sums of them scatter more by this factor in variance.
+const SHARED: f64 = 1.5;
 /// Kurtosis of normal numbers.
 const NORMAL: f64 = 3.0;
 
 /// Variance of each row from noise of an input \[N^2\]; none if the scatter is the same everywhere.
 ///
-/// - `residual`: measured less predicted force \[N\],
+/// - `residual`: measured less predicted force \[N\], `sweeps` of rows in the order of measurement (none in a static map),
 /// - `design`: orthonormal columns of a saturated model,
 /// - `slopes`: derivative of the force by each of the inputs,
 /// - `counts`: how many readings each row is the mean of.
 pub(crate) fn input_noise(
     residual: &[f64],
+    sweeps: &[Range<usize>],
     design: &[Vec<f64>],
     slopes: [&[f64]; 2],
     counts: &[f64],
@@ -31,18 +37,36 @@ pub(crate) fn input_noise(
     if residual.len() < FEWEST {
         return None;
     }
-    let squares = left(residual, design);
+    let rows = left(residual, design);
+    let neighbours = |values: &[f64], of: fn(f64, f64) -> f64| -> Vec<f64> {
+        let of_sweep = |sweep: &Range<usize>| {
+            values[sweep.clone()].windows(2).map(|w| of(w[0], w[1])).collect::<Vec<_>>()
+        };
+        sweeps.iter().flat_map(of_sweep).collect()
+    };
+    let is_path = !sweeps.is_empty();
+    let squares: Vec<f64> = if is_path {
+        neighbours(&rows, |a, b| 0.5 * (a - b) * (a - b))
+    } else {
+        rows.iter().map(|r| r * r).collect()
+    };
     let fits = slopes.map(|slope| {
         let shape: Vec<f64> = slope.iter().zip(counts).map(|(s, count)| s * s / count).collect();
         let mean = shape.iter().sum::<f64>() / shape.len() as f64;
         let shape: Vec<f64> = shape.iter().map(|s| s / mean).collect();
-        shape.iter().all(|s| s.is_finite()).then(|| fitted(&squares, &shape)).flatten()
+        if !shape.iter().all(|s| s.is_finite()) {
+            return None;
+        }
+        let of_squares = if is_path { neighbours(&shape, |a, b| 0.5 * (a + b)) } else { shape.clone() };
+        let (clear, variance) = fitted(&squares, &of_squares)?;
+        let clear = if is_path { clear / SHARED } else { clear };
+        Some((clear, shape.iter().map(|s| variance * s).collect::<Vec<f64>>()))
     });
     let best = fits.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0))?;
     (best.0 > CLEAR).then_some(best.1)
 }
 
-/// Squares of what the columns leave, each made up for what it lost to them.
+/// What the columns leave, each row made up for what it lost to them.
 fn left(residual: &[f64], design: &[Vec<f64>]) -> Vec<f64> {
     let mut left = residual.to_vec();
     let mut free = vec![1.0; left.len()];
@@ -53,11 +77,11 @@ fn left(residual: &[f64], design: &[Vec<f64>]) -> Vec<f64> {
             *free -= c * c;
         }
     }
-    left.iter().zip(&free).map(|(value, free)| value * value / free.max(0.05)).collect()
+    left.iter().zip(&free).map(|(value, free)| value / free.max(0.05).sqrt()).collect()
 }
 
-/// Likelihood ratio and variances at the best ratio.
-fn fitted(squares: &[f64], shape: &[f64]) -> Option<(f64, Vec<f64>)> {
+/// Likelihood ratio, and the variance where the shape is 1, at the best ratio.
+fn fitted(squares: &[f64], shape: &[f64]) -> Option<(f64, f64)> {
     let n = squares.len() as f64;
     let of = |ratio: f64| {
         let scale = squares.iter().zip(shape).map(|(r, s)| r / (1.0 + ratio * s)).sum::<f64>() / n;
@@ -71,7 +95,7 @@ fn fitted(squares: &[f64], shape: &[f64]) -> Option<(f64, Vec<f64>)> {
     let fourth = squares.iter().zip(shape).map(|(r, s)| (r / (scale * (1.0 + ratio * s))).powi(2));
     let kurtosis = (fourth.sum::<f64>() / n).max(NORMAL);
     let clear = (of(0.0).0 - deviance) * (NORMAL - 1.0) / (kurtosis - 1.0);
-    Some((clear, shape.iter().map(|s| scale * ratio * s).collect()))
+    Some((clear, scale * ratio))
 }
 
 #[cfg(test)]
@@ -95,13 +119,27 @@ mod tests {
             .collect()
     }
 
+    /// Columns as a saturated model has them: orthonormal, slow.
+    fn columns(n: usize) -> Vec<Vec<f64>> {
+        let wave = |k: usize| -> Vec<f64> {
+            let of = |i: usize| (std::f64::consts::PI * k as f64 * (i as f64 + 0.5) / n as f64).cos();
+            (0..n).map(|i| of(i) * (2.0 / n as f64).sqrt()).collect()
+        };
+        (1..40).map(wave).collect()
+    }
+
     #[test]
     fn scatter_that_grows_with_the_slope_is_found_with_its_size() {
-        let n = 600;
-        let (slope, flat, ones) = (steep(n), vec![1.0; n], vec![1.0; n]);
-        let found = input_noise(&scatter(n, 0.4, false), &[], [&slope, &flat], &ones).unwrap();
-        let sd = (found[0] / (slope[0] * slope[0])).sqrt();
-        assert!((0.3..0.5).contains(&sd), "{sd}");
+        let n = 4000;
+        // Means of four readings each.
+        let (slope, flat, fours) = (steep(n), vec![1.0; n], vec![4.0; n]);
+        for sweeps in [vec![], vec![0..n / 2, n / 2..n]] {
+            let found =
+                input_noise(&scatter(n, 0.4, false), &sweeps, &columns(n), [&flat, &slope], &fours).unwrap();
+            let sd = (found[n / 3] / (slope[n / 3] * slope[n / 3])).sqrt();
+            assert!((0.37..0.43).contains(&sd), "{sd}");
+            assert!((found[0] / found[n / 3] - (slope[0] / slope[n / 3]).powi(2)).abs() < 1e-9);
+        }
     }
 
     #[test]
@@ -109,8 +147,30 @@ mod tests {
         let n = 600;
         let (slope, flat, ones) = (steep(n), vec![1.0; n], vec![1.0; n]);
         for tails in [false, true] {
-            assert!(input_noise(&scatter(n, 0.0, tails), &[], [&slope, &flat], &ones).is_none());
+            let scatter = scatter(n, 0.0, tails);
+            assert!(input_noise(&scatter, &[], &[], [&slope, &flat], &ones).is_none());
         }
-        assert!(input_noise(&[1.0; 20], &[], [&[1.0; 20], &[1.0; 20]], &[1.0; 20]).is_none());
+        assert!(input_noise(&[1.0; 20], &[], &[], [&[1.0; 20], &[1.0; 20]], &[1.0; 20]).is_none());
+    }
+
+    #[test]
+    fn slow_noise_is_no_noise_of_the_inputs() {
+        let n = 2400;
+        let (slope, flat, ones) = (steep(n), vec![1.0; n], vec![1.0; n]);
+        let mut found = 0;
+        for seed in 0..40 {
+            let mut random = Random::new(seed, 1);
+            let mut slow = 0.0;
+            let noise: Vec<f64> = (0..n)
+                .map(|_| {
+                    // Twice the white noise, over 25 rows.
+                    slow = 0.96 * slow + 2.0 * (1.0 - 0.96_f64.powi(2)).sqrt() * random.normal();
+                    slow + random.normal()
+                })
+                .collect();
+            let sweeps = [0..n / 2, n / 2..n];
+            found += u32::from(input_noise(&noise, &sweeps, &columns(n), [&slope, &flat], &ones).is_some());
+        }
+        assert!(found <= 1, "{found} of 40");
     }
 }

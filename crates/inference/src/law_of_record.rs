@@ -46,6 +46,8 @@ pub(crate) struct Source<'a> {
     pub(crate) slopes: [&'a [f64]; 2],
     /// How many readings each mean has.
     pub(crate) counts: &'a [f64],
+    /// Variances by which the means differ for other reasons \[N^2\].
+    pub(crate) unequal: &'a [f64],
     pub(crate) pure_error: Option<PureError>,
 }
 
@@ -62,8 +64,11 @@ impl Source<'_> {
             self.pure_error.filter(|p| !self.record.is_path() && p.degrees_of_freedom >= ENOUGH_REPEATS)
         {
             let says = format!("repeated points, {:.0} degrees of freedom", pure.degrees_of_freedom);
-            let law = NoiseLaw::white(pure.sd_n, NoiseSource::Repeats, pure.degrees_of_freedom, says);
-            return Ok(Some((law, stated_inputs)));
+            // What the inputs scatter is in it.
+            let most = self.counts.iter().copied().fold(1.0, f64::max);
+            let sd_n = pure.sd_n / most.sqrt();
+            let law = NoiseLaw::white(sd_n, NoiseSource::Repeats, pure.degrees_of_freedom, says);
+            return Ok(Some((law, self.unequal.to_vec())));
         }
         let tangents = Tangents::of(prepared, theta, self.record)?;
         let residual = &tangents.residual;
@@ -75,10 +80,17 @@ impl Source<'_> {
         let left = n as f64 - design.len() as f64;
         let found = (left >= FEWEST)
             .then(|| {
+                let sweeps = if self.record.is_path() { self.record.sweeps() } else { &[] };
                 let is_stated = stated_inputs.iter().any(|variance| *variance > 0.0);
-                let shown =
-                    if is_stated { None } else { input_noise(residual, &design, self.slopes, self.counts) };
-                let inputs = shown.unwrap_or_else(|| stated_inputs.clone());
+                let shown = if is_stated {
+                    None
+                } else {
+                    input_noise(residual, sweeps, &design, self.slopes, self.counts)
+                };
+                let mut inputs = shown.unwrap_or_else(|| stated_inputs.clone());
+                for (variance, own) in inputs.iter_mut().zip(self.unequal) {
+                    *variance += own;
+                }
                 let rows: Vec<f64> =
                     (0..n).flat_map(|i| design.iter().map(move |column| column[i])).collect();
                 let law = NoiseLaw::estimate(self.record, &vec![true; n], &inputs, &rows, residual).ok()?;
@@ -111,7 +123,7 @@ fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> V
     }
     // What is least like all before enters first, so that few columns stand for many effects.
     let mut left: Vec<Vec<f64>> = effects.iter().map(|column| within(record, column)).collect();
-    while space.len() < effects_most.clamp(tangents.len() + 1, MOST) {
+    while space.len() < effects_most.min(MOST).max(tangents.len() + 1) {
         let new = |column: &Vec<f64>| space.outside(column).sqrt() / norm(column).max(f64::MIN_POSITIVE);
         let best = (0..left.len()).map(|i| (i, new(&left[i]))).max_by(|a, b| a.1.total_cmp(&b.1));
         let Some((place, _)) = best.filter(|best| best.1 > ALIKE) else { break };
@@ -119,7 +131,7 @@ fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> V
         enter_new(&mut space, &column);
     }
     for function in smooth(record) {
-        if space.len() >= most.clamp(tangents.len() + 1, MOST) {
+        if space.len() >= most.min(MOST).max(tangents.len() + 1) {
             break;
         }
         enter_new(&mut space, &within(record, &function.values));

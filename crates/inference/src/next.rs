@@ -57,9 +57,20 @@ impl Limits {
         let levels = Levels::of(record, &vec![true; record.len()]);
         let [low, high] = range(&|m| m.pressure);
         let kept = [levels.mean.first().copied().unwrap_or(low), levels.mean.last().copied().unwrap_or(high)];
-        let longest = record.moments().iter().map(|m| m.time).fold(0.0, f64::max);
-        let cycles = record.moments().iter().map(|m| m.cycle).fold(0.0, f64::max) + 1.0;
-        let period = (longest / cycles).clamp(1.0, 1e4);
+        // Cycles count on from sweep to sweep.
+        let mut periods: Vec<f64> = record
+            .sweeps()
+            .iter()
+            .map(|sweep| {
+                let rows = || record.moments()[sweep.clone()].iter();
+                let [first, last] = rows().fold([f64::INFINITY, 0.0], |[first, last]: [f64; 2], m| {
+                    [first.min(m.cycle), last.max(m.cycle)]
+                });
+                rows().map(|m| m.time).fold(0.0, f64::max) / ((last - first).max(0.0).floor() + 1.0)
+            })
+            .collect();
+        periods.sort_by(f64::total_cmp);
+        let period = periods.get(periods.len() / 2).map_or(60.0, |period| period.clamp(1.0, 1e4));
         Self {
             pressure_pa: stated.pressure_pa.unwrap_or(kept),
             contraction: stated.contraction.unwrap_or_else(|| range(&|m| m.contraction)),
@@ -98,7 +109,8 @@ struct Proposal {
 /// What experiments can be made.
 fn proposals(limits: &Limits) -> Vec<Proposal> {
     let [low, high] = limits.contraction;
-    let whole = [low.max(0.002), high];
+    // A loop must have a range; where the force has no bound at rest the model says so itself.
+    let whole = [low, high.max(low + 0.01)];
     let block = |pressures: usize, contraction: [f64; 2], path: Path, period: f64, cycles: u32| Block {
         path,
         cycles,
@@ -147,7 +159,11 @@ pub(crate) fn next_experiment(
     judged: &[Judged],
     limits: &Limits,
 ) -> Option<NextExperiment> {
-    let open = judged.iter().find(|j| j.class.rivals.iter().any(|rival| rival.in_class))?;
+    let is_open = |j: &&Judged| {
+        let family = j.class.effect.card().family;
+        j.class.rivals.iter().any(|rival| rival.in_class && rival.effect.card().family != family)
+    };
+    let open = judged.iter().find(is_open)?;
     let (with, without) = open.models.as_ref()?;
     let named = open.class.effect.card().name.to_owned();
     let own_family = open.class.effect.card().family;
@@ -221,7 +237,7 @@ fn least_separation(
     let model = &without.prepared.model;
     let readings = Wanted { parameters: Vec::new(), readings: true };
     let prediction = model.evaluate(&record, &without.theta, &readings).ok()?;
-    let noise = Noise::of(model.muscle(), given.law.white_n);
+    let noise = Noise::of(model.muscle(), given.row_n);
     let slopes = prediction.by_pressure.iter().zip(&prediction.by_contraction);
     let variances: Vec<f64> =
         slopes.map(|(p, e)| (p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)).collect();
@@ -231,7 +247,7 @@ fn least_separation(
     let law = NoiseLaw {
         correlated_n: if timed { given.law.correlated_n } else { 0.0 },
         time: given.law.time.filter(|_| timed),
-        white_n: if timed { given.law.white_n } else { given.law.white_n.hypot(given.law.correlated_n) },
+        white_n: if timed { given.row_n } else { given.row_n.hypot(given.law.correlated_n) },
         ..given.law.clone()
     };
     let record = record.with_force(prediction.force);

@@ -188,6 +188,8 @@ impl Planned {
             whitening: &self.whitening,
             law: &self.law,
             seed: 1,
+            row_n: self.law.white_n,
+            tolerance_n: None,
             only: None,
         }
     }

@@ -28,7 +28,11 @@ pub(crate) struct Given<'a> {
     pub(crate) whitening: &'a Whitening,
     /// The noise of the means.
     pub(crate) law: &'a NoiseLaw,
+    /// White noise of a single reading, with that of inputs which no data sheet states \[N\].
+    pub(crate) row_n: f64,
     pub(crate) seed: u64,
+    /// RMS misfit that doesn't matter \[N\].
+    pub(crate) tolerance_n: Option<f64>,
     /// Looks for these effects only.
     pub(crate) only: Option<&'a [String]>,
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::candidates::{Candidate, explained, log_evidence};
 use crate::confirm::{Confirmed, starts};
+use crate::misfit::misfit;
 use crate::null::Null;
 use crate::scene::{Given, Scene};
 
@@ -110,9 +111,13 @@ pub(crate) struct Search {
 }
 
 impl Search {
-    /// Another model instead of the last one.
+    /// Another model instead of the last one, and of those on the way to it that have an effect which it lacks.
     pub(crate) fn replace_last(&mut self, stage: Stage) {
+        let has = |effect: &Arc<dyn Effect>| {
+            stage.added.iter().any(|other| other.card().name == effect.card().name)
+        };
         self.stages.pop();
+        self.stages.retain(|before| before.added.iter().all(has));
         self.stages.push(stage);
     }
 }
@@ -127,15 +132,20 @@ impl Given<'_> {
         let scene = self.scene(&confirmed.prepared, &confirmed.theta)?;
         let (null, chance) = scene.chance(self);
         let adequacy = Adequacy { null, chance };
-        Ok(Stage { added, confirmed, scene, adequate: adequacy.holds(), adequacy, tried: Vec::new() })
+        let is_small =
+            || self.tolerance_n.is_some_and(|tolerance| misfit(&scene, self.seed).1[1] <= tolerance);
+        let adequate = adequacy.holds() || is_small();
+        Ok(Stage { added, confirmed, scene, adequate, adequacy, tried: Vec::new() })
     }
 
     /// From the base model to the set of effects that explains the data, or to where nothing more helps.
-    pub(crate) fn search(&self, base: &Model) -> Result<Search, ModelError> {
-        let confirmed = self.confirm(base, &[], None, &[])?;
+    ///
+    /// `near` are numbers that the base is known to have about.
+    pub(crate) fn search(&self, base: &Model, near: (&Model, &[f64])) -> Result<Search, ModelError> {
+        let confirmed = self.confirm(base, &[], Some(near), &[])?;
         let mut stages = vec![self.stage(Vec::new(), confirmed)?];
         while let Some(stage) = stages.last_mut() {
-            if stage.adequacy.holds() {
+            if stage.adequate {
                 break;
             }
             let room = MOST_EFFECTS - stage.added.len();
@@ -193,14 +203,14 @@ impl Given<'_> {
         let before = Self::numbers_of(base, stage);
         let starts: Vec<Vec<f64>> =
             hypothesis.starts.iter().map(|start| before.iter().chain(start).copied().collect()).collect();
-        let mut confirmed = self.confirm(base, &all, Some(&stage.confirmed), &starts).ok();
+        let mut confirmed = self.confirm(base, &all, Some(stage.confirmed.numbers()), &starts).ok();
         if confirmed.is_none() || hypothesis.gain > FAR {
             // Far from where the tangents hold: usual numbers, and nearly none of them.
             let further: Vec<Vec<f64>> = [1.0, 0.1]
                 .iter()
                 .map(|part| before.iter().copied().chain(Self::usual(base, &effects, *part)).collect())
                 .collect();
-            let other = self.confirm(base, &all, Some(&stage.confirmed), &further).ok();
+            let other = self.confirm(base, &all, Some(stage.confirmed.numbers()), &further).ok();
             confirmed = match (confirmed, other) {
                 (Some(a), Some(b)) => Some(if b.cost() < a.cost() { b } else { a }),
                 (a, b) => a.or(b),

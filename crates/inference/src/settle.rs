@@ -15,6 +15,8 @@ const ROUNDS: usize = 6;
 const NEAR: f64 = 0.01;
 /// The same as a part of the sum of squares.
 const NEAR_PART: f64 = 1e-6;
+/// Part of a standard deviation that is no way.
+const STILL: f64 = 0.05;
 
 /// The minimum that a start leads to; as [`minimise`], and its errors.
 pub(crate) fn settled(
@@ -33,7 +35,7 @@ pub(crate) fn settled(
             break;
         }
         let minimum = minimise(problem, &at, bounds, options)?;
-        if minimum.cost >= here - near(here) {
+        if minimum.cost >= here - near(here) && (is_still(&at, &minimum) || is_exact(problem, &minimum)) {
             problem.release();
             return Ok(minimum);
         }
@@ -42,6 +44,19 @@ pub(crate) fn settled(
     }
     problem.release();
     minimise(problem, start, bounds, options)
+}
+
+/// Whether no number has moved by more than a small part of its standard deviation.
+fn is_still(from: &[f64], minimum: &Minimum) -> bool {
+    let k = from.len();
+    let column = |j: usize| (0..k).map(|i| minimum.r[i * k + j].powi(2)).sum::<f64>().sqrt();
+    from.iter().zip(&minimum.theta).enumerate().all(|(j, (from, to))| (to - from).abs() * column(j) < STILL)
+}
+
+/// Whether the equilibria at the minimum give it the same sum of squares.
+fn is_exact(problem: &FitProblem<'_>, minimum: &Minimum) -> bool {
+    problem.hold();
+    cost(problem, &minimum.theta).is_ok_and(|cost| (cost - minimum.cost).abs() <= near(cost))
 }
 
 fn near(cost: f64) -> f64 {

@@ -188,7 +188,8 @@ impl Model {
         run.setting = Setting { fibres: found.fibres, has_bladder: found.has_bladder, ..self.setting };
         run.shapes = variables.iter().map(|(index, _)| *index).collect();
         if equilibrium.is_costly() && record.len() > FEWEST_NODES {
-            run.lattice = slots.held_at(&muscle, theta, &run.shapes);
+            let shape = |theta: &[f64]| self.reshape(theta, &[]).ok().map(|(muscle, _)| muscle);
+            run.lattice = slots.held_at(&muscle, theta, &run.shapes, shape);
             if run.lattice.is_none() {
                 run.lattice = run.solved(record, &muscle, &equilibrium, counts, slots);
             }

@@ -47,9 +47,20 @@ pub(crate) struct Held {
 }
 
 impl Held {
-    /// The lattice of a muscle with other parameters, to first order in what changes the shape; none if it lacks the derivatives asked for.
-    fn near(&self, theta: &[f64], shapes: &[usize]) -> Option<Lattice> {
-        let serves = shapes.is_empty() || shapes == self.shapes;
+    /// The lattice of a muscle with other parameters, to first order in what changes the shape; none if it lacks the derivatives asked for, or if a
+    /// parameter without derivatives has changed the shape too. `shape` makes the muscle of parameters.
+    fn near(
+        &self,
+        theta: &[f64],
+        shapes: &[usize],
+        shape: impl Fn(&[f64]) -> Option<Muscle>,
+    ) -> Option<Lattice> {
+        let mut back = theta.to_vec();
+        for index in &self.shapes {
+            back[*index] = self.theta[*index];
+        }
+        let is_all = || shape(&back).is_some_and(|muscle| muscle == self.muscle);
+        let serves = (shapes.is_empty() || shapes == self.shapes) && is_all();
         serves.then(|| {
             let moved: Vec<f64> = self.shapes.iter().map(|i| theta[*i] - self.theta[*i]).collect();
             self.lattice.moved(&moved)
@@ -129,9 +140,15 @@ impl Warm {
 
 impl Slots {
     /// The lattice of a muscle with the parameters `theta` from what is held.
-    pub(crate) fn held_at(&self, muscle: &Muscle, theta: &[f64], shapes: &[usize]) -> Option<Lattice> {
+    pub(crate) fn held_at(
+        &self,
+        muscle: &Muscle,
+        theta: &[f64],
+        shapes: &[usize],
+        shape: impl Fn(&[f64]) -> Option<Muscle>,
+    ) -> Option<Lattice> {
         let held = self.held.as_ref()?;
-        if self.is_shared { held.of(muscle, shapes) } else { held.near(theta, shapes) }
+        if self.is_shared { held.of(muscle, shapes) } else { held.near(theta, shapes, shape) }
     }
 
     /// One slot for each row of each segment, kept if there are as many as before.

@@ -76,6 +76,19 @@ fn beside_it_the_error_falls_with_the_square() {
 }
 
 #[test]
+fn a_shape_that_was_held_without_derivatives_is_solved_again() {
+    let (model, record) = (base(), record());
+    let warm = Warm::new();
+    warm.hold();
+    model.evaluate_warm(&record, &THETA, &Wanted::default(), &warm).unwrap();
+    let found = model.evaluate_warm(&record, &moved(1.0), &Wanted::default(), &warm).unwrap();
+    let full = model.evaluate(&record, &moved(1.0), &Wanted::default()).unwrap();
+    for (found, full) in found.force.iter().zip(&full.force) {
+        assert!((found - full).abs() < 1e-6 * 1500.0, "{found} {full}");
+    }
+}
+
+#[test]
 fn what_is_shared_serves_the_same_muscle_only() {
     let record = record();
     let warm = Warm::new();

@@ -128,7 +128,7 @@ def diagnoses(known, results):
             Answer(
                 truth,
                 document.get("verdict"),
-                document.get("missing") or [],
+                document.get("missing") or document.get("nearest") or [],
                 bool(remaining.get("structured")),
                 document.get("ladder") or [],
                 document.get("where") or [],

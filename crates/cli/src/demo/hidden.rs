@@ -75,3 +75,19 @@ pub(super) fn hidden(
     written.extend(report(&folder.join("report"), &first, &document)?);
     Ok([first, again])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tour_hides_a_case_of_the_suite() {
+        let case = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../validation/hidden-effects/cases/single-pleated-lobes-fixed-0"
+        );
+        for (name, content) in FILES {
+            assert_eq!(content, std::fs::read_to_string(format!("{case}/{name}")).unwrap(), "{name}");
+        }
+    }
+}

@@ -79,7 +79,7 @@ fn measured(out: &mut String, diagnosis: &Diagnosis) {
 /// The verdict in plain words, and each effect with its class and numbers.
 pub(crate) fn verdict(out: &mut String, diagnosis: &Diagnosis) {
     out.push('\n');
-    let mut missing = diagnosis.missing.iter();
+    let mut missing = diagnosis.added().iter();
     for line in headlines(diagnosis) {
         paragraph(out, "  ", &line);
         let is_claim = line.starts_with("missing: ") || line.starts_with("nearest: ");
@@ -177,7 +177,7 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
 /// The nearest rivals of each effect that was found.
 fn rivals(out: &mut String, diagnosis: &Diagnosis) {
     let mut lines = Vec::new();
-    for missing in &diagnosis.missing {
+    for missing in diagnosis.added() {
         let mut nearest: Vec<_> = missing.rivals.iter().collect();
         nearest.sort_by(|a, b| a.separation.total_cmp(&b.separation));
         let named = nearest.iter().take(MOST_RIVALS).map(|r| format!("{} {}", r.effect, three(r.separation)));

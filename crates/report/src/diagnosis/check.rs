@@ -18,7 +18,7 @@ pub(super) fn check(diagnosis: &Diagnosis) -> Result<(), PlotError> {
     let steps = &diagnosis.ladder;
     let errors = steps.iter().flat_map(|step| [Some(step.rmse_n), step.held_out_rmse_n]).flatten();
     finite("an error of the ladder", errors)?;
-    for missing in &diagnosis.missing {
+    for missing in diagnosis.added() {
         finite("a fitted number", missing.parameters.values().map(|p| p.value))?;
         finite(
             "a confidence",

@@ -30,7 +30,7 @@ pub fn headlines(diagnosis: &Diagnosis) -> Vec<String> {
         format!("{MISSING}{} (on data like these such a claim is right {right} of the time)", missing.effect)
     };
     let nearest = |why: &str| -> Vec<String> {
-        diagnosis.missing.iter().map(|missing| format!("nearest: {} ({why})", missing.effect)).collect()
+        diagnosis.added().iter().map(|missing| format!("nearest: {} ({why})", missing.effect)).collect()
     };
     let (verdict, says, rest) = match diagnosis.verdict {
         Verdict::Missing => {

@@ -24,6 +24,7 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
         verdict: Verdict::Missing,
         says: "Two things are missing.".to_owned(),
         missing: vec![bladder(), friction()],
+        nearest: Vec::new(),
         candidates: candidates(),
         ladder: vec![
             step(None, 31.0, 33.0, false),
@@ -78,6 +79,7 @@ pub(crate) fn unknown(comparison: Comparison) -> Diagnosis {
     diagnosis.verdict = Verdict::Unknown;
     "A step at 12 % is left.".clone_into(&mut diagnosis.says);
     diagnosis.missing.truncate(1);
+    diagnosis.nearest = std::mem::take(&mut diagnosis.missing);
     diagnosis.remaining.structured = true;
     for step in &mut diagnosis.ladder {
         step.adequate = false;
