@@ -98,7 +98,7 @@ pub enum InferenceError {
     },
     /// The noise of a record can't be described or whitened.
     #[error("the noise: {0}")]
-    Noise(#[from] crate::noise_error::NoiseError),
+    Noise(#[from] crate::noise::error::NoiseError),
 }
 
 impl From<ModelError> for InferenceError {

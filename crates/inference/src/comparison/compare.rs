@@ -1,0 +1,131 @@
+//! Model against measurement: the ladder of errors, rung by rung, and where the error lies.
+
+use bulge_measurements::{Data, QualityOptions};
+use bulge_model::Model;
+use bulge_muscles::{Muscle, Quantity};
+use rayon::prelude::*;
+
+use crate::comparison::analysis::{Analysis, Climbed, Options};
+use crate::comparison::document::{Comparison, DataSummary, NoiseFloor};
+use crate::comparison::{loops, residuals, rivals, stack};
+use crate::error::InferenceError;
+use crate::fit::document::Fit;
+
+/// Compares.
+///
+/// # Errors
+/// See [`InferenceError`]: too few rows, a muscle that doesn't match, an effect that doesn't fit the muscle or the data.
+pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
+    // On a thread of the pool: small evaluations aren't handed over to it one by one.
+    rayon::scope(|_| compared(data, muscle, options, None))
+}
+
+/// The same with the numbers of the last rung about known, of a model with the same effects.
+pub(crate) fn compare_near(
+    data: &Data,
+    muscle: &Muscle,
+    options: &Options,
+    near: (&Model, &[f64]),
+) -> Result<Comparison, InferenceError> {
+    compared(data, muscle, options, Some(near))
+}
+
+fn compared(
+    data: &Data,
+    muscle: &Muscle,
+    options: &Options,
+    near: Option<(&Model, &[f64])>,
+) -> Result<Comparison, InferenceError> {
+    let mut analysis = Analysis { near, ..Analysis::new(data, muscle, options)? };
+    let first = analysis.climb(0, None)?;
+    analysis.check_match(&first)?;
+    let floor = analysis.measure_noise(&first);
+    // Weights follow from the noise: the first rung again if it fits anything.
+    let first = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
+    let mut rungs = vec![first];
+    for count in 1..=options.effects.len() {
+        let next = analysis.climb(count, rungs.last())?;
+        rungs.push(next);
+    }
+    let ladder = rungs
+        .par_iter()
+        .enumerate()
+        .map(|(number, climbed)| analysis.rung(number, climbed))
+        .collect::<Vec<_>>();
+    let last = &rungs[rungs.len() - 1];
+    // A surface follows the residuals of a better model better: then less of them is taken for noise.
+    let again = analysis.noise_floor(last);
+    let floor = match (floor, again) {
+        (Some(first), Some(again)) if again.sd_n < first.sd_n => Some(again),
+        (first, _) => first,
+    };
+    let forces = [&rungs[0].force, &last.force];
+    let mut warnings = analysis.warnings(&ladder);
+    // With the last fit's numbers the muscle may not even pull before all effects are in.
+    let contributions = stack::contributions(&analysis, last).unwrap_or_else(|error| {
+        warnings.push(format!("what each effect contributes can't be shown one by one: {error}"));
+        Vec::new()
+    });
+    Ok(Comparison {
+        schema: "bulge.comparison/1",
+        muscle: muscle.name().to_owned(),
+        base: options.law.as_ref().map_or("equilibrium", |(law, _, _)| law.name).to_owned(),
+        data: analysis.summary(),
+        quality: data
+            .quality(&QualityOptions { l0_m: Some(muscle.length().si()), ..QualityOptions::default() })
+            .findings,
+        noise_floor: floor,
+        by: residuals::breakdowns(&analysis, forces),
+        loops: loops::gaps(&analysis, forces),
+        maps: residuals::maps(&analysis, forces),
+        curves: residuals::curves(&analysis, forces),
+        contributions,
+        scatter: residuals::scatter(&analysis, forces),
+        rivals: if options.rivals { rivals::laws(&analysis) } else { Vec::new() },
+        warnings,
+        ladder,
+    })
+}
+
+/// The effects fitted to the data, and the error before and after.
+#[derive(Debug, Clone)]
+pub struct Fitting {
+    /// The model with its effects, and the rig errors that were fitted along.
+    pub model: Model,
+    /// The fit.
+    pub fit: Fit,
+    /// What the data are.
+    pub data: DataSummary,
+    /// RMS error of the muscle as stated \[N\].
+    pub before_rmse_n: f64,
+    /// RMS error with the effects \[N\].
+    pub rmse_n: f64,
+    /// What no model can go below, if anything is known of it.
+    pub noise_floor: Option<NoiseFloor>,
+}
+
+/// Fits the effects to the data, without the ladder.
+///
+/// # Errors
+/// As [`compare`].
+pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
+    rayon::scope(|_| fitted(data, muscle, options))
+}
+
+fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
+    let mut analysis = Analysis::new(data, muscle, options)?;
+    let base = analysis.climb(0, None)?;
+    analysis.check_match(&base)?;
+    let noise_floor = analysis.measure_noise(&base);
+    let climbed = analysis.climb(options.effects.len(), None)?;
+    let rmse_n = residuals::summary(&analysis, &climbed.force).rmse;
+    let Climbed { prepared, theta, fit, force } = climbed;
+    Ok(Fitting {
+        model: prepared.model,
+        fit: fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force)),
+        data: analysis.summary(),
+        before_rmse_n: residuals::summary(&analysis, &base.force).rmse,
+        rmse_n,
+        noise_floor,
+    })
+}

@@ -1,0 +1,229 @@
+//! The noise floor: the scatter that no model of pressure, contraction and direction can explain.
+
+use bulge_measurements::PureError;
+use bulge_model::Record;
+use bulge_muscles::Muscle;
+use bulge_numerics::least_squares::{Bounds, Options, Residuals, minimise};
+use std::convert::Infallible;
+use std::f64::consts::SQRT_2;
+use std::ops::Range;
+
+use crate::chebyshev::chebyshev;
+use crate::comparison::document::NoiseFloor;
+use crate::comparison::levels::sweep_of;
+
+/// Degrees of freedom from which repeats are believed.
+const ENOUGH: f64 = 8.0;
+/// Rows on which the smooth surface is fitted: its scatter is then known to one per cent.
+const MOST_ROWS: usize = 5_000;
+/// Part of the sum of squares below which what a promised decrease leaves may be rounding.
+const LEFT: f64 = 1e-9;
+
+/// From repeats, else from what a smooth surface leaves, else from the data sheet.
+pub(crate) fn noise_floor(
+    repeats: Option<&PureError>,
+    record: &Record,
+    used: &[bool],
+    residuals: &[f64],
+    muscle: &Muscle,
+) -> Option<NoiseFloor> {
+    if let Some(error) = repeats.filter(|error| error.degrees_of_freedom >= ENOUGH && error.sd_n > 0.0) {
+        return Some(NoiseFloor {
+            sd_n: error.sd_n,
+            source: "repeats",
+            says: format!(
+                "scatter of repeated rows about their means, {:.0} degrees of freedom",
+                error.degrees_of_freedom
+            ),
+        });
+    }
+    if let Some((sd_n, columns)) = saturated(record, used, residuals) {
+        // No reading is better than its last digit.
+        let sd_n = sd_n.max(step(record.force()) / 12.0_f64.sqrt());
+        return Some(NoiseFloor {
+            sd_n,
+            source: "saturated",
+            says: format!(
+                "what a smooth surface of {columns} numbers in pressure, contraction and direction leaves of the residuals: an estimate, \
+                 without noise that changes slowly along a sweep"
+            ),
+        });
+    }
+    let sd_n = muscle.instruments().force.map_or(0.0, |force| force.noise());
+    (sd_n > 0.0).then(|| NoiseFloor {
+        sd_n,
+        source: "instruments",
+        says: "noise of the load cell as the muscle file states it".to_owned(),
+    })
+}
+
+/// The step in which the force was read: the least difference between readings, where most of them occur several times.
+fn step(force: &[f64]) -> f64 {
+    let mut levels = force.to_vec();
+    levels.sort_unstable_by(f64::total_cmp);
+    levels.dedup();
+    if 3 * levels.len() > force.len() {
+        return 0.0;
+    }
+    // A single level has no step.
+    levels.windows(2).map(|pair| pair[1] - pair[0]).reduce(f64::min).unwrap_or(0.0)
+}
+
+/// Polynomials of Chebyshev in pressure and contraction, even and odd in direction.
+struct Surface {
+    columns: usize,
+    rows: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl Residuals for Surface {
+    type Error = Infallible;
+    fn rows(&self) -> usize {
+        self.values.len()
+    }
+    fn parameters(&self) -> usize {
+        self.columns
+    }
+    fn evaluate(
+        &self,
+        theta: &[f64],
+        rows: Range<usize>,
+        residuals: &mut [f64],
+        jacobian: Option<&mut [f64]>,
+    ) -> Result<(), Infallible> {
+        let k = self.columns;
+        let part = &self.rows[rows.start * k..rows.end * k];
+        for ((residual, row), value) in residuals.iter_mut().zip(part.chunks_exact(k)).zip(&self.values[rows])
+        {
+            *residual = row.iter().zip(theta).map(|(x, t)| x * t).sum::<f64>() - value;
+        }
+        if let Some(jacobian) = jacobian {
+            jacobian.copy_from_slice(part);
+        }
+        Ok(())
+    }
+}
+
+/// Standard deviation about a smooth surface and its number of columns; none if there are too few rows for one.
+fn saturated(record: &Record, used: &[bool], residuals: &[f64]) -> Option<(f64, usize)> {
+    let rows: Vec<usize> = (0..record.len()).filter(|row| used[*row]).collect();
+    let step = rows.len().div_ceil(MOST_ROWS).max(1);
+    let rows: Vec<usize> = rows.into_iter().step_by(step).collect();
+    let moments = record.moments();
+    let distinct = |value: &dyn Fn(usize) -> f64| {
+        let mut all: Vec<u64> = rows.iter().map(|row| value(*row).to_bits()).collect();
+        all.sort_unstable();
+        all.dedup();
+        all.len()
+    };
+    let degree = |distinct: usize, most: usize| (distinct.saturating_sub(1)).min(most);
+    let n = rows.len();
+    let degrees_p = degree(distinct(&|row| moments[row].pressure), if n < 40 { 1 } else { 3 });
+    let degrees_e = degree(
+        distinct(&|row| moments[row].contraction),
+        if n < 40 {
+            2
+        } else if n < 200 {
+            4
+        } else {
+            7
+        },
+    );
+    let parities = if record.is_path() { 2 } else { 1 };
+    let sweeps = sweep_of(record.sweeps(), record.len());
+    let offsets = if record.is_path() && record.sweeps().len() <= 20 { record.sweeps().len() - 1 } else { 0 };
+    let columns = (degrees_p + 1) * (degrees_e + 1) * parities + offsets;
+    if n < 2 * columns + 5 {
+        return None;
+    }
+    let p = Scaled::of(rows.iter().map(|row| moments[*row].pressure));
+    let e = Scaled::of(rows.iter().map(|row| moments[*row].contraction));
+    let mut matrix = Vec::with_capacity(n * columns);
+    let all = |x: f64, most: usize| (0..=most).map(|degree| chebyshev(degree, x)).collect::<Vec<f64>>();
+    for row in &rows {
+        let m = &moments[*row];
+        let [along_p, along_e] = [all(p.at(m.pressure), degrees_p), all(e.at(m.contraction), degrees_e)];
+        for parity in 0..parities {
+            let sign = if parity == 0 { 1.0 } else { m.direction };
+            for x in &along_p {
+                matrix.extend(along_e.iter().map(|y| sign * x * y));
+            }
+        }
+        matrix.extend((1..=offsets).map(|sweep| if sweeps[*row] == sweep { 1.0 } else { 0.0 }));
+    }
+    let values: Vec<f64> = rows.iter().map(|row| residuals[*row]).collect();
+    let surface = Surface { columns, rows: matrix, values };
+    let fitted = |max_evaluations| {
+        let options = Options { check_curvature: false, max_evaluations, ..Options::default() };
+        let found = minimise(&surface, &vec![0.0; columns], &Bounds::none(columns), &options).ok()?;
+        let part = 1.0 - found.certificate.relative_decrease;
+        Some((found.cost * part, part, found.certificate.rank))
+    };
+    // The surface is linear in its numbers: what the first step promises is the minimum.
+    let (cost, _, rank) = fitted(1).filter(|(_, part, _)| *part > LEFT).or_else(|| fitted(2000))?;
+    let freedom = n.checked_sub(rank).filter(|f| *f > 0)?;
+    let smooth = (cost / freedom as f64).sqrt();
+    // What a coarse surface can't follow would count as noise: neighbours along a sweep know better.
+    let local = neighbours(record, used, residuals).unwrap_or(f64::INFINITY);
+    Some((smooth.min(local.max(0.5 * smooth)), columns)).filter(|(sd, _)| *sd > 0.0)
+}
+
+/// Scatter from second differences along the sweeps: `r_(i-1) - 2 r_i + r_(i+1)` has the variance 6 sd^2.
+fn neighbours(record: &Record, used: &[bool], residuals: &[f64]) -> Option<f64> {
+    if !record.is_path() {
+        return None;
+    }
+    let mut squares: Vec<f64> = Vec::new();
+    for sweep in record.sweeps() {
+        for i in sweep.start + 1..sweep.end.saturating_sub(1) {
+            if used[i - 1] && used[i] && used[i + 1] {
+                let d = residuals[i - 1] - 2.0 * residuals[i] + residuals[i + 1];
+                squares.push(d.abs() / 6.0_f64.sqrt());
+            }
+        }
+    }
+    if squares.len() < 20 {
+        return None;
+    }
+    squares.sort_by(f64::total_cmp);
+    // Median of |x| of a normal x is 0.6745 sd: reversals and spikes don't count.
+    Some(squares[squares.len() / 2] / (0.476_936_276_204_469_9 * SQRT_2))
+}
+
+/// A range mapped to -1 ..= 1.
+struct Scaled {
+    middle: f64,
+    half: f64,
+}
+
+impl Scaled {
+    fn of(values: impl Iterator<Item = f64>) -> Self {
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        Self { middle: 0.5 * (low + high), half: (0.5 * (high - low)).max(f64::MIN_POSITIVE) }
+    }
+
+    fn at(&self, value: f64) -> f64 {
+        (value - self.middle) / self.half
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::Moment;
+    use bulge_muscles::preset;
+
+    #[test]
+    fn no_floor_is_finer_than_the_steps_of_the_force() {
+        let moments: Vec<Moment> = (0..120)
+            .map(|i| Moment::at_rest(f64::from(1 + i / 20) * 1e5, 0.01 * f64::from(i % 20)))
+            .collect();
+        let force: Vec<f64> = (0..120).map(|i| 40.0 * f64::from(20 - i % 20)).collect();
+        let record = Record::from_moments(moments, force, std::iter::once(0..120).collect()).unwrap();
+        // A model that meets the rounded readings to a millionth of a newton.
+        let residuals: Vec<f64> = (0..120).map(|i| 1e-6 * f64::from(i * 37 % 11)).collect();
+        let muscle = preset("ppam-2-r16").unwrap();
+        let floor = noise_floor(None, &record, &[true; 120], &residuals, &muscle).unwrap();
+        assert!((floor.sd_n - 40.0 / 12.0_f64.sqrt()).abs() < 1e-9, "{}", floor.sd_n);
+    }
+}

@@ -1,0 +1,52 @@
+//! What data must have for a muscle and for effects to be compared with them.
+
+use bulge_effects::{Effect, Needs};
+use bulge_measurements::Data;
+use bulge_model::Record;
+use bulge_muscles::{Muscle, Quantity};
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use crate::comparison::rows::lines;
+use crate::error::InferenceError;
+
+/// Contractions that a muscle can have: a braid is drawn straight before it is twice as long as at rest (with fibres at less than 60 deg), and no pleated
+/// muscle gets shorter by more than 54.3 %.
+const POSSIBLE: RangeInclusive<f64> = -1.0..=0.6;
+
+/// Contractions that no muscle has are those of another one.
+pub(crate) fn check_size(
+    data: &Data,
+    muscle: &Muscle,
+    record: &Record,
+    mask: &[bool],
+) -> Result<(), InferenceError> {
+    let contraction = |row: usize| record.moments()[row].contraction;
+    let outside = |row: &usize| mask[*row] && !POSSIBLE.contains(&contraction(*row));
+    let rows: Vec<usize> = (0..record.len()).filter(outside).collect();
+    let Some(&row) = rows.first() else { return Ok(()) };
+    Err(InferenceError::OtherSize {
+        muscle: muscle.name().to_owned(),
+        lines: format!("line {}", lines(data, &rows)),
+        contraction: contraction(row),
+        length_m: muscle.length().si(),
+    })
+}
+
+/// An effect that needs what these data don't have can't be fitted to them.
+pub(crate) fn check_needs(effect: &Arc<dyn Effect>, record: &Record) -> Result<(), InferenceError> {
+    let card = effect.card();
+    let moments = record.moments();
+    let has = match card.needs {
+        Needs::Nothing => true,
+        Needs::Path => moments.iter().any(|m| m.direction != 0.0),
+        Needs::Time => record.has_time(),
+        Needs::Cycles => moments.iter().any(|m| m.cycle > 0.0),
+        Needs::Temperature => moments.iter().any(|m| m.temperature != 0.0),
+        Needs::Specimens => record.specimens().len() > 1,
+    };
+    if has {
+        return Ok(());
+    }
+    Err(InferenceError::Needs { effect: card.name.to_owned(), needs: card.needs.says() })
+}

@@ -1,0 +1,249 @@
+//! Where the error lies: by each variable, on maps, along curves.
+
+use crate::comparison::analysis::Analysis;
+use crate::comparison::document::{Bin, Breakdown, Curve, CurvePoint, ResidualMap};
+use crate::comparison::levels::sweep_of;
+
+/// Bins of a continuous variable.
+const BINS: usize = 10;
+/// Columns of a map.
+const COLUMNS: usize = 20;
+/// Points of a curve, and of the scatter.
+const MOST_POINTS: usize = 400;
+const MOST_SCATTER: usize = 2000;
+/// Sweeps that are shown one by one.
+const MOST_SWEEPS: usize = 60;
+
+/// Errors of one prediction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Errors {
+    pub(crate) rmse: f64,
+    pub(crate) bias: f64,
+    pub(crate) largest: f64,
+    pub(crate) r_squared: f64,
+}
+
+/// Over all rows that count.
+pub(crate) fn summary(analysis: &Analysis<'_>, force: &[f64]) -> Errors {
+    let measured = analysis.record.force();
+    let n = analysis.rows().count().max(1) as f64;
+    let mean = analysis.rows().map(|row| measured[row]).sum::<f64>() / n;
+    let mut sums = [0.0; 3];
+    let mut largest: f64 = 0.0;
+    for row in analysis.rows() {
+        let error = measured[row] - force[row];
+        sums[0] += error;
+        sums[1] += error * error;
+        sums[2] += (measured[row] - mean).powi(2);
+        largest = largest.max(error.abs());
+    }
+    // Of a single point no variance can be explained.
+    let r_squared = if sums[2] > 0.0 { 1.0 - sums[1] / sums[2] } else { 0.0 };
+    Errors { rmse: (sums[1] / n).sqrt(), bias: sums[0] / n, largest, r_squared }
+}
+
+/// A variable cut into groups: name and unit, group of each row, label and middle of each group.
+struct Groups {
+    variable: &'static str,
+    unit: &'static str,
+    of: Vec<usize>,
+    labels: Vec<(String, f64)>,
+}
+
+/// Every variable that varies.
+pub(crate) fn breakdowns(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Breakdown> {
+    let record = &analysis.record;
+    let moments = record.moments();
+    let mut all = Vec::new();
+    let levels = &analysis.levels;
+    all.push(Groups {
+        variable: "pressure",
+        unit: "bar",
+        of: levels.of.clone(),
+        labels: levels.mean.iter().map(|p| (format!("{:.2}", p / 1e5), p / 1e5)).collect(),
+    });
+    let bar_free = |variable, unit, value: &dyn Fn(usize) -> f64| even(analysis, variable, unit, value);
+    all.extend(bar_free("contraction", "%", &|row| 100.0 * moments[row].contraction));
+    if record.is_path() {
+        let of = moments
+            .iter()
+            .map(|m| {
+                if m.direction > 0.0 {
+                    0
+                } else if m.direction < 0.0 {
+                    2
+                } else {
+                    1
+                }
+            })
+            .collect();
+        let labels = [("shortening", 1.0), ("at rest", 0.0), ("lengthening", -1.0)];
+        let labels = labels.into_iter().map(|(label, at)| (label.to_owned(), at)).collect();
+        all.push(Groups { variable: "direction", unit: "", of, labels });
+    }
+    if record.has_time() {
+        all.extend(bar_free("rate", "%/s", &|row| 100.0 * moments[row].rate));
+        all.extend(bar_free("time", "s", &|row| moments[row].clock));
+    }
+    if record.sweeps().len() <= MOST_SWEEPS {
+        let labels = analysis.data.sweeps().iter().enumerate().map(|(i, s)| (s.name.clone(), (i + 1) as f64));
+        let of = sweep_of(record.sweeps(), record.len());
+        all.push(Groups { variable: "sweep", unit: "", of, labels: labels.collect() });
+    }
+    let names = record.specimens();
+    all.push(Groups {
+        variable: "specimen",
+        unit: "",
+        of: moments.iter().map(|m| m.specimen as usize).collect(),
+        labels: names.iter().enumerate().map(|(i, name)| (name.clone(), (i + 1) as f64)).collect(),
+    });
+    if moments.iter().any(|m| m.temperature != 0.0) {
+        all.extend(bar_free("temperature", "K", &|row| moments[row].temperature));
+    }
+    all.into_iter().map(|groups| broken_down(analysis, forces, groups)).filter(|b| b.bins.len() > 1).collect()
+}
+
+/// Bins of equal width; none if the variable doesn't vary.
+fn even(
+    analysis: &Analysis<'_>,
+    variable: &'static str,
+    unit: &'static str,
+    value: &dyn Fn(usize) -> f64,
+) -> Option<Groups> {
+    let [low, high] =
+        analysis.rows().map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+    if high.is_nan() || high <= low {
+        return None;
+    }
+    let of = (0..analysis.record.len()).map(|row| bin(value(row), low, high, BINS)).collect();
+    let width = (high - low) / BINS as f64;
+    let label = |i: usize| {
+        let start = low + i as f64 * width;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 6")]
+        let digits = (-width.log10().floor()).clamp(0.0, 6.0) as usize;
+        (format!("{start:.digits$} to {:.digits$}", start + width), start + 0.5 * width)
+    };
+    Some(Groups { variable, unit, of, labels: (0..BINS).map(label).collect() })
+}
+
+/// Number of the bin of a value; values outside go to the ends.
+pub(crate) fn bin(value: f64, low: f64, high: f64, bins: usize) -> usize {
+    let part = if high > low { (value - low) / (high - low) } else { 0.0 };
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 0 and the number of bins"
+    )]
+    let bin = (part * bins as f64).clamp(0.0, bins as f64 - 1.0) as usize;
+    bin
+}
+
+fn broken_down(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2], groups: Groups) -> Breakdown {
+    let measured = analysis.record.force();
+    let mut sums = vec![(0_usize, [0.0; 2], [0.0; 2]); groups.labels.len()];
+    for row in analysis.rows() {
+        let (rows, bias, square) = &mut sums[groups.of[row]];
+        *rows += 1;
+        for (i, force) in forces.iter().enumerate() {
+            let error = measured[row] - force[row];
+            bias[i] += error;
+            square[i] += error * error;
+        }
+    }
+    let with_rows = sums.into_iter().zip(groups.labels).filter(|((rows, _, _), _)| *rows > 0);
+    let bins = with_rows.map(|((rows, bias, square), (label, at))| Bin {
+        label,
+        at,
+        rows,
+        bias_n: bias.map(|b| b / rows as f64),
+        rmse_n: square.map(|s| (s / rows as f64).sqrt()),
+    });
+    Breakdown { variable: groups.variable, unit: groups.unit, bins: bins.collect() }
+}
+
+/// Mean residuals over pressure levels and contraction, for each direction that occurs.
+pub(crate) fn maps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<ResidualMap> {
+    let moments = analysis.record.moments();
+    let measured = analysis.record.force();
+    let [low, high] = contractions(analysis);
+    let levels = analysis.levels.len();
+    let mut maps = Vec::new();
+    for (direction, sign) in [("shortening", 1.0), ("at rest", 0.0), ("lengthening", -1.0)] {
+        let mut sums = vec![(0_usize, [0.0; 2]); levels * COLUMNS];
+        let rows = analysis.rows().filter(|row| moments[*row].direction.total_cmp(&sign).is_eq());
+        let mut any = 0_usize;
+        for row in rows {
+            let cell = analysis.levels.of[row] * COLUMNS + bin(moments[row].contraction, low, high, COLUMNS);
+            sums[cell].0 += 1;
+            for (sum, force) in sums[cell].1.iter_mut().zip(forces) {
+                *sum += measured[row] - force[row];
+            }
+            any += 1;
+        }
+        // Turning points alone are no map.
+        if any <= analysis.record.len() / 100 {
+            continue;
+        }
+        let mean = |i: usize| {
+            sums.iter().map(|(rows, sum)| (*rows > 0).then(|| sum[i] / *rows as f64)).collect::<Vec<_>>()
+        };
+        let width = (high - low) / COLUMNS as f64;
+        maps.push(ResidualMap {
+            direction,
+            pressure_pa: analysis.levels.mean.clone(),
+            contraction: (0..COLUMNS).map(|i| low + (i as f64 + 0.5) * width).collect(),
+            first_n: mean(0),
+            last_n: mean(1),
+        });
+    }
+    maps
+}
+
+/// Range of the contraction of the rows that count.
+pub(crate) fn contractions(analysis: &Analysis<'_>) -> [f64; 2] {
+    let moments = analysis.record.moments();
+    let [low, high] = analysis
+        .rows()
+        .map(|row| moments[row].contraction)
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+    if high > low { [low, high] } else { [low - 1e-3, high + 1e-3] }
+}
+
+/// Force against contraction for each pressure level and specimen.
+pub(crate) fn curves(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Curve> {
+    let moments = analysis.record.moments();
+    let measured = analysis.record.force();
+    let mut curves = Vec::new();
+    for (level, pressure_pa) in analysis.levels.mean.iter().enumerate() {
+        for (specimen, name) in analysis.record.specimens().iter().enumerate() {
+            let is_here = |row: &usize| {
+                analysis.levels.of[*row] == level && moments[*row].specimen as usize == specimen
+            };
+            let mut rows: Vec<usize> = analysis.rows().filter(is_here).collect();
+            if rows.is_empty() {
+                continue;
+            }
+            if !analysis.record.is_path() {
+                rows.sort_by(|a, b| moments[*a].contraction.total_cmp(&moments[*b].contraction));
+            }
+            let stride = rows.len().div_ceil(MOST_POINTS).max(1);
+            let point = |row: &usize| CurvePoint {
+                contraction: moments[*row].contraction,
+                direction: moments[*row].direction,
+                measured_n: measured[*row],
+                first_n: forces[0][*row],
+                last_n: forces[1][*row],
+            };
+            let points = rows.iter().step_by(stride).map(point).collect();
+            curves.push(Curve { pressure_pa: *pressure_pa, specimen: name.clone(), points });
+        }
+    }
+    curves
+}
+
+/// Measured against predicted.
+pub(crate) fn scatter(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<[f64; 3]> {
+    let measured = analysis.record.force();
+    let stride = analysis.rows().count().div_ceil(MOST_SCATTER).max(1);
+    analysis.rows().step_by(stride).map(|row| [measured[row], forces[0][row], forces[1][row]]).collect()
+}

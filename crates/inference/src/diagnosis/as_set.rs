@@ -1,0 +1,143 @@
+//! The history as it was set, without the noise of its readings: what functions of pressure and contraction are taken at.
+//!
+//! The noise of a reading is in the misfit too, as -dF/dp dp. A column that is a function of the same reading finds it there (errors in variables), above all where
+//! readings are dense or end: then the noise of a sensor looks like physics. A column at values that don't hold the row's own reading can't.
+
+use bulge_model::Record;
+
+use crate::comparison::levels::Levels;
+
+/// Widest range of a level that is kept, as a part of the largest pressure.
+const KEPT: f64 = 0.04;
+/// Neighbours on either side of a row.
+const NEIGHBOURS: usize = 4;
+/// A reading further from its neighbours than this many standard deviations is taken as it is: there the path bends.
+const BEND: f64 = 4.0;
+
+/// The record with pressures and contractions as set: at levels the mean of the level, along a path what the neighbours of a row say of it.
+pub(crate) fn as_set(record: &Record) -> Record {
+    let levels = Levels::of(record, &vec![true; record.len()]);
+    let pressures: Vec<f64> = record.moments().iter().map(|m| m.pressure).collect();
+    let pressure = if is_kept(&pressures, &levels) {
+        levels.of.iter().map(|level| levels.mean[*level]).collect()
+    } else {
+        by_neighbours(record, &pressures)
+    };
+    let contractions: Vec<f64> = record.moments().iter().map(|m| m.contraction).collect();
+    record.clone().at(&pressure, &by_neighbours(record, &contractions))
+}
+
+/// Whether pressures were kept at levels, and don't only lie in heaps.
+fn is_kept(pressures: &[f64], levels: &Levels) -> bool {
+    let largest = pressures.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
+    let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; levels.len()];
+    for (pressure, level) in pressures.iter().zip(&levels.of) {
+        let [low, high] = &mut ranges[*level];
+        (*low, *high) = (low.min(*pressure), high.max(*pressure));
+    }
+    !levels.is_cut() && ranges.iter().all(|[low, high]| high - low <= KEPT * largest)
+}
+
+/// Each value by a parabola through its neighbours in the sweep, itself left out.
+fn by_neighbours(record: &Record, values: &[f64]) -> Vec<f64> {
+    let mut found = values.to_vec();
+    if !record.is_path() {
+        return found;
+    }
+    for sweep in record.sweeps() {
+        let own = &values[sweep.clone()];
+        let noise = scatter(own);
+        if noise <= 0.0 || noise.is_nan() {
+            continue;
+        }
+        for i in 0..own.len() {
+            let first = i.saturating_sub(NEIGHBOURS);
+            let last = (i + NEIGHBOURS).min(own.len() - 1);
+            let others = (first..=last).filter(|j| *j != i).map(|j| (j as f64 - i as f64, own[j]));
+            if let Some(value) = parabola_at_zero(others)
+                && (value - own[i]).abs() <= BEND * noise
+            {
+                found[sweep.start + i] = value;
+            }
+        }
+    }
+    found
+}
+
+/// Standard deviation of what a smooth path doesn't explain, from second differences; reversals and steps don't count.
+fn scatter(values: &[f64]) -> f64 {
+    let mut bends: Vec<f64> = values.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).collect();
+    if bends.is_empty() {
+        return 0.0;
+    }
+    bends.sort_by(f64::total_cmp);
+    bends[bends.len() / 2] / (0.674_489_75 * 6.0_f64.sqrt())
+}
+
+/// Value at 0 of the parabola of least squares; none from fewer than five points.
+fn parabola_at_zero(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
+    let mut moments = [0.0; 5];
+    let mut right = [0.0; 3];
+    let mut count = 0;
+    for (x, y) in points {
+        count += 1;
+        let mut power = 1.0;
+        for (k, moment) in moments.iter_mut().enumerate() {
+            *moment += power;
+            if k < 3 {
+                right[k] += power * y;
+            }
+            power *= x;
+        }
+    }
+    if count < 5 {
+        return None;
+    }
+    let matrix = nalgebra::Matrix3::from_fn(|i, j| moments[i + j]);
+    let solution = matrix.cholesky()?.solve(&nalgebra::Vector3::from(right));
+    Some(solution[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use bulge_effects::Moment;
+
+    fn record(contraction: &[f64]) -> Record {
+        let moments: Vec<Moment> = contraction
+            .iter()
+            .enumerate()
+            .map(|(i, e)| Moment { direction: 1.0, begins: i == 0, ..Moment::at_rest(2e5, *e) })
+            .collect();
+        let n = moments.len();
+        Record::from_moments(moments, vec![0.0; n], std::iter::once(0..n).collect()).unwrap()
+    }
+
+    #[test]
+    fn a_parabola_stays_and_the_own_noise_goes() {
+        let path: Vec<f64> = (0..400).map(|i| 1e-6 * f64::from(i * i)).collect();
+        let mut random = Random::new(4, 0);
+        let noise: Vec<f64> = path.iter().map(|_| 1e-4 * random.normal()).collect();
+        let read: Vec<f64> = path.iter().zip(&noise).map(|(e, d)| e + d).collect();
+        let exact = as_set(&record(&path));
+        for (moment, e) in exact.moments().iter().zip(&path) {
+            assert!((moment.contraction - e).abs() < 1e-12);
+        }
+        let set = as_set(&record(&read));
+        let along: f64 =
+            set.moments().iter().zip(&path).zip(&noise).map(|((m, e), d)| (m.contraction - e) * d).sum();
+        let own: f64 = noise.iter().map(|d| d * d).sum();
+        // Readings beyond 4 sd of their neighbours keep their noise: few.
+        assert!((along / own).abs() < 0.15, "{}", along / own);
+    }
+
+    #[test]
+    fn stairs_keep_their_edges() {
+        let stairs: Vec<f64> = (0..100).map(|i| 0.02 * f64::from(i / 10)).collect();
+        let set = as_set(&record(&stairs));
+        for (moment, e) in set.moments().iter().zip(&stairs) {
+            assert!((moment.contraction - e).abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! A long record made short: means of neighbouring rows, which keep what a slowly varying misfit says and average the noise.
+
+use bulge_model::Record;
+use std::ops::Range;
+
+use crate::comparison::levels::Levels;
+
+/// A record of means, and what belongs to each of them.
+#[derive(Debug, Clone)]
+pub(crate) struct Averaged {
+    /// Means of the rows that count; forces are those of [`Averaged::forces`].
+    pub(crate) record: Record,
+    /// Rows of the long record in each mean.
+    pub(crate) groups: Vec<Vec<usize>>,
+}
+
+impl Averaged {
+    /// About `most` means of the rows that are used, each within one sweep, one specimen and one direction. With no more rows than that, each is its own mean.
+    ///
+    /// Rows of a static map have no order: neighbours are those of the same pressure level and nearly the same contraction.
+    pub(crate) fn of(record: &Record, used: &[bool], levels: &Levels, most: usize) -> Option<Self> {
+        let rows = used.iter().filter(|counts| **counts).count();
+        let size = rows.div_ceil(most.max(1)).max(1);
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        let mut sweeps: Vec<Range<usize>> = Vec::new();
+        for sweep in record.sweeps() {
+            let start = groups.len();
+            let mut rows: Vec<usize> = sweep.clone().filter(|row| used[*row]).collect();
+            if size > 1 && !record.is_path() {
+                sort_as_map(&mut rows, record, levels);
+            }
+            for run in runs(&rows, record, levels) {
+                let parts = run.len().div_ceil(size);
+                groups.extend(
+                    (0..parts).map(|i| run[i * run.len() / parts..(i + 1) * run.len() / parts].to_vec()),
+                );
+            }
+            if groups.len() > start {
+                sweeps.push(start..groups.len());
+            }
+        }
+        let force = groups.iter().map(|group| mean(group, record.force())).collect();
+        let averaged = record.averaged(&groups, force, sweeps)?;
+        Some(Self { record: averaged, groups })
+    }
+
+    /// Number of rows in each mean.
+    pub(crate) fn counts(&self) -> impl Iterator<Item = f64> {
+        self.groups.iter().map(|group| group.len() as f64)
+    }
+
+    /// Means of values of the long record.
+    pub(crate) fn means(&self, values: &[f64]) -> Vec<f64> {
+        self.groups.iter().map(|group| mean(group, values)).collect()
+    }
+
+    /// The forces that the means stand for: the model's at the mean plus the mean residual, so that what the model already says of the curvature
+    /// within a group is not taken for a misfit.
+    pub(crate) fn forces(&self, record: &Record, model: &[f64], at_means: &[f64]) -> Vec<f64> {
+        let residual: Vec<f64> =
+            record.force().iter().zip(model).map(|(measured, force)| measured - force).collect();
+        self.means(&residual).iter().zip(at_means).map(|(residual, force)| residual + force).collect()
+    }
+
+    /// Scatter of residuals within the groups: sum of squares about their means, and its degrees of freedom.
+    pub(crate) fn within(&self, residual: &[f64]) -> (f64, f64) {
+        let mut sum = 0.0;
+        let mut freedom = 0.0;
+        for group in &self.groups {
+            let middle = mean(group, residual);
+            sum += group.iter().map(|row| (residual[*row] - middle).powi(2)).sum::<f64>();
+            freedom += group.len() as f64 - 1.0;
+        }
+        (sum, freedom)
+    }
+}
+
+fn mean(group: &[usize], values: &[f64]) -> f64 {
+    group.iter().map(|row| values[*row]).sum::<f64>() / group.len() as f64
+}
+
+fn sort_as_map(rows: &mut [usize], record: &Record, levels: &Levels) {
+    let moments = record.moments();
+    rows.sort_by(|a, b| {
+        let key = |row: usize| (moments[row].specimen, levels.of[row]);
+        key(*a).cmp(&key(*b)).then(moments[*a].contraction.total_cmp(&moments[*b].contraction)).then(a.cmp(b))
+    });
+}
+
+/// Stretches of rows with one direction, specimen and pressure level.
+fn runs<'r>(rows: &'r [usize], record: &'r Record, levels: &'r Levels) -> impl Iterator<Item = &'r [usize]> {
+    let moments = record.moments();
+    rows.chunk_by(move |a, b| {
+        let [first, second] = [a, b].map(|row| &moments[*row]);
+        first.specimen == second.specimen
+            && first.direction.total_cmp(&second.direction).is_eq()
+            && first.cycle.floor().total_cmp(&second.cycle.floor()).is_eq()
+            && (record.is_path() || levels.of[*a] == levels.of[*b])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::Moment;
+
+    fn triangle(rows: usize) -> Record {
+        let moments: Vec<Moment> = (0..rows)
+            .map(|i| {
+                let part = i as f64 / (rows - 1) as f64;
+                let up = part < 0.5;
+                Moment {
+                    direction: if up { 1.0 } else { -1.0 },
+                    begins: i == 0,
+                    clock: i as f64,
+                    time: i as f64,
+                    ..Moment::at_rest(2e5, 0.2 * if up { 2.0 * part } else { 2.0 - 2.0 * part })
+                }
+            })
+            .collect();
+        let force = moments.iter().map(|m| 1000.0 * m.contraction).collect();
+        Record::from_moments(moments, force, std::iter::once(0..rows).collect()).unwrap()
+    }
+
+    #[test]
+    fn short_records_stay_what_they_are() {
+        let record = triangle(50);
+        let levels = Levels::of(&record, &[true; 50]);
+        let averaged = Averaged::of(&record, &[true; 50], &levels, 100).unwrap();
+        assert_eq!(averaged.record.force(), record.force());
+        let [own, whole] =
+            [&averaged.record, &record].map(|record| record.moments()[7].contraction.to_bits());
+        assert_eq!(own, whole);
+        assert_eq!(averaged.within(record.force()), (0.0, 0.0));
+    }
+
+    #[test]
+    fn means_keep_directions_apart_and_lose_no_row() {
+        let record = triangle(1000);
+        let levels = Levels::of(&record, &vec![true; 1000]);
+        let averaged = Averaged::of(&record, &vec![true; 1000], &levels, 100).unwrap();
+        assert!(averaged.groups.len() >= 100 && averaged.groups.len() <= 102, "{}", averaged.groups.len());
+        assert!((averaged.counts().sum::<f64>() - 1000.0).abs() < 1e-9);
+        for (moment, force) in averaged.record.moments().iter().zip(averaged.record.force()) {
+            assert!((moment.direction.abs() - 1.0).abs() < 1e-15);
+            // A straight line is its own mean.
+            assert!((force - 1000.0 * moment.contraction).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_curved_model_leaves_no_misfit_of_its_own() {
+        let record = triangle(1000);
+        let levels = Levels::of(&record, &vec![true; 1000]);
+        let averaged = Averaged::of(&record, &vec![true; 1000], &levels, 20).unwrap();
+        let curved = |m: &Moment| 1e4 * m.contraction.powi(2);
+        let model: Vec<f64> = record.moments().iter().map(curved).collect();
+        let at_means: Vec<f64> = averaged.record.moments().iter().map(curved).collect();
+        let exact =
+            Record::from_moments(record.moments().to_vec(), model.clone(), record.sweeps().to_vec()).unwrap();
+        let forces = averaged.forces(&exact, &model, &at_means);
+        for (force, at_mean) in forces.iter().zip(&at_means) {
+            assert!((force - at_mean).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! Which effects the data can't tell from a named one: rivals of the same evidence, or of a separation within the noise.
+//!
+//! ```text
+//! d_ee' = min over a' of |s_e - s_e' a'|,    s_e the whitened change of the force by e at its best numbers, without what the other numbers can do
+//! ```
+
+use bulge_effects::Effect;
+use bulge_model::{Model, ModelError, Wanted, Warm};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+use crate::diagnosis::confirm::Confirmed;
+use crate::diagnosis::scene::{Given, Scene};
+use crate::diagnosis::search::{Hypothesis, Stage, Tried, WORTH, singles, tempered};
+use crate::dot::dot;
+
+/// Rivals whose log evidence is less than this below stay in the class.
+pub(crate) const EVIDENCE: f64 = 3.0;
+/// Effects that differ by less than this many sigmas are the same on these data.
+pub(crate) const SAME: f64 = 1.0;
+/// Unless the data have decided after all: this far below they are out.
+pub(crate) const DECIDED: f64 = 6.0;
+/// And those that differ by fewer sigmas than this: one error in a thousand.
+pub(crate) const SEPARATION: f64 = 3.29;
+/// Log evidence by which a rival must be better to take the place of an effect that was accepted before the others.
+const SWAP: f64 = 1.0;
+/// Rivals this far below in linear evidence aren't fitted.
+const FITTED: f64 = 8.0;
+/// Most rivals that are fitted.
+const MOST: usize = 8;
+
+/// An effect that could stand in for a named one.
+#[derive(Debug, Clone)]
+pub(crate) struct Rival {
+    pub(crate) effect: Arc<dyn Effect>,
+    /// Log evidence over that of the model without either.
+    pub(crate) log_evidence: f64,
+    /// Sigmas between the two, after the rival has done its best.
+    pub(crate) separation: f64,
+    /// Whether the data can't decide.
+    pub(crate) in_class: bool,
+    /// The fit, where one was made.
+    pub(crate) fit: Option<Confirmed>,
+}
+
+/// A named effect and what stands beside it.
+#[derive(Debug, Clone)]
+pub(crate) struct Class {
+    pub(crate) effect: Arc<dyn Effect>,
+    /// Log evidence over that of the model without it.
+    pub(crate) log_evidence: f64,
+    /// Its length in sigmas beside the others.
+    pub(crate) detectability: f64,
+    /// How much more than chance the misfit of the whole model scatters, as a ratio of variances.
+    pub(crate) scatter: f64,
+    /// Whether other effects were named besides.
+    pub(crate) is_further: bool,
+    pub(crate) rivals: Vec<Rival>,
+}
+
+impl Class {
+    /// An effect without which there is no model at all: nothing stands beside it, and it is as long as what it made the misfit of the base fall by.
+    pub(crate) fn alone(stage: &Stage, place: usize, base: &Stage) -> Self {
+        let effect = Arc::clone(&stage.added[place]);
+        let scatter = stage.scatter();
+        let gain = (base.confirmed.cost() - stage.confirmed.cost()).max(0.0) / scatter;
+        let is_further = stage.added.len() > 1;
+        Self {
+            effect,
+            log_evidence: 0.5 * gain,
+            detectability: gain.sqrt(),
+            scatter,
+            is_further,
+            rivals: Vec::new(),
+        }
+    }
+}
+
+impl Given<'_> {
+    /// The class of one of the added effects, all others staying, and the stage without it; none if there is no model without it that these data could come
+    /// from.
+    pub(crate) fn class(&self, base: &Model, stage: &Stage, place: usize) -> Option<(Class, Stage)> {
+        let effect = Arc::clone(&stage.added[place]);
+        let others: Vec<Arc<dyn Effect>> =
+            stage.added.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, e)| Arc::clone(e)).collect();
+        let without = self.refitted(base, stage, &others).ok()?;
+        let without = self.stage(others, without).ok()?;
+        let signal = self.signal(&stage.confirmed, &without.scene).ok()?;
+        let name = effect.card().name;
+        let own = without.scene.showings.effects.iter().position(|s| s.effect.card().name == name);
+        let ticket = own.map_or(0.0, |own| crate::diagnosis::search::ticket(&without.scene, own));
+        let scatter = stage.scatter();
+        let gain = without.confirmed.cost() - stage.confirmed.cost();
+        let log_evidence =
+            tempered(stage.confirmed.log_evidence - without.confirmed.log_evidence + ticket, gain, scatter);
+        let list = singles(&without.scene, &without.confirmed.prepared.model);
+        let best = list.iter().map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
+        let mut fitted = 0;
+        let rivals: Vec<(Hypothesis, f64, bool)> = list
+            .into_iter()
+            .filter(|h| Some(h.effects[0]) != own)
+            .map(|h| {
+                let separation = separation(&without.scene, h.effects[0], &signal) / scatter.sqrt();
+                let near =
+                    (h.log_evidence > best - FITTED * scatter || separation < SEPARATION) && fitted < MOST;
+                fitted += usize::from(near);
+                (h, separation, near)
+            })
+            .collect();
+        let rivals = rivals
+            .into_par_iter()
+            .map(|(hypothesis, separation, near)| {
+                let (linear, gain_of) = (hypothesis.log_evidence, hypothesis.gain);
+                let place = hypothesis.effects[0];
+                let tried = near.then(|| self.fitted(base, &without, hypothesis));
+                Self::rival(
+                    &without,
+                    place,
+                    tempered(linear, gain_of, scatter),
+                    separation,
+                    tried,
+                    (log_evidence, scatter),
+                )
+            })
+            .collect();
+        let detectability = dot(&signal, &signal).sqrt() / scatter.sqrt();
+        let is_further = stage.added.len() > 1;
+        Some((Class { effect, log_evidence, detectability, scatter, is_further, rivals }, without))
+    }
+
+    /// A stage with the best rival instead of an effect, where that is clearly better and explains the data no less.
+    pub(crate) fn swapped(&self, stage: &Stage, place: usize, class: &Class) -> Option<Stage> {
+        let converged = |rival: &&Rival| rival.fit.as_ref().is_some_and(|fit| fit.converged);
+        let better = |a: &&Rival, b: &&Rival| a.log_evidence.total_cmp(&b.log_evidence);
+        let rival = class.rivals.iter().filter(converged).max_by(better)?;
+        if rival.log_evidence <= class.log_evidence + SWAP {
+            return None;
+        }
+        let mut added = stage.added.clone();
+        added.remove(place);
+        added.push(Arc::clone(&rival.effect));
+        if rival.fit.as_ref()?.is_absurd(&[Arc::clone(&rival.effect)]) {
+            return None;
+        }
+        let other = self.stage(added, rival.fit.clone()?).ok()?;
+        (other.adequate || !stage.adequate).then_some(other)
+    }
+
+    /// A stage with fewer effects: from where it was, else from usual numbers; what was best with the effect may not even have an equilibrium
+    /// without it.
+    fn refitted(
+        &self,
+        base: &Model,
+        stage: &Stage,
+        others: &[Arc<dyn Effect>],
+    ) -> Result<Confirmed, ModelError> {
+        let carried = self.confirm(base, others, Some(stage.confirmed.numbers()), &[]);
+        let mut best = carried;
+        for part in [1.0, 0.1] {
+            if best.as_ref().is_ok_and(|found| found.converged) {
+                break;
+            }
+            let usual = Self::usual(base, others, part);
+            let other = self.confirm(base, others, None, &[usual]);
+            best = match (best, other) {
+                (Ok(a), Ok(b)) => Ok(if b.cost() < a.cost() { b } else { a }),
+                (Err(_), Ok(b)) => Ok(b),
+                (best, Err(_)) => best,
+            };
+        }
+        best
+    }
+
+    fn rival(
+        without: &Stage,
+        place: usize,
+        linear: f64,
+        separation: f64,
+        tried: Option<Tried>,
+        (named, scatter): (f64, f64),
+    ) -> Rival {
+        let log_evidence = tried.as_ref().map_or(linear, |tried| {
+            let gain = tried.confirmed.as_ref().map_or(0.0, |c| without.confirmed.cost() - c.cost());
+            tempered(tried.log_evidence, gain, scatter)
+        });
+        // What is the same on these data stays, however unlikely its numbers are: priors may be wrong.
+        let undecided = log_evidence > named - EVIDENCE
+            || separation < SEPARATION && log_evidence > named - DECIDED
+            || separation < SAME;
+        let worth = WORTH[usize::from(!without.added.is_empty())];
+        let in_class = tried.is_some() && log_evidence.is_finite() && log_evidence > worth && undecided;
+        let effect = Arc::clone(&without.scene.showings.effects[place].effect);
+        Rival { effect, log_evidence, separation, in_class, fit: tried.and_then(|tried| tried.confirmed) }
+    }
+
+    /// What an effect changes, in the coordinates of the scene without it.
+    pub(crate) fn signal(&self, with: &Confirmed, without: &Scene) -> Result<Vec<f64>, ModelError> {
+        let model = &with.prepared.model;
+        let force = model.evaluate_warm(self.record, &with.theta, &Wanted::default(), &Warm::new())?.force;
+        let mut change: Vec<f64> =
+            force.iter().zip(&without.force).map(|(with, without)| with - without).collect();
+        // The law was made for this record.
+        let _ = self.whitening.apply(&mut change);
+        change.resize(self.record.len() + without.priors, 0.0);
+        Ok(without.space.coordinates(&change))
+    }
+}
+
+/// What is left of a signal when an effect does its best to stand in for it, in sigmas.
+pub(crate) fn separation(scene: &Scene, effect: usize, signal: &[f64]) -> f64 {
+    let whole = dot(signal, signal);
+    let most = scene
+        .candidates
+        .iter()
+        .filter(|c| c.effect == effect)
+        .map(|c| c.explains(signal).gain)
+        .fold(0.0, f64::max);
+    (whole - most).max(0.0).sqrt()
+}

@@ -1,0 +1,312 @@
+//! How often a claim is right on data like these: the whole decision simulated on the user's own design, in the coordinates of the screen.
+//!
+//! A truth is drawn from what the data leave possible (nothing, or one of the effects, with a size that they allow), the misfit with its noise from that truth, and the
+//! decision is made as on the real data. Of the simulated data sets that lead to the same claim, as clearly as the real ones do, the part in which it is right is the
+//! confidence: less the chance that no effect of the catalogue is the right one.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::diagnosis::candidates::{Candidate, log_evidence};
+use crate::diagnosis::classes::{Class, DECIDED, EVIDENCE, Rival, SAME, SEPARATION};
+use crate::diagnosis::null::{Null, Statistics};
+use crate::diagnosis::scene::{Given, Scene};
+use crate::diagnosis::search::{ALARM, Tried, WORTH, ticket};
+use crate::diagnosis::showing::Screened;
+use crate::dot::dot;
+use crate::random::Random;
+
+/// Simulated data sets.
+const DRAWS: usize = 4000;
+/// Data sets from one stream of random numbers.
+const PER_STREAM: usize = 100;
+/// A claim is as clear as another if the lead of its log evidence over the next effect differs by less than this part of the lead, or this much.
+const AS_CLEAR: [f64; 2] = [0.3, 1.0];
+/// A claim with a larger lead is as clear as one with this lead.
+const CLEAR: f64 = DECIDED;
+/// Chance that an effect explains the data and is the wrong one all the same, because the right one is not in the catalogue or its formula is not exact: no
+/// catalogue is complete. No claim is surer than that.
+const OUTSIDE: f64 = 0.1;
+/// Fewest claims of the same kind from which a rate is stated.
+const ENOUGH: usize = 20;
+
+/// How often a claim is right.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Confidence {
+    /// Part of the simulated claims of this kind in which the named effect is the right one (or differs from it by less than one sigma).
+    pub named: f64,
+    /// Part in which the right one is in the class.
+    pub class: f64,
+    /// Wilson's 95 % interval of `named`.
+    pub interval: [f64; 2],
+    /// Simulated claims of this kind.
+    pub claims: usize,
+}
+
+impl Confidence {
+    /// Of an effect without which no model could be made to compare with: its weight among what was tried when it was added. Nothing was simulated.
+    pub(crate) fn of_tried(tried: &[Tried], effect: &str, effects: &[Screened]) -> Self {
+        let most = tried.iter().map(|t| t.log_evidence).fold(f64::NEG_INFINITY, f64::max);
+        let weight = |t: &Tried| (t.log_evidence - most).exp();
+        let holds =
+            |t: &&Tried| t.hypothesis.effects.iter().any(|i| effects[*i].effect.card().name == effect);
+        let all: f64 = tried.iter().map(weight).sum();
+        let own: f64 = tried.iter().filter(holds).map(weight).sum();
+        let share = if all > 0.0 { (1.0 - OUTSIDE) * own / all } else { 0.0 };
+        Self { named: share, class: share, interval: [0.0, 1.0], claims: 0 }
+    }
+}
+
+/// A truth that is possible: an effect at one of its forms, or nothing.
+struct Truth<'a> {
+    candidate: Option<&'a Candidate>,
+    effect: Option<usize>,
+    weight: f64,
+    sizes: Vec<f64>,
+}
+
+/// The confidence of a claim, in the scene of the model without the named effect.
+///
+/// Where something unknown remains, its scatter counts as noise: misfits are then in units of that.
+pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &Class) -> Confidence {
+    let unit = 1.0 / class.scatter.sqrt();
+    let found: Vec<f64> = scene.z.iter().map(|z| z * unit).collect();
+    let place = |name: &str| scene.showings.effects.iter().position(|s| s.effect.card().name == name);
+    let Some(named) = place(class.effect.card().name) else {
+        return Confidence { named: 0.0, class: 0.0, interval: [0.0, 1.0], claims: 0 };
+    };
+    let worth = WORTH[usize::from(class.is_further)];
+    let tickets: Vec<f64> = (0..scene.showings.effects.len()).map(|i| ticket(scene, i)).collect();
+    let truths = truths(scene, &found, &tickets, class, named);
+    let family = class.effect.card().family;
+    let rivals = class.rivals.iter().filter(|rival| rival.effect.card().family != family);
+    let lead = class.log_evidence - rivals.map(|rival| rival.log_evidence).fold(0.0, f64::max);
+    let counted: Vec<[usize; 3]> = (0..DRAWS / PER_STREAM)
+        .into_par_iter()
+        .map(|stream| {
+            let mut random = Random::new(given.seed, 1000 + stream as u64);
+            let mut counts = [0; 3];
+            for _ in 0..PER_STREAM {
+                let truth = drawn(&truths, random.uniform());
+                let z = misfit(given, scene, truth, &mut random);
+                let Some(claim) = Claim::of(scene, null, &tickets, worth, &z) else { continue };
+                if claim.named != named || !is_as_clear(claim.lead(scene), lead) {
+                    continue;
+                }
+                counts[0] += 1;
+                counts[1] += usize::from(truth.is_some_and(|t| claim.is_same(scene, t)));
+                counts[2] += usize::from(truth.is_some_and(|t| claim.holds(scene, t)));
+            }
+            counts
+        })
+        .collect();
+    let [claims, right, held] =
+        counted.into_iter().fold([0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
+    if claims < ENOUGH {
+        // The claim would hardly come again: what is left is the weight of the evidence.
+        let of = |counts: &dyn Fn(&Rival) -> bool| {
+            let is_one = |effect: usize| {
+                let name = scene.showings.effects[effect].effect.card().name;
+                let rival = class.rivals.iter().find(|rival| rival.effect.card().name == name);
+                effect == named
+                    || rival.is_some_and(|rival| rival.effect.card().family == family || counts(rival))
+            };
+            let right = truths.iter().filter(|t| t.effect.is_some_and(is_one));
+            (1.0 - OUTSIDE) * right.map(|t| t.weight).sum::<f64>()
+        };
+        let (named, class) = (of(&|rival| rival.separation < SAME), of(&|rival| rival.in_class));
+        return Confidence { named, class, interval: [0.0, 1.0], claims };
+    }
+    let part = |count: usize| (1.0 - OUTSIDE) * count as f64 / claims as f64;
+    let interval = wilson(right, claims).map(|end| (1.0 - OUTSIDE) * end);
+    Confidence { named: part(right), class: part(held), interval, claims }
+}
+
+/// Whether a claim with one lead is as clear as one with another.
+fn is_as_clear(lead: f64, other: f64) -> bool {
+    let (lead, other) = (lead.min(CLEAR), other.min(CLEAR));
+    (lead - other).abs() <= (AS_CLEAR[0] * other).max(AS_CLEAR[1])
+}
+
+/// Everything that the data leave possible, with weights that add up to 1.
+fn truths<'a>(scene: &'a Scene, z: &[f64], tickets: &[f64], class: &Class, named: usize) -> Vec<Truth<'a>> {
+    let mut found = vec![Truth { candidate: None, effect: None, weight: 0.0, sizes: Vec::new() }];
+    for candidate in &scene.candidates {
+        let explained = candidate.explains(z);
+        if explained.gain <= 0.0 {
+            continue;
+        }
+        let linear = candidate.log_evidence(&explained) + tickets[candidate.effect];
+        found.push(Truth {
+            candidate: Some(candidate),
+            effect: Some(candidate.effect),
+            weight: linear,
+            sizes: explained.sizes,
+        });
+    }
+    // Where an effect was fitted as it is, that evidence counts, shared among its forms.
+    let mut fitted: Vec<(usize, f64)> = class
+        .rivals
+        .iter()
+        .filter(|rival| rival.fit.is_some() && rival.log_evidence.is_finite())
+        .filter_map(|rival| {
+            let name = rival.effect.card().name;
+            Some((
+                scene.showings.effects.iter().position(|s| s.effect.card().name == name)?,
+                rival.log_evidence,
+            ))
+        })
+        .collect();
+    fitted.push((named, class.log_evidence));
+    for (effect, evidence) in fitted {
+        let own = || found.iter().filter(|t| t.effect == Some(effect)).map(|t| t.weight);
+        let most = own().fold(f64::NEG_INFINITY, f64::max);
+        let all = most + own().map(|w| (w - most).exp()).sum::<f64>().ln();
+        for truth in found.iter_mut().filter(|t| t.effect == Some(effect)) {
+            truth.weight += evidence - all;
+        }
+    }
+    let most = found.iter().map(|t| t.weight).fold(f64::NEG_INFINITY, f64::max);
+    let sum: f64 = found.iter().map(|t| (t.weight - most).exp()).sum();
+    for truth in &mut found {
+        truth.weight = (truth.weight - most).exp() / sum;
+    }
+    found
+}
+
+fn drawn<'t, 'a>(truths: &'t [Truth<'a>], mut left: f64) -> Option<&'t Truth<'a>> {
+    for truth in truths {
+        left -= truth.weight;
+        if left <= 0.0 {
+            return Some(truth);
+        }
+    }
+    truths.last()
+}
+
+/// A misfit as this truth would make it.
+fn misfit(given: &Given<'_>, scene: &Scene, truth: Option<&Truth<'_>>, random: &mut Random) -> Vec<f64> {
+    let mut z = scene.chance_of(given).draw(random);
+    let Some((truth, candidate)) = truth.and_then(|t| Some((t, t.candidate?))) else { return z };
+    for (column, size) in candidate.columns.iter().zip(&truth.sizes) {
+        // A size that the data allow: its own uncertainty, its sign kept.
+        let sd = 1.0 / dot(column, column).sqrt().max(f64::MIN_POSITIVE);
+        let mut drawn = if candidate.whole { *size } else { size + sd * random.normal() };
+        if drawn * size < 0.0 {
+            drawn = 0.0;
+        }
+        for (value, c) in z.iter_mut().zip(column) {
+            *value += drawn * c;
+        }
+    }
+    z
+}
+
+/// What would be claimed.
+struct Claim {
+    named: usize,
+    /// Log evidence of each effect.
+    evidence: Vec<f64>,
+    /// What the named effect would change.
+    signal: Vec<f64>,
+    /// Log evidence from which an effect counts.
+    worth: f64,
+}
+
+impl Claim {
+    /// The decision on a misfit: none if nothing would be named.
+    fn of(scene: &Scene, null: &Null, tickets: &[f64], worth: f64, z: &[f64]) -> Option<Self> {
+        let statistics = Statistics::of(z, &scene.candidates, &[]);
+        if null.chance(&statistics)[0] >= ALARM[0] {
+            return None;
+        }
+        let mut evidence = vec![f64::NEG_INFINITY; tickets.len()];
+        let mut best: Option<(f64, &Candidate, Vec<f64>)> = None;
+        for candidate in &scene.candidates {
+            let explained = candidate.explains(z);
+            let value = log_evidence(&[candidate], &explained) + tickets[candidate.effect];
+            let own = &mut evidence[candidate.effect];
+            let high = own.max(value);
+            *own = if high == f64::NEG_INFINITY {
+                high
+            } else {
+                high + ((*own - high).exp() + (value - high).exp()).ln()
+            };
+            if best.as_ref().is_none_or(|(other, _, _)| value > *other) {
+                best = Some((value, candidate, explained.sizes));
+            }
+        }
+        let named = (0..evidence.len()).max_by(|a, b| evidence[*a].total_cmp(&evidence[*b]))?;
+        let (_, candidate, sizes) = best.filter(|_| evidence[named] > worth)?;
+        let length = candidate.columns.iter().map(Vec::len).max().unwrap_or(0);
+        let mut signal = vec![0.0; length];
+        for (column, size) in candidate.columns.iter().zip(&sizes) {
+            for (value, c) in signal.iter_mut().zip(column) {
+                *value += size * c;
+            }
+        }
+        Some(Self { named, evidence, signal, worth })
+    }
+
+    /// Log evidence over that of the next effect of another family, and over none.
+    fn lead(&self, scene: &Scene) -> f64 {
+        let family = |effect: usize| scene.showings.effects[effect].effect.card().family;
+        let others = (0..self.evidence.len()).filter(|effect| family(*effect) != family(self.named));
+        self.evidence[self.named] - others.map(|effect| self.evidence[effect]).fold(0.0, f64::max)
+    }
+
+    fn separation(&self, scene: &Scene, effect: usize) -> f64 {
+        let most = scene
+            .candidates
+            .iter()
+            .filter(|c| c.effect == effect)
+            .map(|c| c.explains(&self.signal).gain)
+            .fold(0.0, f64::max);
+        (dot(&self.signal, &self.signal) - most).max(0.0).sqrt()
+    }
+
+    /// Whether the named effect is the truth, or the same as far as these data go.
+    fn is_same(&self, scene: &Scene, truth: &Truth<'_>) -> bool {
+        let family = |effect: usize| scene.showings.effects[effect].effect.card().family.to_owned();
+        truth.effect.is_some_and(|effect| {
+            family(effect) == family(self.named) || self.separation(scene, effect) < SAME
+        })
+    }
+
+    /// Whether the truth is in the class.
+    fn holds(&self, scene: &Scene, truth: &Truth<'_>) -> bool {
+        self.is_same(scene, truth)
+            || truth.effect.is_some_and(|effect| {
+                self.evidence[effect] > self.worth
+                    && (self.evidence[effect] > self.evidence[self.named] - EVIDENCE
+                        || self.evidence[effect] > self.evidence[self.named] - DECIDED
+                            && self.separation(scene, effect) < SEPARATION)
+            })
+    }
+}
+
+/// Wilson's 95 % interval of a rate.
+pub(crate) fn wilson(good: usize, all: usize) -> [f64; 2] {
+    const Z: f64 = 1.959_964;
+    if all == 0 {
+        return [0.0, 1.0];
+    }
+    let (n, p) = (all as f64, good as f64 / all as f64);
+    let middle = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
+    let half = Z / (1.0 + Z * Z / n) * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
+    [(middle - half).max(0.0), (middle + half).min(1.0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wilsons_interval_by_hand() {
+        // 93 of 100: 0.8625 to 0.9657 (Wilson 1927).
+        let [low, high] = wilson(93, 100);
+        assert!((low - 0.8625).abs() < 1e-3 && (high - 0.9657).abs() < 1e-3, "{low} {high}");
+        assert!(wilson(0, 0)[0] < 1e-15 && wilson(0, 0)[1] > 1.0 - 1e-15);
+        assert!(wilson(10, 10)[1] > 0.999 && wilson(10, 10)[0] > 0.7);
+    }
+}

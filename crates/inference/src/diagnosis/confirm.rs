@@ -1,0 +1,289 @@
+//! Hypotheses fitted as they are, not in linear approximation: bounded, whitened, from several starts, with a certificate and the evidence.
+//!
+//! ```text
+//! log Z = -chi^2/2 + log prior + (k/2) log 2 pi - (1/2) log |H|        (Laplace),   H = J' J + the curvature of the priors
+//! ```
+
+use bulge_effects::Effect;
+use bulge_model::{Model, ModelError};
+use bulge_numerics::least_squares::{Bounds, Minimum, Options};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+use crate::diagnosis::candidates::log_prior;
+use crate::diagnosis::scene::Given;
+use crate::diagnosis::showing::{Showing, Sign, Size, sizes};
+use crate::fit::carry_over::carry_over;
+use crate::fit::nuisance::{Prepared, with_nuisances};
+use crate::fit::problem::{FitProblem, free};
+use crate::fit::settle::settled;
+
+/// Tolerance of the fits, as a part of what the residuals are.
+const TOLERANCE: f64 = 1e-5;
+/// What a size costs that is twice as large as plausible.
+const IMPLAUSIBLE: f64 = 8.0;
+const EVALUATIONS: usize = 50;
+
+/// A model with its effects at their best numbers.
+#[derive(Debug, Clone)]
+pub(crate) struct Confirmed {
+    pub(crate) prepared: Prepared,
+    pub(crate) theta: Vec<f64>,
+    pub(crate) minimum: Minimum,
+    /// Log evidence, up to a constant of the data.
+    pub(crate) log_evidence: f64,
+    /// Whether the best search ended in a minimum.
+    pub(crate) converged: bool,
+}
+
+impl Confirmed {
+    /// The model and its numbers, for others to start from.
+    pub(crate) fn numbers(&self) -> (&Model, &[f64]) {
+        (&self.prepared.model, &self.theta)
+    }
+
+    /// Whether a number of these effects is at the end of all that was searched, and beyond what is plausible: that explains nothing.
+    pub(crate) fn is_absurd(&self, effects: &[Arc<dyn Effect>]) -> bool {
+        let model = &self.prepared.model;
+        free(model).into_iter().zip(&self.minimum.certificate.at_bound).any(|(index, at_bound)| {
+            let (p, value) = (&model.parameters()[index], self.theta[index]);
+            let is_of = effects.iter().any(|effect| effect.card().name == p.effect);
+            is_of && at_bound.is_some() && !(p.plausible.0..=p.plausible.1).contains(&value)
+        })
+    }
+
+    /// The sum of squares of whitened residuals and priors.
+    pub(crate) fn cost(&self) -> f64 {
+        self.minimum.cost
+    }
+}
+
+impl Given<'_> {
+    /// A base model with further effects, which start where each of `starts` says: the numbers of the effects in order.
+    pub(crate) fn confirm(
+        &self,
+        base: &Model,
+        effects: &[Arc<dyn Effect>],
+        from: Option<(&Model, &[f64])>,
+        starts: &[Vec<f64>],
+    ) -> Result<Confirmed, ModelError> {
+        let mut model = base.clone();
+        for effect in effects {
+            model = model.with(effect, None)?;
+        }
+        let prepared = with_nuisances(&model, self.catalogue)?;
+        let mut first = prepared.model.start();
+        if let Some((model, numbers)) = from {
+            carry_over(model, numbers, &prepared.model, &mut first);
+        }
+        let own: usize = base.parameters().len();
+        let all: usize = model.parameters().len() - own;
+        let mut thetas: Vec<Vec<f64>> = starts
+            .iter()
+            .filter(|values| values.len() == all)
+            .map(|values| {
+                let mut theta = first.clone();
+                theta[own..own + all].copy_from_slice(values);
+                theta
+            })
+            .collect();
+        if thetas.is_empty() {
+            thetas.push(first);
+        }
+        self.best(prepared, &thetas)
+    }
+
+    /// The least of the minima that several starts lead to.
+    fn best(&self, prepared: Prepared, starts: &[Vec<f64>]) -> Result<Confirmed, ModelError> {
+        let priors = nuisance_priors(&prepared);
+        let searched: Vec<Result<(Minimum, Vec<f64>), ModelError>> = starts
+            .par_iter()
+            .map(|start| {
+                let problem = FitProblem::whitened(
+                    &prepared.model,
+                    self.record,
+                    self.whitening,
+                    start.clone(),
+                    &priors,
+                );
+                let bounds = problem.bounds();
+                let inside = inside(problem.coordinates(start), &bounds);
+                let options = Options {
+                    check_curvature: false,
+                    tolerance: TOLERANCE,
+                    max_evaluations: EVALUATIONS,
+                    ..Options::default()
+                };
+                match settled(&problem, &inside, &bounds, &options) {
+                    Ok(minimum) => {
+                        let theta = problem.theta(&minimum.theta);
+                        Ok((minimum, theta))
+                    }
+                    Err(bulge_numerics::least_squares::LeastSquaresError::Start(error)) => Err(error),
+                    Err(_) => Err(ModelError::NotFinite {
+                        rows: Vec::new(),
+                        what: "the fit cannot start: the model has no finite derivatives there",
+                    }),
+                }
+            })
+            .collect();
+        let mut best: Option<(Minimum, Vec<f64>)> = None;
+        let mut first_error = None;
+        for found in searched {
+            match found {
+                Ok(found) => {
+                    if best.as_ref().is_none_or(|other| found.0.cost < other.0.cost) {
+                        best = Some(found);
+                    }
+                }
+                Err(error) => first_error = first_error.or(Some(error)),
+            }
+        }
+        let Some((minimum, theta)) = best else {
+            return Err(first_error.unwrap_or(ModelError::Values { given: 0, expected: 1 }));
+        };
+        let log_evidence = log_evidence(&prepared, &theta, &minimum);
+        Ok(Confirmed { converged: minimum.certificate.converged, prepared, theta, minimum, log_evidence })
+    }
+}
+
+/// Only what data sheets say is a prior of the fit: sizes of effects are free, their priors enter the evidence.
+fn nuisance_priors(prepared: &Prepared) -> Vec<Option<(f64, f64)>> {
+    prepared
+        .priors
+        .iter()
+        .zip(&prepared.nuisance)
+        .map(|(prior, nuisance)| prior.filter(|_| *nuisance))
+        .collect()
+}
+
+fn inside(mut coordinates: Vec<f64>, bounds: &Bounds) -> Vec<f64> {
+    for ((x, low), high) in coordinates.iter_mut().zip(&bounds.lower).zip(&bounds.upper) {
+        *x = if x.is_finite() { x.clamp(*low, *high) } else { *low };
+    }
+    coordinates
+}
+
+/// Laplace's approximation, each number with its prior: data sheets are normal, sizes of effects equally likely per decade, forms equally likely
+/// over what is plausible. A number that the data say nothing about costs nothing.
+fn log_evidence(prepared: &Prepared, theta: &[f64], minimum: &Minimum) -> f64 {
+    let model = &prepared.model;
+    let places = free(model);
+    let k = places.len();
+    let mut log = -0.5 * minimum.cost + 0.5 * k as f64 * std::f64::consts::TAU.ln();
+    let mut curvature = vec![0.0; k];
+    let mut held = vec![false; k];
+    let roles = roles(model);
+    for (column, index) in places.iter().enumerate() {
+        let p = &model.parameters()[*index];
+        if prepared.nuisance[*index] {
+            if let Some((_, sd)) = prepared.priors[*index] {
+                log -= (std::f64::consts::TAU.sqrt() * sd).ln();
+            }
+            continue;
+        }
+        let value = theta[*index];
+        let jacobian = if p.logarithmic { value.abs().max(f64::MIN_POSITIVE) } else { 1.0 };
+        if let Some(size) = roles[*index] {
+            let deviation = value - size.off;
+            if deviation == 0.0 {
+                // Off, at its bound: as if it weren't there.
+                held[column] = true;
+                continue;
+            }
+            let wide = size.scale.max(size.plausible.min(1e3 * size.scale)) / jacobian;
+            curvature[column] = 1.0 / (wide * wide);
+            let sd = 1.0 / (column_square(minimum, k, column).max(curvature[column])).sqrt() * jacobian;
+            log += log_prior(&size, deviation.abs().max(sd)) + jacobian.ln();
+            log -= IMPLAUSIBLE * (deviation.abs() / size.plausible - 1.0).max(0.0);
+        } else {
+            let (low, high) = (p.plausible.0.max(p.low), p.plausible.1.min(p.high));
+            let width = if p.logarithmic { (high / low.max(f64::MIN_POSITIVE)).ln() } else { high - low };
+            if !(width > 0.0 && width.is_finite()) {
+                held[column] = true;
+                continue;
+            }
+            log -= width.ln();
+            curvature[column] = 12.0 / (width * width);
+        }
+    }
+    let active: Vec<usize> = (0..k).filter(|column| !held[*column]).collect();
+    log -= 0.5 * (k - active.len()) as f64 * std::f64::consts::TAU.ln();
+    log - 0.5 * log_determinant(minimum, k, &active, &curvature)
+}
+
+/// Square of a column of the Jacobian.
+fn column_square(minimum: &Minimum, k: usize, column: usize) -> f64 {
+    (0..k).map(|row| minimum.r[row * k + column].powi(2)).sum()
+}
+
+fn log_determinant(minimum: &Minimum, k: usize, active: &[usize], curvature: &[f64]) -> f64 {
+    let entry = |i: usize, j: usize| {
+        let sum: f64 = (0..k).map(|row| minimum.r[row * k + i] * minimum.r[row * k + j]).sum();
+        if i == j { sum + curvature[i] } else { sum }
+    };
+    let scale: Vec<f64> = active.iter().map(|i| entry(*i, *i).max(f64::MIN_POSITIVE).sqrt()).collect();
+    let n = active.len();
+    if n == 0 {
+        return 0.0;
+    }
+    let scaled = nalgebra::DMatrix::from_fn(n, n, |i, j| entry(active[i], active[j]) / (scale[i] * scale[j]));
+    let eigenvalues = scaled.symmetric_eigenvalues();
+    let own: f64 = eigenvalues.iter().map(|value| value.max(1e-12).ln()).sum();
+    own + 2.0 * scale.iter().map(|s| s.ln()).sum::<f64>()
+}
+
+/// For each number of a model: how it is a size of its effect, if it is one.
+fn roles(model: &Model) -> Vec<Option<Size>> {
+    let mut roles = vec![None; model.parameters().len()];
+    for chosen in model.effects() {
+        let card = chosen.effect.card();
+        let cards: Vec<_> = chosen.effect.parameters().into_iter().map(|c| c.of(model.muscle())).collect();
+        for size in sizes(&cards) {
+            for (index, p) in model.parameters().iter().enumerate() {
+                if p.effect == card.name && p.name == cards[size.place].name {
+                    roles[index] = Some(size);
+                }
+            }
+        }
+    }
+    roles
+}
+
+/// The numbers of an effect that linear sizes stand for: where a fit starts. Several, where the effect isn't in proportion to its number.
+pub(crate) fn starts(
+    showing: &Showing,
+    effect: &Arc<dyn Effect>,
+    model: &Model,
+    found: &[f64],
+) -> Vec<Vec<f64>> {
+    let cards: Vec<_> = effect.parameters().into_iter().map(|card| card.of(model.muscle())).collect();
+    if cards.is_empty() {
+        return vec![Vec::new()];
+    }
+    if showing.whole {
+        return vec![showing.values.clone()];
+    }
+    let copies =
+        if effect.card().group == bulge_effects::Group::Specimen { model.specimens().len() } else { 1 };
+    let mut all: Vec<Vec<f64>> = Vec::new();
+    let quadratic = showing.sizes.iter().any(|size| size.secant.is_some());
+    for variant in if quadratic { &[0, 1][..] } else { &[0][..] } {
+        let mut values: Vec<f64> = (0..copies).flat_map(|_| showing.values.clone()).collect();
+        for (size, deviation) in showing.sizes.iter().zip(found) {
+            let place = size.copy * cards.len() + size.place;
+            let card = &cards[size.place];
+            let deviation = match size.secant {
+                // F = c v^2 and the secant says c step: v^2 = deviation step.
+                Some(step) if *variant == 1 => (deviation * step).abs().sqrt().copysign(step),
+                _ => *deviation,
+            };
+            // Not quite off: there a derivative may vanish.
+            let least = 1e-3 * size.scale * if size.sign == Sign::Negative { -1.0 } else { 1.0 };
+            let moved = if deviation == 0.0 { least } else { deviation };
+            values[place] = (size.off + moved).clamp(card.low, card.high);
+        }
+        all.push(values);
+    }
+    all
+}

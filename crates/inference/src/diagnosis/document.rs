@@ -1,0 +1,261 @@
+//! A diagnosis as a value: everything that text, JSON and report show.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+use crate::comparison::document::Comparison;
+use crate::diagnosis::confidence::Confidence;
+use crate::noise::law::NoiseLaw;
+
+/// What is missing in the model of a muscle, by the data.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Diagnosis {
+    /// `bulge.diagnosis/1`.
+    pub schema: &'static str,
+    /// Name of the muscle.
+    pub muscle: String,
+    /// What was measured.
+    pub data: DiagnosedData,
+    /// The noise, found first and then frozen.
+    pub noise: DiagnosedNoise,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The verdict in a sentence or two.
+    pub says: String,
+    /// Effects that are missing, in the order of adding.
+    pub missing: Vec<Missing>,
+    /// Where the verdict is *unknown*: effects that lower the error and leave the structure. Nothing is claimed of them.
+    pub nearest: Vec<Missing>,
+    /// All effects that were looked at.
+    pub candidates: Vec<CandidateResult>,
+    /// Errors from the base to the last effect.
+    pub ladder: Vec<LadderStep>,
+    /// The error that no model can go below \[N\].
+    pub noise_floor_n: f64,
+    /// On what the misfit of the base depends.
+    pub r#where: Vec<Located>,
+    /// What each added effect explains of the misfit before it: curves to plot.
+    pub explained: Vec<ExplainedStep>,
+    /// What is left.
+    pub remaining: Remaining,
+    /// What to measure next, if that would decide something.
+    pub next_experiment: Option<NextExperiment>,
+    /// What a reader should know before trusting the verdict.
+    pub warnings: Vec<String>,
+    /// The comparison with the effects that were found, for curves and plots; its ladder is empty where there were too few rows.
+    #[serde(skip)]
+    pub comparison: Comparison,
+}
+
+impl Diagnosis {
+    /// The effects that were added: those that are missing, or where the verdict is *unknown* the nearest ones.
+    #[must_use]
+    pub fn added(&self) -> &[Missing] {
+        if self.missing.is_empty() { &self.nearest } else { &self.missing }
+    }
+}
+
+/// The four verdicts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The base model explains the data within noise and tolerance.
+    Adequate,
+    /// Named effects are missing.
+    Missing,
+    /// There is a structure that no effect of the catalogue explains.
+    Unknown,
+    /// The data are too few or too noisy.
+    CannotTell,
+}
+
+/// What was measured.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DiagnosedData {
+    /// Rows in the files.
+    pub rows: usize,
+    /// Rows that count.
+    pub used: usize,
+    /// Rows that count as independent, under the noise law.
+    pub effective_rows: f64,
+    /// SHA-256 of the file, or of the digests of several.
+    pub sha256: String,
+    /// Number of sweeps.
+    pub sweeps: usize,
+    /// Number of specimens.
+    pub specimens: usize,
+}
+
+/// The noise.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DiagnosedNoise {
+    /// Standard deviation of a single row \[N\].
+    pub sd_n: f64,
+    /// Whether rows of a sweep depend on each other.
+    pub correlated: bool,
+    /// `repeats`, `saturated` or `instruments`.
+    pub source: String,
+    /// The law.
+    pub law: NoiseLaw,
+}
+
+/// An effect that is missing.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Missing {
+    /// Its name.
+    pub effect: String,
+    /// All effects that these data can't tell from it, itself first; members of a family under the family's name.
+    pub class: Vec<String>,
+    /// How often such a claim is right on data like these.
+    pub confidence: f64,
+    /// The same with its interval, and how often the class holds the right one.
+    pub simulated: Confidence,
+    /// Its numbers with 95 % intervals.
+    pub parameters: BTreeMap<String, ParameterResult>,
+    /// Whether a muscle or rig can have these numbers.
+    pub plausible: bool,
+    /// Its length in sigmas, beside everything else that could explain it.
+    pub detectability: f64,
+    /// Rivals, with how far they are.
+    pub rivals: Vec<RivalResult>,
+}
+
+/// A number of an effect.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ParameterResult {
+    /// Value in `unit`.
+    pub value: f64,
+    /// The unit.
+    pub unit: String,
+    /// Lower end of the 95 % interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// An effect beside a named one.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RivalResult {
+    /// Its name.
+    pub effect: String,
+    /// Log evidence of the named effect over it.
+    pub behind: f64,
+    /// Sigmas between the two.
+    pub separation: f64,
+}
+
+/// One effect of the catalogue.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CandidateResult {
+    /// Its name.
+    pub effect: String,
+    /// Log evidence over the base, prior chance included.
+    pub log_evidence: f64,
+    /// Square of sigmas that it explains alone.
+    pub score: f64,
+    /// `confirmed`, `rival`, `rejected`, `not-converged` or `not-testable`.
+    pub status: &'static str,
+    /// Least deviation of its first number that these data would show, in `unit`.
+    pub detection_limit: Option<f64>,
+    /// The unit of the limit.
+    pub unit: String,
+    /// RMS change of the force at that limit \[N\].
+    pub detection_limit_n: Option<f64>,
+    /// Part of the effect that the model's own numbers can compensate.
+    pub compensation: f64,
+    /// Why it could not be looked for, if so.
+    pub why: Option<String>,
+}
+
+/// One rung of the ladder.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LadderStep {
+    /// The effect added; none for the base.
+    pub added: Option<String>,
+    /// RMS error \[N\].
+    pub rmse_n: f64,
+    /// RMS error on what took no part in the fit \[N\].
+    pub held_out_rmse_n: Option<f64>,
+    /// Whether the data show no structure beyond.
+    pub adequate: bool,
+}
+
+/// A variable on which a misfit depends.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Located {
+    /// `contraction`, `pressure`, `direction`, `time`, `rate`, `temperature`, `cycle`, `specimen`.
+    pub variable: String,
+    /// Part of the misfit.
+    pub share: f64,
+    /// How often chance alone gives as much, Holm's correction included.
+    pub p: f64,
+    /// In words.
+    pub says: String,
+}
+
+/// What is left.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Remaining {
+    /// Whether there is structure beyond chance.
+    pub structured: bool,
+    /// RMS systematic misfit \[N\].
+    pub misfit_n: f64,
+    /// Its 95 % interval \[N\].
+    pub misfit_interval_n: [f64; 2],
+    /// What it looks like, in words.
+    pub hints: Vec<String>,
+    /// The systematic misfit over pressure, contraction and direction, where there is structure.
+    pub surface: Vec<SurfaceCurve>,
+}
+
+/// What an effect explains, when it is added.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExplainedStep {
+    /// The effect.
+    pub effect: String,
+    /// One curve for each pressure level and direction.
+    pub curves: Vec<ExplainedCurve>,
+}
+
+/// Misfit over contraction, at one pressure and in one direction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExplainedCurve {
+    /// Mean pressure of the level \[Pa\].
+    pub pressure_pa: f64,
+    /// +1 shortening, -1 lengthening, 0 at rest.
+    pub direction: f64,
+    /// Bin centres.
+    pub contraction: Vec<f64>,
+    /// Mean misfit of the model before the effect was added, measured - model \[N\].
+    pub before_n: Vec<f64>,
+    /// What the effect (and the refit of all numbers) changes \[N\].
+    pub explained_n: Vec<f64>,
+}
+
+/// Systematic misfit over contraction, at one pressure and in one direction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SurfaceCurve {
+    /// Mean pressure of the level \[Pa\].
+    pub pressure_pa: f64,
+    /// +1 shortening, -1 lengthening, 0 at rest.
+    pub direction: f64,
+    /// Bin centres.
+    pub contraction: Vec<f64>,
+    /// Misfit, smoothed \[N\].
+    pub misfit_n: Vec<f64>,
+    /// Its standard deviation \[N\].
+    pub sd_n: Vec<f64>,
+}
+
+/// What to measure next.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NextExperiment {
+    /// In words.
+    pub says: String,
+    /// Effects that it separates.
+    pub separates: Vec<String>,
+    /// By how many sigmas.
+    pub sigma: f64,
+    /// How often to repeat it.
+    pub repeats: usize,
+}

@@ -1,0 +1,154 @@
+//! What a misfit looks like that no effect explains, in words: where it is largest, how it goes with pressure, whether it turns with the direction, what comes nearest.
+
+use bulge_model::Record;
+
+use crate::comparison::levels::Levels;
+use crate::diagnosis::candidates::Candidate;
+use crate::diagnosis::document::Located;
+use crate::diagnosis::scene::Scene;
+use bulge_muscles::units::significant;
+
+/// Bins of the contraction in which levels are compared.
+const BINS: usize = 12;
+/// A share from which a variable is spoken of.
+const MUCH: f64 = 0.3;
+/// Chance below which it is.
+const CLEAR: f64 = 0.01;
+
+/// Sentences about the misfit that is left.
+pub(crate) fn hints(record: &Record, scene: &Scene, located: &[Located]) -> Vec<String> {
+    let misfit = scene.systematic(&scene.z);
+    let mut found = Vec::new();
+    found.extend(largest(record, &misfit));
+    found.extend(exponent(record, &misfit));
+    let clear =
+        |variable: &str| located.iter().any(|l| l.variable == variable && l.share > MUCH && l.p < CLEAR);
+    if clear("direction") {
+        found.push("it turns its sign with the direction, as friction and hysteresis do".to_owned());
+    } else if record.moments().iter().any(|m| m.direction != 0.0)
+        && located.iter().all(|l| l.variable != "direction" || l.share < 0.1)
+    {
+        found.push(
+            "it is the same in both directions: geometry, elasticity or the rig rather than friction"
+                .to_owned(),
+        );
+    }
+    for (variable, says) in [
+        ("time", "it changes with time: drift, creep, or an event"),
+        ("rate", "it changes with the speed: viscous, or a lag of the rig"),
+        ("temperature", "it changes with the temperature"),
+        ("cycle", "it changes from cycle to cycle"),
+        ("specimen", "it differs from specimen to specimen"),
+    ] {
+        if clear(variable) {
+            found.push(says.to_owned());
+        }
+    }
+    found.extend(nearest(record, scene));
+    found
+}
+
+fn bar(pressure: f64) -> String {
+    format!("{} bar", significant(pressure / 1e5, 2))
+}
+
+fn largest(record: &Record, misfit: &[f64]) -> Option<String> {
+    let row = (0..misfit.len()).max_by(|a, b| misfit[*a].abs().total_cmp(&misfit[*b].abs()))?;
+    let moment = &record.moments()[row];
+    Some(format!(
+        "it is largest near contraction {} % at {}: the muscle pulls {} N {} than the model",
+        significant(100.0 * moment.contraction, 2),
+        bar(moment.pressure),
+        significant(misfit[row].abs(), 2),
+        if misfit[row] > 0.0 { "more" } else { "less" }
+    ))
+}
+
+/// The power of the pressure: levels as multiples of their common shape over the contraction.
+fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
+    let levels = Levels::of(record, &vec![true; record.len()]);
+    if levels.len() < 2 || levels.mean.iter().any(|p| *p <= 0.0) {
+        return None;
+    }
+    let moments = record.moments();
+    let [low, high] = moments
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], m| [l.min(m.contraction), h.max(m.contraction)]);
+    let mut cells = vec![vec![(0.0, 0.0); BINS]; levels.len()];
+    for (row, moment) in moments.iter().enumerate() {
+        let cell = &mut cells[levels.of[row]]
+            [crate::comparison::residuals::bin(moment.contraction, low, high, BINS)];
+        *cell = (cell.0 + misfit[row], cell.1 + 1.0);
+    }
+    let mean = |cell: &(f64, f64)| if cell.1 > 0.0 { Some(cell.0 / cell.1) } else { None };
+    let shape: Vec<Option<f64>> = (0..BINS)
+        .map(|bin| {
+            let values: Vec<f64> = cells.iter().filter_map(|level| mean(&level[bin])).collect();
+            (values.len() == cells.len()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+        })
+        .collect();
+    let square: f64 = shape.iter().flatten().map(|s| s * s).sum();
+    if square <= 0.0 {
+        return None;
+    }
+    let multiples: Vec<f64> = cells
+        .iter()
+        .map(|level| {
+            let along = |(cell, shape): (&(f64, f64), &Option<f64>)| Some(mean(cell)? * (*shape)?);
+            level.iter().zip(&shape).filter_map(along).sum::<f64>() / square
+        })
+        .collect();
+    if multiples.iter().any(|m| *m <= 0.0) {
+        return Some(
+            "it changes its form with the pressure: no power of the pressure describes it".to_owned(),
+        );
+    }
+    // A straight line through the logarithms.
+    let points: Vec<(f64, f64)> = levels.mean.iter().zip(&multiples).map(|(p, m)| (p.ln(), m.ln())).collect();
+    let n = points.len() as f64;
+    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
+    let spread: f64 = points.iter().map(|p| (p.0 - x).powi(2)).sum();
+    if spread <= 0.0 {
+        return None;
+    }
+    let power = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>() / spread;
+    let says = match power {
+        p if p.abs() < 0.35 => {
+            "it is about the same at all pressures (rubber, offsets of the load cell)".to_owned()
+        }
+        p if (0.65..=1.35).contains(&p) => "it goes about with the pressure (geometry, gains)".to_owned(),
+        p if (1.65..=2.5).contains(&p) => {
+            "it goes about with the square of the pressure (stretch of fibres or frame)".to_owned()
+        }
+        p => format!("it goes with the pressure to the power {}", significant(p, 2)),
+    };
+    Some(says)
+}
+
+/// The effect that explains most, and where it fails.
+fn nearest(record: &Record, scene: &Scene) -> Option<String> {
+    let whole = scene.structure() - scene.smooth.len() as f64;
+    let gain = |c: &&Candidate| c.explains(&scene.z).gain;
+    let best = scene.candidates.iter().max_by(|a, b| gain(a).total_cmp(&gain(b)))?;
+    let explained = best.explains(&scene.z);
+    if whole <= 0.0 || explained.gain <= 1.0 {
+        return None;
+    }
+    let mut left = scene.z.clone();
+    for (column, size) in best.columns.iter().zip(&explained.sizes) {
+        for (value, c) in left.iter_mut().zip(column) {
+            *value -= size * c;
+        }
+    }
+    let sum = scene.systematic(&left);
+    let row = (0..sum.len()).max_by(|a, b| sum[*a].abs().total_cmp(&sum[*b].abs()))?;
+    let moment = &record.moments()[row];
+    Some(format!(
+        "the nearest effect of the catalogue, `{}`, explains {:.0} % of it and fails by {} N near contraction {} % at {}",
+        scene.showings.effects[best.effect].effect.card().name,
+        100.0 * ((explained.gain - 1.0) / whole).clamp(0.0, 1.0),
+        significant(sum[row].abs(), 2),
+        significant(100.0 * moment.contraction, 2),
+        bar(moment.pressure)
+    ))
+}

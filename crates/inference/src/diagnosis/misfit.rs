@@ -1,0 +1,102 @@
+//! The systematic part of what a model leaves: how large in newtons, and on what it depends.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::diagnosis::document::Located;
+use crate::diagnosis::scene::{Direction, Scene};
+use crate::diagnosis::smooth::Variable;
+use crate::dot::dot;
+use crate::random::Random;
+
+/// Draws for the interval of the misfit.
+const DRAWS: usize = 400;
+
+/// RMS of the systematic misfit \[N\], and its 95 % interval.
+///
+/// The smooth functions that the model can't follow have the coordinates z_j, each with the variance 1; what they add up to has on average sum |f_j|^2 more than the truth.
+pub(crate) fn misfit(scene: &Scene, seed: u64) -> (f64, [f64; 2]) {
+    let n = scene.force.len() as f64;
+    let coordinates: Vec<f64> = scene.smooth.iter().map(|d| dot(&d.unit, &scene.z)).collect();
+    let excess: f64 = scene.smooth.iter().map(|d| dot(&d.values, &d.values)).sum::<f64>() / n;
+    let sum = scene.systematic(&scene.z);
+    let found = (dot(&sum, &sum) / n - excess).max(0.0).sqrt();
+    let stride = (scene.force.len() / 500).max(1);
+    let thin: Vec<Direction> = scene
+        .smooth
+        .iter()
+        .map(|d| Direction {
+            values: d.values.iter().step_by(stride).copied().collect(),
+            unit: Vec::new(),
+            ..*d
+        })
+        .collect();
+    let rows = scene.force.len().div_ceil(stride) as f64;
+    let mut random = Random::new(seed, 77);
+    let mut drawn: Vec<f64> = (0..DRAWS)
+        .map(|_| {
+            let mut sum = vec![0.0; thin.first().map_or(0, |d| d.values.len())];
+            for (direction, part) in thin.iter().zip(&coordinates) {
+                let part = part + random.normal();
+                for (total, value) in sum.iter_mut().zip(&direction.values) {
+                    *total += part * value;
+                }
+            }
+            (dot(&sum, &sum) / rows - 2.0 * excess).max(0.0).sqrt()
+        })
+        .collect();
+    drawn.sort_by(f64::total_cmp);
+    let at = |part: usize| drawn.get(part * drawn.len() / 1000).copied().unwrap_or(found);
+    (found, [at(25).min(found), at(975).max(found)])
+}
+
+/// On which variables the misfit depends: share of the excess over chance, and how often chance alone gives as much (Holm 1979), the largest share
+/// first.
+pub(crate) fn located(scene: &Scene) -> Vec<Located> {
+    let mut found: Vec<(Variable, f64, f64, f64)> = Vec::new();
+    for variable in Variable::ALL {
+        let squares: Vec<f64> = scene
+            .smooth
+            .iter()
+            .filter(|d| d.variable == variable)
+            .map(|d| dot(&d.unit, &scene.z).powi(2))
+            .collect();
+        if squares.is_empty() {
+            continue;
+        }
+        let (sum, count) = (squares.iter().sum::<f64>(), squares.len() as f64);
+        let p = ChiSquared::new(count).map_or(1.0, |chi| chi.sf(sum));
+        found.push((variable, (sum - count).max(0.0), p, 1.0));
+    }
+    let whole: f64 = found.iter().map(|f| f.1).sum();
+    let mut order: Vec<usize> = (0..found.len()).collect();
+    order.sort_by(|a, b| found[*a].2.total_cmp(&found[*b].2));
+    let mut largest: f64 = 0.0;
+    for (rank, place) in order.iter().enumerate() {
+        largest = largest.max((found[*place].2 * (found.len() - rank) as f64).min(1.0));
+        found[*place].3 = largest;
+    }
+    found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    found
+        .into_iter()
+        .filter(|f| f.1 > 0.0)
+        .map(|(variable, excess, _, p)| Located {
+            variable: variable.name().to_owned(),
+            share: if whole > 0.0 { excess / whole } else { 0.0 },
+            p,
+            says: says(variable).to_owned(),
+        })
+        .collect()
+}
+
+const fn says(variable: Variable) -> &'static str {
+    match variable {
+        Variable::Contraction => "changes along the contraction, alike at all pressures",
+        Variable::Pressure => "changes with the pressure",
+        Variable::Direction => "flips sign with the direction",
+        Variable::Time => "changes with time",
+        Variable::Rate => "changes with the speed",
+        Variable::Temperature => "changes with the temperature",
+        Variable::Cycle => "changes from cycle to cycle",
+        Variable::Specimen => "differs from specimen to specimen",
+    }
+}

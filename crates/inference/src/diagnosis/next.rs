@@ -1,0 +1,262 @@
+//! The next experiment: the protocol within the user's limits that best separates the rivals left, and how often to repeat it; or the honest answer that none does.
+//!
+//! ```text
+//! d^2 after R repeats = d^2 of the data at hand + R d^2 of the protocol,    d the sigmas between the named effect and its nearest rival after refitting
+//! ```
+
+use bulge_effects::Effect;
+use bulge_model::{Record, Wanted};
+use bulge_muscles::units::significant;
+use serde::Serialize;
+use std::sync::Arc;
+
+use crate::comparison::levels::Levels;
+use crate::diagnosis::classes::{Class, SEPARATION, separation};
+use crate::diagnosis::confidence::Confidence;
+use crate::diagnosis::confirm::Confirmed;
+use crate::diagnosis::document::NextExperiment;
+use crate::diagnosis::scene::Given;
+use crate::fit::weights::Noise;
+use crate::noise::law::NoiseLaw;
+use crate::noise::whitening::Whitening;
+use crate::protocol::bench::{Block, Path, Protocol};
+
+/// Most repeats that anybody is asked for.
+const MOST_REPEATS: usize = 20;
+/// Rows of each sweep of a proposal.
+const ROWS: u32 = 60;
+
+/// What the next experiment may use; what the data used, where nothing is stated.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct NextLimits {
+    /// Least and largest pressure \[Pa\].
+    pub pressure_pa: Option<[f64; 2]>,
+    /// Least and largest contraction.
+    pub contraction: Option<[f64; 2]>,
+}
+
+/// The limits that hold.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    pressure_pa: [f64; 2],
+    contraction: [f64; 2],
+    /// Seconds of one loop of the data.
+    period_s: f64,
+}
+
+impl Limits {
+    /// Those stated, else those of a record.
+    pub(crate) fn of(record: &Record, stated: NextLimits) -> Self {
+        let range = |of: &dyn Fn(&bulge_effects::Moment) -> f64| {
+            record
+                .moments()
+                .iter()
+                .map(of)
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
+        };
+        let levels = Levels::of(record, &vec![true; record.len()]);
+        let [low, high] = range(&|m| m.pressure);
+        let kept = [levels.mean.first().copied().unwrap_or(low), levels.mean.last().copied().unwrap_or(high)];
+        // Cycles count on from sweep to sweep.
+        let mut periods: Vec<f64> = record
+            .sweeps()
+            .iter()
+            .map(|sweep| {
+                let rows = || record.moments()[sweep.clone()].iter();
+                let [first, last] = rows().fold([f64::INFINITY, 0.0], |[first, last]: [f64; 2], m| {
+                    [first.min(m.cycle), last.max(m.cycle)]
+                });
+                rows().map(|m| m.time).fold(0.0, f64::max) / ((last - first).max(0.0).floor() + 1.0)
+            })
+            .collect();
+        periods.sort_by(f64::total_cmp);
+        let period = periods.get(periods.len() / 2).map_or(60.0, |period| period.clamp(1.0, 1e4));
+        Self {
+            pressure_pa: stated.pressure_pa.unwrap_or(kept),
+            contraction: stated.contraction.unwrap_or_else(|| range(&|m| m.contraction)),
+            period_s: if record.has_time() { period } else { 60.0 },
+        }
+    }
+
+    fn pressures_in_words(&self) -> String {
+        let [low, high] = self.pressure_pa.map(|p| significant(p / 1e5, 3));
+        if low == high { format!("at {low} bar") } else { format!("between {low} and {high} bar") }
+    }
+
+    fn pressures(&self, count: usize) -> Vec<f64> {
+        let [low, high] = self.pressure_pa;
+        if high - low <= 1e-3 * high {
+            return vec![high];
+        }
+        (0..count).map(|i| low + (high - low) * i as f64 / (count - 1).max(1) as f64).collect()
+    }
+}
+
+/// A named effect with its class and the two models that differ by it.
+pub(crate) struct Judged {
+    pub(crate) class: Class,
+    pub(crate) confidence: Confidence,
+    /// With the effect, and without it.
+    pub(crate) models: Option<(Confirmed, Confirmed)>,
+}
+
+/// A protocol with a name.
+struct Proposal {
+    says: &'static str,
+    protocol: Protocol,
+}
+
+/// What experiments can be made.
+fn proposals(limits: &Limits) -> Vec<Proposal> {
+    let [low, high] = limits.contraction;
+    // A loop must have a range; where the force has no bound at rest the model says so itself.
+    let whole = [low, high.max(low + 0.01)];
+    let block = |pressures: usize, contraction: [f64; 2], path: Path, period: f64, cycles: u32| Block {
+        path,
+        cycles,
+        rows: ROWS,
+        ..Block::loops(limits.pressures(pressures), contraction, period)
+    };
+    let slow = limits.period_s;
+    let one = |says, blocks: Vec<Block>| Proposal { says, protocol: Protocol::new(blocks) };
+    let small = [whole[0], (whole[0] + 0.25 * (high - whole[0])).max(whole[0] + 0.01)];
+    vec![
+        one(
+            "loops at six pressures over the whole range of contraction",
+            vec![block(6, whole, Path::Triangle, slow, 1)],
+        ),
+        one(
+            "loops at the lowest and the highest pressure, three times each",
+            vec![block(2, whole, Path::Triangle, slow, 3)],
+        ),
+        one(
+            "slow loops, and loops twenty times as fast, at two pressures",
+            vec![block(2, whole, Path::Triangle, slow, 1), block(2, whole, Path::Triangle, slow / 20.0, 1)],
+        ),
+        one(
+            "sines at three pressures, whose speed goes through 0 at the ends",
+            vec![block(3, whole, Path::Sine, slow, 2)],
+        ),
+        one(
+            "small loops near the largest force, at four pressures",
+            vec![block(4, small, Path::Triangle, slow, 2)],
+        ),
+        one(
+            "steps of contraction with holds of a minute, at two pressures",
+            vec![block(2, whole, Path::Stairs { steps: 4, hold_s: 60.0 }, 8.0 * 70.0, 1)],
+        ),
+        one(
+            "twelve loops at one pressure, one after the other",
+            vec![block(1, whole, Path::Triangle, slow, 12)],
+        ),
+        one("a static map of eight pressures", vec![Block::map(limits.pressures(8), whole, 20)]),
+    ]
+}
+
+/// The experiment that best separates the effects of the first class that holds several; none if every class is decided.
+pub(crate) fn next_experiment(
+    given: &Given<'_>,
+    judged: &[Judged],
+    limits: &Limits,
+) -> Option<NextExperiment> {
+    let is_open = |j: &&Judged| {
+        let family = j.class.effect.card().family;
+        j.class.rivals.iter().any(|rival| rival.in_class && rival.effect.card().family != family)
+    };
+    let open = judged.iter().find(is_open)?;
+    let (with, without) = open.models.as_ref()?;
+    let named = open.class.effect.card().name.to_owned();
+    let own_family = open.class.effect.card().family;
+    let rivals: Vec<(&Arc<dyn Effect>, f64)> = open
+        .class
+        .rivals
+        .iter()
+        .filter(|rival| rival.in_class && rival.effect.card().family != own_family)
+        .map(|rival| (&rival.effect, rival.separation))
+        .collect();
+    let (nearest, at_hand) = rivals.iter().min_by(|a, b| a.1.total_cmp(&b.1)).copied()?;
+    let separates = vec![named.clone(), nearest.card().name.to_owned()];
+    let names: Vec<String> = rivals.iter().map(|(effect, _)| effect.card().name.to_owned()).collect();
+    let mut best: Option<(f64, &'static str)> = None;
+    for proposal in proposals(limits) {
+        let Some(sigma) = least_separation(given, with, without, &names, &proposal.protocol) else {
+            continue;
+        };
+        if best.is_none_or(|(other, _)| sigma > other) {
+            best = Some((sigma, proposal.says));
+        }
+    }
+    let needed =
+        |sigma: f64| ((SEPARATION.powi(2) - at_hand.powi(2)).max(0.0) / (sigma * sigma)).ceil().max(1.0);
+    match best.filter(|(sigma, _)| *sigma > 0.0 && needed(*sigma) <= MOST_REPEATS as f64) {
+        Some((sigma, says)) => {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 20")]
+            let repeats = needed(sigma) as usize;
+            let after = (at_hand.powi(2) + repeats as f64 * sigma * sigma).sqrt();
+            let times = if repeats == 1 { "once".to_owned() } else { format!("{repeats} times") };
+            Some(NextExperiment {
+                says: format!(
+                    "measure {says}, {} and between {} and {} % of contraction, {times}: that tells `{named}` from {} ({} sigma)",
+                    limits.pressures_in_words(),
+                    significant(100.0 * limits.contraction[0], 2),
+                    significant(100.0 * limits.contraction[1], 3),
+                    listed(&names),
+                    significant(after, 2)
+                ),
+                separates,
+                sigma: after,
+                repeats,
+            })
+        }
+        None => Some(NextExperiment {
+            says: format!(
+                "no test of force within these limits tells `{named}` from `{}`. What does: {}",
+                nearest.card().name,
+                open.class.effect.card().separate
+            ),
+            separates,
+            sigma: at_hand,
+            repeats: 0,
+        }),
+    }
+}
+
+fn listed(names: &[String]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// Sigmas between an effect and the nearest of its rivals in a planned test; none if the test can't be made with this muscle.
+fn least_separation(
+    given: &Given<'_>,
+    with: &Confirmed,
+    without: &Confirmed,
+    rivals: &[String],
+    protocol: &Protocol,
+) -> Option<f64> {
+    let record = protocol.moments_within(&with.prepared.model, &with.theta).ok()?;
+    let model = &without.prepared.model;
+    let readings = Wanted { parameters: Vec::new(), readings: true };
+    let prediction = model.evaluate(&record, &without.theta, &readings).ok()?;
+    let noise = Noise::of(model.muscle(), given.row_n);
+    let slopes = prediction.by_pressure.iter().zip(&prediction.by_contraction);
+    let variances: Vec<f64> =
+        slopes.map(|(p, e)| (p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)).collect();
+    // The noise of the data at hand; a correlation over rows means nothing in another test.
+    let timed =
+        record.has_time() && matches!(given.law.time, Some(crate::noise::law::CorrelationTime::Seconds(_)));
+    let law = NoiseLaw {
+        correlated_n: if timed { given.law.correlated_n } else { 0.0 },
+        time: given.law.time.filter(|_| timed),
+        white_n: if timed { given.row_n } else { given.row_n.hypot(given.law.correlated_n) },
+        ..given.law.clone()
+    };
+    let record = record.with_force(prediction.force);
+    let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &variances).ok()?;
+    let planned = Given { record: &record, whitening: &whitening, law: &law, only: Some(rivals), ..*given };
+    let scene = planned.scene(&without.prepared, &without.theta).ok()?;
+    let signal = planned.signal(with, &scene).ok()?;
+    let least = (0..scene.showings.effects.len())
+        .map(|effect| separation(&scene, effect, &signal))
+        .fold(f64::INFINITY, f64::min);
+    least.is_finite().then_some(least)
+}

@@ -1,0 +1,190 @@
+//! The noise law of a record, found before any candidate is looked at, and then frozen: what a saturated model leaves, or repeats, or the data sheets.
+
+use bulge_effects::Catalogue;
+use bulge_measurements::PureError;
+use bulge_model::{ModelError, Record};
+use bulge_muscles::Muscle;
+
+use crate::comparison::levels::Levels;
+use crate::diagnosis::as_set::as_set;
+use crate::diagnosis::showing::Showings;
+use crate::diagnosis::smooth::smooth;
+use crate::diagnosis::space::{Space, norm};
+use crate::diagnosis::tangents::Tangents;
+use crate::fit::nuisance::Prepared;
+use crate::noise::inputs::input_noise;
+use crate::noise::law::{NoiseLaw, NoiseSource};
+
+/// Independent columns of the saturated model, as a part of the rows: of effects, and of all.
+/// Along a path fewer: a model with many numbers follows correlated noise, and takes it away.
+const EFFECTS_PART: [f64; 2] = [0.22, 0.08];
+const ALL_PART: [f64; 2] = [0.4, 0.15];
+/// Most independent columns: with many rows more of them only cost time.
+const MOST: usize = 160;
+/// Columns that there are in any case, if there are rows enough.
+const FEW: f64 = 40.0;
+/// An effect of which less than this part is new is one of those before.
+const ALIKE: f64 = 0.01;
+/// A column of which less than this part is new adds nothing.
+const NEW: f64 = 1e-4;
+/// Part of a column that is rounding.
+const ROUNDING: f64 = 1e-9;
+/// Degrees of freedom below which data sheets are better than what is left.
+const FEWEST: f64 = 8.0;
+/// Degrees of freedom from which repeats of a static map are the noise.
+const ENOUGH_REPEATS: f64 = 15.0;
+
+/// What the law is found from.
+pub(crate) struct Source<'a> {
+    pub(crate) catalogue: &'a Catalogue,
+    pub(crate) muscle: &'a Muscle,
+    /// Means of rows, with their forces.
+    pub(crate) record: &'a Record,
+    /// Of the means \[N^2\], from noise of pressure and contraction.
+    pub(crate) input_variances: &'a [f64],
+    /// Derivatives of the force by contraction and pressure at the means.
+    pub(crate) slopes: [&'a [f64]; 2],
+    /// How many readings each mean has.
+    pub(crate) counts: &'a [f64],
+    /// Variances by which the means differ for other reasons \[N^2\].
+    pub(crate) unequal: &'a [f64],
+    pub(crate) pure_error: Option<PureError>,
+}
+
+impl Source<'_> {
+    /// The law, under a base model with the numbers `theta`, and the variances that come on top of it from noise of the inputs: those stated, else those that
+    /// the scatter shows. None if nothing is known of the noise.
+    pub(crate) fn law(
+        &self,
+        prepared: &Prepared,
+        theta: &[f64],
+    ) -> Result<Option<(NoiseLaw, Vec<f64>)>, ModelError> {
+        let stated_inputs = self.input_variances.to_vec();
+        if let Some(pure) =
+            self.pure_error.filter(|p| !self.record.is_path() && p.degrees_of_freedom >= ENOUGH_REPEATS)
+        {
+            let says = format!("repeated points, {:.0} degrees of freedom", pure.degrees_of_freedom);
+            // What the inputs scatter is in it.
+            let most = self.counts.iter().copied().fold(1.0, f64::max);
+            let sd_n = pure.sd_n / most.sqrt();
+            let law = NoiseLaw::white(sd_n, NoiseSource::Repeats, pure.degrees_of_freedom, says);
+            return Ok(Some((law, self.unequal.to_vec())));
+        }
+        let tangents = Tangents::of(prepared, theta, self.record)?;
+        let residual = &tangents.residual;
+        let showings = Showings::of(self.catalogue, None, prepared, theta, &tangents);
+        let columns: Vec<&Vec<f64>> = showings.showings.iter().flat_map(|s| &s.columns).collect();
+        let design = saturated(self.record, &tangents.columns, &columns);
+        let n = self.record.len();
+        let stated = self.muscle.instruments().force.map_or(0.0, |force| force.noise());
+        let left = n as f64 - design.len() as f64;
+        let found = (left >= FEWEST)
+            .then(|| {
+                let sweeps = if self.record.is_path() { self.record.sweeps() } else { &[] };
+                let is_stated = stated_inputs.iter().any(|variance| *variance > 0.0);
+                let shown = if is_stated {
+                    None
+                } else {
+                    input_noise(residual, sweeps, &design, self.slopes, self.counts)
+                };
+                let mut inputs = shown.unwrap_or_else(|| stated_inputs.clone());
+                for (variance, own) in inputs.iter_mut().zip(self.unequal) {
+                    *variance += own;
+                }
+                let rows: Vec<f64> =
+                    (0..n).flat_map(|i| design.iter().map(move |column| column[i])).collect();
+                let law = NoiseLaw::estimate(self.record, &vec![true; n], &inputs, &rows, residual).ok()?;
+                Some((law, inputs))
+            })
+            .flatten();
+        Ok(found.or_else(|| {
+            (stated > 0.0).then(|| {
+                let says = "the data sheet of the load cell: these rows are too few to say".to_owned();
+                (NoiseLaw::white(stated, NoiseSource::Instruments, 0.0, says), stated_inputs)
+            })
+        }))
+    }
+}
+
+/// The saturated model as orthonormal columns: within the sweeps what the base can do, smooth functions, and what effects could do besides; from sweep
+/// to sweep only what is set: pressure, specimen, temperature, and the clock. More than that from sweep to sweep is an offset of the sweep: with a rich
+/// model there too nothing would be left to find offsets from.
+fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> Vec<Vec<f64>> {
+    let n = record.len() as f64;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "numbers of columns")]
+    let [effects_most, most] = [EFFECTS_PART, ALL_PART]
+        .map(|part| (part[usize::from(record.is_path())] * n).max(FEW.min(0.4 * n)) as usize);
+    let mut space = Space::without(&[]);
+    for column in between(record) {
+        enter_new(&mut space, &column);
+    }
+    for tangent in tangents {
+        enter_new(&mut space, &within(record, tangent));
+    }
+    // What is least like all before enters first, so that few columns stand for many effects.
+    let mut left: Vec<Vec<f64>> = effects.iter().map(|column| within(record, column)).collect();
+    while space.len() < effects_most.min(MOST).max(tangents.len() + 1) {
+        let new = |column: &Vec<f64>| space.outside(column).sqrt() / norm(column).max(f64::MIN_POSITIVE);
+        let best = (0..left.len()).map(|i| (i, new(&left[i]))).max_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((place, _)) = best.filter(|best| best.1 > ALIKE) else { break };
+        let column = left.swap_remove(place);
+        enter_new(&mut space, &column);
+    }
+    for function in smooth(record) {
+        if space.len() >= most.min(MOST).max(tangents.len() + 1) {
+            break;
+        }
+        enter_new(&mut space, &within(record, &function.values));
+    }
+    space.into_units()
+}
+
+/// A column less its mean over each sweep.
+fn within(record: &Record, column: &[f64]) -> Vec<f64> {
+    let mut left = column.to_vec();
+    if !record.is_path() {
+        // In a static map a sweep is no run: there are no offsets to be told.
+        return left;
+    }
+    for sweep in record.sweeps() {
+        let values = &mut left[sweep.clone()];
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        for value in values {
+            *value -= mean;
+        }
+    }
+    if norm(&left) <= ROUNDING * norm(column) {
+        // What is the same all along each sweep leaves only rounding: a direction of its own, and the wrong one.
+        left.fill(0.0);
+    }
+    left
+}
+
+/// What is set from sweep to sweep.
+fn between(record: &Record) -> Vec<Vec<f64>> {
+    let kept = as_set(record);
+    let levels = Levels::of(record, &vec![true; record.len()]).len();
+    let of = |f: &dyn Fn(&bulge_effects::Moment) -> f64| kept.moments().iter().map(f).collect::<Vec<f64>>();
+    let largest = kept.moments().iter().map(|m| m.pressure).fold(f64::MIN_POSITIVE, f64::max);
+    let mut columns = vec![vec![1.0; record.len()], of(&|m| m.pressure / largest)];
+    if levels > 3 {
+        columns.push(of(&|m| (m.pressure / largest).powi(2)));
+    }
+    for specimen in 1..record.specimens().len() {
+        columns.push(of(&|m| f64::from(u8::from(m.specimen as usize == specimen))));
+    }
+    if kept.moments().iter().any(|m| m.temperature != 0.0) {
+        columns.push(of(&|m| m.temperature));
+    }
+    if record.has_time() && record.sweeps().len() > levels {
+        columns.push(of(&|m| m.clock));
+    }
+    columns
+}
+
+fn enter_new(space: &mut Space, column: &[f64]) {
+    let whole = norm(column);
+    if whole > 0.0 && space.outside(column).sqrt() > NEW * whole {
+        space.enter(column);
+    }
+}

@@ -1,0 +1,299 @@
+//! Before measuring: what a test would show, and which effects it could not tell apart. Needs no data: the scores of the screen without the misfit.
+//!
+//! ```text
+//! detection limit A_min = 3.3/|s_e|,    confusability rho = |cos angle(s_e, s_e')|,    s_e = P K^-1/2 dF/dA_e
+//! ```
+
+use bulge_effects::{Catalogue, Effect};
+use bulge_model::{Model, Record};
+use bulge_muscles::{Muscle, Quantity};
+use serde::Serialize;
+use std::sync::Arc;
+
+use crate::diagnosis::candidates::Candidate;
+use crate::diagnosis::classes::SEPARATION;
+use crate::diagnosis::scene::{Given, Scene};
+use crate::diagnosis::showing::Sign;
+use crate::diagnosis::space::norm;
+use crate::dot::dot;
+use crate::error::InferenceError;
+use crate::fit::nuisance::with_nuisances;
+use crate::fit::weights::Noise;
+use crate::noise::law::{CorrelationTime, NoiseLaw, NoiseSource};
+use crate::noise::whitening::Whitening;
+use crate::protocol::bench::Protocol;
+use bulge_model::Wanted;
+
+/// Sigmas at which an effect is seen: one error in a thousand.
+pub(crate) const SEEN: f64 = 3.3;
+/// Cosine from which two effects are told of.
+const ALIKE: f64 = 0.9;
+/// Sigmas that are rounding.
+const NOTHING: f64 = 1e-3;
+/// Most pairs that are listed.
+const MOST_PAIRS: usize = 40;
+
+/// What a test would show.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Plan {
+    /// `bulge.plan/1`.
+    pub schema: &'static str,
+    /// Name of the muscle.
+    pub muscle: String,
+    /// Rows of the test, as far as the muscle pulls.
+    pub rows: usize,
+    /// Sweeps of the test.
+    pub sweeps: usize,
+    /// Least and largest pressure \[Pa\].
+    pub pressure_pa: [f64; 2],
+    /// Least and largest contraction.
+    pub contraction: [f64; 2],
+    /// The noise that is assumed.
+    pub noise: NoiseLaw,
+    /// All effects, the best visible first.
+    pub effects: Vec<PlannedEffect>,
+    /// Pairs that this test can hardly tell apart, the most alike first.
+    pub confused: Vec<ConfusedPair>,
+    /// What a reader should know.
+    pub warnings: Vec<String>,
+}
+
+/// What a test says of one effect.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlannedEffect {
+    /// Its name.
+    pub effect: String,
+    /// The family it counts under.
+    pub family: String,
+    /// Name of the number that says how large it is.
+    pub parameter: String,
+    /// Least deviation of that number that is seen (3.3 sigma), in `unit`; none if the test can't show the effect.
+    pub detection_limit: Option<f64>,
+    /// The unit.
+    pub unit: String,
+    /// RMS change of the force at that limit \[N\].
+    pub detection_limit_n: Option<f64>,
+    /// Sigmas of a deviation of the usual size.
+    pub usual_sigma: f64,
+    /// Part of the effect that the rig's and the muscle's own uncertainties can compensate.
+    pub compensation: f64,
+    /// Why the test can't show it, if so.
+    pub why: Option<String>,
+}
+
+/// Two effects that look alike in a test.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConfusedPair {
+    /// The two.
+    pub effects: [String; 2],
+    /// Cosine of the angle between them.
+    pub cosine: f64,
+    /// Sigmas between the two, each at its usual size: the smaller of both ways round.
+    pub sigma: f64,
+    /// How many repeats tell them apart (3.29 sigma); none if no number does.
+    pub repeats: Option<f64>,
+    /// The experiment that separates them, from the catalogue.
+    pub separate: String,
+}
+
+/// A planned record with everything to whiten it.
+pub(crate) struct Planned {
+    pub(crate) record: Record,
+    pub(crate) law: NoiseLaw,
+    pub(crate) whitening: Whitening,
+}
+
+/// What a protocol would show of a muscle with the effects that are known.
+///
+/// # Errors
+/// If a number of the protocol isn't possible, or the muscle has no equilibrium there.
+pub fn plan(
+    muscle: &Muscle,
+    known: &[(Arc<dyn Effect>, Vec<f64>)],
+    catalogue: &Catalogue,
+    protocol: &Protocol,
+) -> Result<Plan, InferenceError> {
+    let model = known_model(muscle, known, &protocol.specimens())?;
+    let prepared = with_nuisances(&model, catalogue)?;
+    let theta = prepared.model.start();
+    let planned = Planned::of(&prepared.model, &theta, protocol)?;
+    let given = planned.given(catalogue);
+    let scene = given.scene(&prepared, &theta)?;
+    let moments = planned.record.moments();
+    let range = |of: &dyn Fn(&bulge_effects::Moment) -> f64| {
+        moments.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
+    };
+    let mut warnings = Vec::new();
+    if planned.law.source == NoiseSource::Instruments && planned.law.degrees_of_freedom == 0.0 {
+        warnings.push(
+            "no noise is stated by the protocol or `[instruments]`: 1 % of full scale is assumed".to_owned(),
+        );
+    }
+    let mut effects = effects(&scene, planned.record.len(), muscle);
+    effects.sort_by(|a, b| b.usual_sigma.total_cmp(&a.usual_sigma).then(a.effect.cmp(&b.effect)));
+    Ok(Plan {
+        schema: "bulge.plan/1",
+        muscle: muscle.name().to_owned(),
+        rows: planned.record.len(),
+        sweeps: planned.record.sweeps().len(),
+        pressure_pa: range(&|m| m.pressure),
+        contraction: range(&|m| m.contraction),
+        noise: planned.law.clone(),
+        effects,
+        confused: confused(&scene),
+        warnings,
+    })
+}
+
+/// A muscle with its known effects, for some specimens.
+pub(crate) fn known_model(
+    muscle: &Muscle,
+    known: &[(Arc<dyn Effect>, Vec<f64>)],
+    specimens: &[String],
+) -> Result<Model, InferenceError> {
+    let mut model = Model::new(muscle).for_specimens(specimens);
+    for (effect, values) in known {
+        model = model.with(effect, Some(values))?;
+    }
+    Ok(model)
+}
+
+impl Planned {
+    /// The rows of a protocol as a model would fill them, with the noise that the protocol states (or the muscle's instruments).
+    pub(crate) fn of(model: &Model, theta: &[f64], protocol: &Protocol) -> Result<Self, InferenceError> {
+        let record = protocol.moments_within(model, theta)?;
+        let readings = Wanted { parameters: Vec::new(), readings: true };
+        let prediction = model.evaluate(&record, theta, &readings)?;
+        let law = law_of(protocol, model.muscle(), &prediction.force);
+        let stated = Noise::of(model.muscle(), law.white_n);
+        let length = model.muscle().length().si();
+        let or = |own: f64, other: f64| if own > 0.0 { own } else { other };
+        let pressure = or(protocol.noise.pressure_pa, stated.pressure_pa);
+        let contraction = or(protocol.noise.length_m / length, stated.contraction);
+        let variances: Vec<f64> = prediction
+            .by_pressure
+            .iter()
+            .zip(&prediction.by_contraction)
+            .map(|(p, e)| (p * pressure).powi(2) + (e * contraction).powi(2))
+            .collect();
+        let record = record.with_force(prediction.force);
+        let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &variances)?;
+        Ok(Self { record, law, whitening })
+    }
+
+    pub(crate) fn given<'a>(&'a self, catalogue: &'a Catalogue) -> Given<'a> {
+        Given {
+            catalogue,
+            record: &self.record,
+            whitening: &self.whitening,
+            law: &self.law,
+            seed: 1,
+            row_n: self.law.white_n,
+            tolerance_n: None,
+            only: None,
+        }
+    }
+}
+
+/// The noise of a protocol; where it states none, that of the load cell; where nobody states any, 1 % of full scale.
+fn law_of(protocol: &Protocol, muscle: &Muscle, force: &[f64]) -> NoiseLaw {
+    let noise = &protocol.noise;
+    let stated = muscle.instruments().force.map_or(0.0, |force| force.noise());
+    let step = protocol.steps.force_n / 12.0_f64.sqrt();
+    let said = noise.force_n.hypot(step);
+    let (white_n, says, freedom) = if said > 0.0 || noise.correlated_n > 0.0 {
+        (said.max(1e-3 * noise.correlated_n), "the protocol", 1e6)
+    } else if stated > 0.0 {
+        (stated, "the data sheet of the load cell", 1e6)
+    } else {
+        let full = force.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+        (0.01 * full.max(1.0), "assumed: 1 % of full scale", 0.0)
+    };
+    let timed = noise.correlated_n > 0.0 && !protocol.is_static();
+    NoiseLaw {
+        correlated_n: if timed { noise.correlated_n } else { 0.0 },
+        time: timed.then_some(CorrelationTime::Seconds(noise.correlation_time_s)),
+        offset_n: if protocol.is_static() { 0.0 } else { noise.offset_n },
+        ..NoiseLaw::white(white_n, NoiseSource::Instruments, freedom, says.to_owned())
+    }
+}
+
+/// The form of an effect that is usual: the middle one.
+fn usual(scene: &Scene, effect: usize) -> Option<&Candidate> {
+    let forms: Vec<&Candidate> = scene.candidates.iter().filter(|c| c.effect == effect).collect();
+    forms.get(forms.len() / 2).copied()
+}
+
+fn effects(scene: &Scene, rows: usize, muscle: &Muscle) -> Vec<PlannedEffect> {
+    let of = |(place, screened): (usize, &crate::diagnosis::showing::Screened)| {
+        let card = screened.effect.card();
+        let cards = screened.effect.parameters();
+        let candidate = usual(scene, place);
+        let size = candidate.and_then(|c| c.sizes.first());
+        let number = cards.get(size.map_or(0, |s| s.place));
+        let unit = number.map_or(("", 1.0), |n| (n.unit, n.factor));
+        let per_size = candidate.map_or(0.0, |c| c.detectability(1.0));
+        let range = number.map(|n| n.of(muscle)).map_or(f64::INFINITY, |n| n.high - n.low);
+        // Beyond the bounds of the number it is no limit: the test can't show the effect.
+        let limit = (per_size > 0.0).then(|| SEEN / per_size).filter(|limit| *limit <= range);
+        let column = candidate.and_then(|c| scene.showings.showings[c.showing].columns.first());
+        let rms = column.map_or(0.0, |c| (dot(c, c) / rows.max(1) as f64).sqrt());
+        PlannedEffect {
+            effect: card.name.to_owned(),
+            family: card.family.to_owned(),
+            parameter: number.map_or(String::new(), |n| n.name.to_owned()),
+            detection_limit: limit.filter(|_| candidate.is_some_and(|c| !c.whole)).map(|l| l / unit.1),
+            unit: unit.0.to_owned(),
+            detection_limit_n: limit.map(|l| l * rms),
+            usual_sigma: size.map_or(0.0, |s| s.scale * per_size),
+            compensation: candidate.map_or(1.0, |c| c.compensated),
+            why: screened.untestable.clone().or_else(|| {
+                candidate.is_none().then(|| {
+                    "can't be told from what the rig's and the muscle's widths leave open".to_owned()
+                })
+            }),
+        }
+    };
+    scene.showings.effects.iter().enumerate().map(of).collect()
+}
+
+/// Pairs of different families that look alike.
+fn confused(scene: &Scene) -> Vec<ConfusedPair> {
+    let all: Vec<&Candidate> =
+        (0..scene.showings.effects.len()).filter_map(|effect| usual(scene, effect)).collect();
+    let mut found = Vec::new();
+    for (i, a) in all.iter().enumerate() {
+        for b in &all[i + 1..] {
+            let [x, y] = [a, b].map(|c| &scene.showings.effects[c.effect].effect);
+            if x.card().family == y.card().family {
+                continue;
+            }
+            let Some(cosine) = cosine(a, b).filter(|cosine| *cosine >= ALIKE) else { continue };
+            let usual = |c: &Candidate| c.sizes.first().map_or(0.0, |size| c.detectability(size.scale));
+            let sigma = usual(a).min(usual(b)) * (1.0 - cosine * cosine).max(0.0).sqrt();
+            found.push(ConfusedPair {
+                effects: [x.card().name.to_owned(), y.card().name.to_owned()],
+                cosine,
+                sigma,
+                repeats: (sigma > NOTHING).then(|| (SEPARATION / sigma).powi(2).ceil().max(1.0)),
+                separate: x.card().separate.to_owned(),
+            });
+        }
+    }
+    found.sort_by(|a, b| b.cosine.total_cmp(&a.cosine));
+    found.truncate(MOST_PAIRS);
+    found
+}
+
+/// The cosine between the first columns of two effects; none if their signs can't agree.
+fn cosine(a: &Candidate, b: &Candidate) -> Option<f64> {
+    let (x, y) = (a.columns.first()?, b.columns.first()?);
+    let value = dot(x, y) / (norm(x) * norm(y)).max(f64::MIN_POSITIVE);
+    let signs = [a, b].map(|c| c.sizes.first().map_or(Sign::Any, |size| size.sign));
+    let may = match signs {
+        [Sign::Any, _] | [_, Sign::Any] => true,
+        [x, y] if x == y => value > 0.0,
+        _ => value < 0.0,
+    };
+    may.then_some(value.abs().min(1.0))
+}

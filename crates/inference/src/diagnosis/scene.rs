@@ -1,0 +1,242 @@
+//! A model at its best numbers, seen from where the rest of the catalogue stands: the misfit that is left, and what each effect could do about it.
+
+use bulge_effects::Catalogue;
+use bulge_model::{ModelError, Record};
+
+use crate::diagnosis::candidates::Candidate;
+use crate::diagnosis::null::{Chance, Null, Statistics};
+use crate::diagnosis::showing::Showings;
+use crate::diagnosis::smooth::{Variable, smooth};
+use crate::diagnosis::space::{Space, norm};
+use crate::diagnosis::tangents::Tangents;
+use crate::dot::dot;
+use crate::fit::nuisance::Prepared;
+use crate::noise::law::NoiseLaw;
+use crate::noise::whitening::Whitening;
+
+/// A smooth function adds nothing if less than this part of it is new.
+const NEW: f64 = 1e-3;
+/// Smooth functions for at most this part of the rows that count as independent.
+const PART: f64 = 0.25;
+
+/// Everything that stays the same while models are tried.
+#[derive(Clone, Copy)]
+pub(crate) struct Given<'a> {
+    pub(crate) catalogue: &'a Catalogue,
+    /// Means of rows, with their forces.
+    pub(crate) record: &'a Record,
+    pub(crate) whitening: &'a Whitening,
+    /// The noise of the means.
+    pub(crate) law: &'a NoiseLaw,
+    /// White noise of a single reading, with that of inputs which no data sheet states \[N\].
+    pub(crate) row_n: f64,
+    pub(crate) seed: u64,
+    /// RMS misfit that doesn't matter \[N\].
+    pub(crate) tolerance_n: Option<f64>,
+    /// Looks for these effects only.
+    pub(crate) only: Option<&'a [String]>,
+}
+
+/// A smooth function outside what the model's numbers can do.
+#[derive(Debug, Clone)]
+pub(crate) struct Direction {
+    pub(crate) variable: Variable,
+    /// Unit vector in coordinates.
+    pub(crate) unit: Vec<f64>,
+    /// The function \[N\] that goes with one standard deviation of its coordinate.
+    pub(crate) values: Vec<f64>,
+}
+
+/// The misfit of a model, and all candidates, in coordinates.
+pub(crate) struct Scene {
+    pub(crate) showings: Showings,
+    pub(crate) candidates: Vec<Candidate>,
+    pub(crate) smooth: Vec<Direction>,
+    /// The coordinates.
+    pub(crate) space: Space,
+    /// Number of priors, the last rows of every column.
+    pub(crate) priors: usize,
+    /// One standard deviation of the offset of each sweep, in coordinates; none if the law has no offsets.
+    pub(crate) offsets: Vec<Vec<f64>>,
+    /// The misfit in coordinates.
+    pub(crate) z: Vec<f64>,
+    /// Force of the model at the means \[N\].
+    pub(crate) force: Vec<f64>,
+}
+
+impl Given<'_> {
+    /// The scene of a model with the numbers `theta`.
+    pub(crate) fn scene(&self, prepared: &Prepared, theta: &[f64]) -> Result<Scene, ModelError> {
+        let tangent = Tangents::of(prepared, theta, self.record)?;
+        let priors: Vec<(usize, f64, f64)> = tangent
+            .free
+            .iter()
+            .enumerate()
+            .filter(|(_, i)| prepared.nuisance[**i])
+            .filter_map(|(column, i)| {
+                prepared.priors[*i].map(|(mean, sd)| (column, (mean - theta[*i]) / sd, 1.0 / sd))
+            })
+            .collect();
+        let whiten = |column: &[f64]| -> Vec<f64> {
+            let mut white = column.to_vec();
+            // The law was made for this record: there is nothing to go wrong.
+            let _ = self.whitening.apply(&mut white);
+            white.resize(column.len() + priors.len(), 0.0);
+            white
+        };
+        let rows = self.record.len();
+        let tangents: Vec<Vec<f64>> = tangent
+            .columns
+            .iter()
+            .enumerate()
+            .map(|(j, column)| {
+                let mut white = whiten(column);
+                for (place, prior) in priors.iter().enumerate().filter(|(_, prior)| prior.0 == j) {
+                    white[rows + place] = prior.2;
+                }
+                white
+            })
+            .collect();
+        let mut misfit = whiten(&tangent.residual);
+        for (place, prior) in priors.iter().enumerate() {
+            misfit[rows + place] = prior.1;
+        }
+        let mut space = Space::without(&tangents);
+        let showings = Showings::of(self.catalogue, self.only, prepared, theta, &tangent);
+        let candidates = Candidate::all(&showings, &mut space, &whiten);
+        let smooth = if self.only.is_some() {
+            Vec::new()
+        } else {
+            self.directions(&tangent.columns, &tangents, &mut space, &whiten)
+        };
+        let z = space.coordinates(&misfit);
+        let offsets = self.offsets(&space, &whiten);
+        Ok(Scene {
+            showings,
+            candidates,
+            smooth,
+            space,
+            offsets,
+            priors: priors.len(),
+            z,
+            force: tangent.force,
+        })
+    }
+
+    fn offsets(&self, space: &Space, whiten: &dyn Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
+        if self.law.offset_n <= 0.0 {
+            return Vec::new();
+        }
+        let of = |sweep: &std::ops::Range<usize>| {
+            let mut column = vec![0.0; self.record.len()];
+            column[sweep.clone()].fill(self.law.offset_n);
+            space.coordinates(&whiten(&column))
+        };
+        self.record.sweeps().iter().map(of).collect()
+    }
+
+    /// Smooth functions, the smoothest first, each without those before it and without what the model's own numbers can do; `raw` are the model's tangents
+    /// \[N\], `tangents` the same whitened.
+    fn directions(
+        &self,
+        raw: &[Vec<f64>],
+        tangents: &[Vec<f64>],
+        space: &mut Space,
+        whiten: &dyn Fn(&[f64]) -> Vec<f64>,
+    ) -> Vec<Direction> {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of rows")]
+        let most = (PART * self.record.len() as f64) as usize;
+        // White units with the functions that they are made of.
+        let mut known: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+        for (raw, white) in raw.iter().zip(tangents) {
+            known.extend(orthogonal(raw.clone(), white.clone(), &known));
+        }
+        let mut found: Vec<Direction> = Vec::new();
+        for function in smooth(self.record) {
+            if found.len() >= most {
+                break;
+            }
+            let white = whiten(&function.values);
+            let Some((values, unit)) = orthogonal(function.values, white, &known) else { continue };
+            found.push(Direction {
+                variable: function.variable,
+                unit: space.enter(&unit),
+                values: values.clone(),
+            });
+            known.push((values, unit));
+        }
+        found
+    }
+}
+
+/// A function without what others span, so that its white column has the length 1; none if nothing of it is new.
+fn orthogonal(
+    mut raw: Vec<f64>,
+    mut white: Vec<f64>,
+    known: &[(Vec<f64>, Vec<f64>)],
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let whole = norm(&white);
+    for _ in 0..2 {
+        for (other, unit) in known {
+            let part = dot(&white, unit);
+            for (value, u) in white.iter_mut().zip(unit) {
+                *value -= part * u;
+            }
+            for (value, o) in raw.iter_mut().zip(other) {
+                *value -= part * o;
+            }
+        }
+    }
+    let left = norm(&white);
+    if left <= NEW * whole {
+        return None;
+    }
+    for value in raw.iter_mut().chain(&mut white) {
+        *value /= left;
+    }
+    Some((raw, white))
+}
+
+impl Scene {
+    /// Square of the misfit that smooth functions follow; as many as there are of them by chance alone.
+    pub(crate) fn structure(&self) -> f64 {
+        self.smooth.iter().map(|d| dot(&d.unit, &self.z).powi(2)).sum()
+    }
+
+    /// What the smooth functions make of a misfit in coordinates, row by row \[N\].
+    pub(crate) fn systematic(&self, z: &[f64]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.force.len()];
+        for direction in &self.smooth {
+            let part = dot(&direction.unit, z);
+            for (total, value) in sum.iter_mut().zip(&direction.values) {
+                *total += part * value;
+            }
+        }
+        sum
+    }
+
+    fn units(&self) -> Vec<Vec<f64>> {
+        self.smooth.iter().map(|direction| direction.unit.clone()).collect()
+    }
+
+    /// What the misfit of a right model would be drawn from.
+    pub(crate) fn chance_of<'a>(&'a self, given: &'a Given<'_>) -> Chance<'a> {
+        Chance {
+            coordinates: self.z.len(),
+            freedom: given.law.degrees_of_freedom,
+            offsets: &self.offsets,
+            offset_n: given.law.offset_n,
+            beliefs: &given.law.offset_beliefs,
+        }
+    }
+
+    /// How often chance alone gives as much misfit: by the screen and by the smooth test.
+    pub(crate) fn chance(&self, given: &Given<'_>) -> (Null, [f64; 2]) {
+        let units = self.units();
+        let found = Statistics::of(&self.z, &self.candidates, &units);
+        let chance = self.chance_of(given);
+        let null = Null::of(&chance, &self.candidates, &units, given.seed);
+        let chance = null.chance(&found);
+        (null, chance)
+    }
+}

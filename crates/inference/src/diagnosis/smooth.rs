@@ -1,0 +1,312 @@
+//! Smooth functions of everything that was recorded: what a misfit may look like that nobody thought of.
+//!
+//! ```text
+//! T_i(eps) T_j(p) x {1, direction};    distance since the last reversal x direction;
+//! time in the sweep, clock, rate, pressure rate, temperature, cycle, specimen
+//! ```
+//! with T_i the Chebyshev polynomials over the range of the record, in the order of their roughness.
+
+use bulge_model::Record;
+
+use crate::chebyshev::chebyshev;
+use crate::diagnosis::as_set::as_set;
+
+/// Highest degree over the contraction.
+const CONTRACTION: usize = 12;
+/// Highest degree over the pressure.
+const PRESSURE: usize = 4;
+/// Highest degrees of what changes sign with the direction.
+const BY_DIRECTION: [usize; 2] = [5, 2];
+/// One degree over the pressure counts as that many over the contraction.
+const PRESSURE_WEIGHT: f64 = 1.5;
+/// Lengths after a reversal, as parts of the range of the contraction.
+const REVERSALS: [f64; 2] = [0.03, 0.12];
+/// Highest degree over the clock.
+const CLOCK: usize = 5;
+
+/// Most turns of a wave over the clock.
+const TURNS: usize = 10;
+
+/// What a function depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Variable {
+    Contraction,
+    Pressure,
+    Direction,
+    Time,
+    Rate,
+    Temperature,
+    Cycle,
+    Specimen,
+}
+
+impl Variable {
+    /// All of them.
+    pub(crate) const ALL: [Self; 8] = [
+        Self::Contraction,
+        Self::Pressure,
+        Self::Direction,
+        Self::Time,
+        Self::Rate,
+        Self::Temperature,
+        Self::Cycle,
+        Self::Specimen,
+    ];
+
+    /// Its name in results.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Contraction => "contraction",
+            Self::Pressure => "pressure",
+            Self::Direction => "direction",
+            Self::Time => "time",
+            Self::Rate => "rate",
+            Self::Temperature => "temperature",
+            Self::Cycle => "cycle",
+            Self::Specimen => "specimen",
+        }
+    }
+}
+
+/// One function, row by row.
+#[derive(Debug, Clone)]
+pub(crate) struct Smooth {
+    pub(crate) variable: Variable,
+    /// The smoothest come first.
+    roughness: f64,
+    pub(crate) values: Vec<f64>,
+}
+
+/// The functions for a record, the smoothest first.
+///
+/// At levels of pressure the mean of the level is what counts.
+pub(crate) fn smooth(record: &Record) -> Vec<Smooth> {
+    let record = &as_set(record);
+    let mut functions = map(record);
+    if record.moments().iter().any(|m| m.direction != 0.0) {
+        functions.extend(by_direction(record));
+    }
+    functions.extend(in_time(record));
+    functions.extend(others(record));
+    functions.retain(|f| f.values.iter().all(|v| v.is_finite()));
+    functions.sort_by(|a, b| a.roughness.total_cmp(&b.roughness));
+    functions
+}
+
+fn map(record: &Record) -> Vec<Smooth> {
+    let (x, y) = (scaled(record, |m| m.contraction), scaled(record, |m| m.pressure));
+    let most = PRESSURE.min(different(&y) - 1);
+    let mut functions = Vec::new();
+    for i in 0..=CONTRACTION.min(different(&x) - 1) {
+        for j in 0..=most {
+            let roughness = i as f64 + PRESSURE_WEIGHT * j as f64;
+            if roughness > CONTRACTION as f64 {
+                continue;
+            }
+            let values = x.iter().zip(&y).map(|(x, y)| chebyshev(i, *x) * chebyshev(j, *y)).collect();
+            let variable = if j == 0 { Variable::Contraction } else { Variable::Pressure };
+            functions.push(Smooth { variable, roughness, values });
+        }
+    }
+    functions
+}
+
+fn by_direction(record: &Record) -> Vec<Smooth> {
+    let (x, y) = (scaled(record, |m| m.contraction), scaled(record, |m| m.pressure));
+    let moments = record.moments();
+    let levels = different(&y) - 1;
+    let mut functions = Vec::new();
+    for i in 0..=BY_DIRECTION[0] {
+        for j in 0..=BY_DIRECTION[1].min(levels) {
+            let value = |row: usize| moments[row].direction * chebyshev(i, x[row]) * chebyshev(j, y[row]);
+            functions.push(Smooth {
+                variable: Variable::Direction,
+                roughness: 1.0 + i as f64 + PRESSURE_WEIGHT * j as f64,
+                values: (0..record.len()).map(value).collect(),
+            });
+        }
+    }
+    let since = since_reversal(record);
+    for (number, length) in REVERSALS.iter().enumerate() {
+        let value = |row: usize| moments[row].direction * (-since[row] / length).exp();
+        functions.push(Smooth {
+            variable: Variable::Direction,
+            roughness: 3.0 + number as f64,
+            values: (0..record.len()).map(value).collect(),
+        });
+    }
+    functions
+}
+
+/// Way since the last reversal, in parts of the range of the contraction; long at the beginning of a sweep.
+fn since_reversal(record: &Record) -> Vec<f64> {
+    let moments = record.moments();
+    let [low, high] = range(moments.iter().map(|m| m.contraction));
+    let whole = (high - low).max(f64::MIN_POSITIVE);
+    let mut since = Vec::with_capacity(moments.len());
+    let (mut way, mut direction) = (1.0, 0.0);
+    for moment in moments {
+        if moment.begins {
+            (way, direction) = (1.0, moment.direction);
+        }
+        way += moment.step.abs() / whole;
+        if moment.direction != 0.0 && moment.direction * direction < 0.0 {
+            way = 0.0;
+        }
+        if moment.direction != 0.0 {
+            direction = moment.direction;
+        }
+        since.push(way);
+    }
+    since
+}
+
+fn in_time(record: &Record) -> Vec<Smooth> {
+    if !record.has_time() {
+        return Vec::new();
+    }
+    let mut functions = Vec::new();
+    let mut add = |variable, roughness, values: Vec<f64>| {
+        if different(&values) > 1 {
+            functions.push(Smooth { variable, roughness, values });
+        }
+    };
+    let clock = scaled(record, |m| m.clock);
+    for turns in 1..=TURNS {
+        let wave = |shift: f64| {
+            clock.iter().map(|c| (std::f64::consts::PI * (c * turns as f64 + shift)).cos()).collect()
+        };
+        add(Variable::Time, 4.0 + turns as f64, wave(0.0));
+        add(Variable::Time, 4.0 + turns as f64, wave(0.5));
+    }
+    for i in 1..=CLOCK {
+        add(Variable::Time, 1.0 + i as f64, clock.iter().map(|c| chebyshev(i, *c)).collect());
+    }
+    let longest = record.moments().iter().map(|m| m.time).fold(0.0_f64, f64::max).max(f64::MIN_POSITIVE);
+    let of_time = |f: &dyn Fn(f64) -> f64| record.moments().iter().map(|m| f(m.time)).collect::<Vec<_>>();
+    let logarithm = of_time(&|t| (1.0 + 100.0 * t / longest).ln());
+    let x = scaled(record, |m| m.contraction);
+    let y = scaled(record, |m| m.pressure);
+    add(Variable::Time, 3.0, logarithm.clone());
+    add(Variable::Time, 4.0, of_time(&|t| t / longest));
+    add(Variable::Time, 5.0, product(&logarithm, &y));
+    add(Variable::Time, 6.0, product(&clock, &x));
+    add(Variable::Time, 6.5, product(&clock, &y));
+    let fastest =
+        record.moments().iter().map(|m| m.rate.abs()).fold(0.0_f64, f64::max).max(f64::MIN_POSITIVE);
+    let rate: Vec<f64> = record.moments().iter().map(|m| m.rate / fastest).collect();
+    add(Variable::Rate, 1.5, rate.clone());
+    add(Variable::Rate, 2.5, product(&rate, &y));
+    add(Variable::Rate, 3.5, product(&rate, &x));
+    add(Variable::Rate, 4.5, rate.iter().map(|r| r * r).collect());
+    add(Variable::Rate, 5.5, rate.iter().map(|r| r * r.abs()).collect());
+    let quickest = record.moments().iter().map(|m| m.pressure_rate.abs()).fold(0.0_f64, f64::max);
+    if quickest > 0.0 {
+        add(Variable::Rate, 4.0, record.moments().iter().map(|m| m.pressure_rate / quickest).collect());
+    }
+    functions
+}
+
+fn others(record: &Record) -> Vec<Smooth> {
+    let mut functions = Vec::new();
+    let (x, y) = (scaled(record, |m| m.contraction), scaled(record, |m| m.pressure));
+    let mut add = |variable, roughness, values: Vec<f64>| {
+        if different(&values) > 1 {
+            functions.push(Smooth { variable, roughness, values });
+        }
+    };
+    let warmth = scaled(record, |m| m.temperature);
+    if record.moments().iter().any(|m| m.temperature != 0.0) {
+        add(Variable::Temperature, 1.5, warmth.clone());
+        add(Variable::Temperature, 2.5, product(&warmth, &y));
+        add(Variable::Temperature, 3.0, product(&warmth, &x));
+        add(Variable::Temperature, 4.0, warmth.iter().map(|t| t * t).collect());
+        add(Variable::Temperature, 5.0, product(&product(&warmth, &x), &y));
+    }
+    if record.moments().iter().any(|m| m.cycle >= 1.0) {
+        let dying =
+            |cycles: f64| record.moments().iter().map(|m| (-m.cycle / cycles).exp()).collect::<Vec<_>>();
+        add(Variable::Cycle, 2.0, dying(1.5));
+        add(Variable::Cycle, 3.0, record.moments().iter().map(|m| m.cycle).collect());
+        add(Variable::Cycle, 4.0, product(&dying(1.5), &x));
+        add(Variable::Cycle, 4.5, product(&dying(1.5), &y));
+    }
+    for specimen in 1..record.specimens().len() {
+        let is_it: Vec<f64> =
+            record.moments().iter().map(|m| f64::from(u8::from(m.specimen as usize == specimen))).collect();
+        add(Variable::Specimen, 1.5, is_it.clone());
+        add(Variable::Specimen, 2.5, product(&is_it, &x));
+        add(Variable::Specimen, 3.0, product(&is_it, &y));
+    }
+    functions
+}
+
+fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a * b).collect()
+}
+
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+}
+
+/// A quantity over -1 ..= 1.
+fn scaled(record: &Record, of: impl Fn(&bulge_effects::Moment) -> f64) -> Vec<f64> {
+    over_range(&record.moments().iter().map(of).collect::<Vec<_>>())
+}
+
+fn over_range(values: &[f64]) -> Vec<f64> {
+    let [low, high] = range(values.iter().copied());
+    let half = (0.5 * (high - low)).max(f64::MIN_POSITIVE);
+    values.iter().map(|v| if high > low { (v - low) / half - 1.0 } else { 0.0 }).collect()
+}
+
+/// How many clearly different values there are, up to 12.
+fn different(values: &[f64]) -> usize {
+    let [low, high] = range(values.iter().copied());
+    if high <= low {
+        return 1;
+    }
+    let mut seen = [false; 12];
+    for value in values {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 11")]
+        let bin = (11.999 * (value - low) / (high - low)) as usize;
+        seen[bin.min(11)] = true;
+    }
+    seen.iter().filter(|s| **s).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::Moment;
+
+    #[test]
+    fn a_map_of_three_pressures_has_no_cubic_in_pressure() {
+        let moments: Vec<Moment> =
+            (0..60).map(|i| Moment::at_rest(1e5 * f64::from(1 + i / 20), 0.01 * f64::from(i % 20))).collect();
+        let record = Record::from_moments(moments, vec![0.0; 60], std::iter::once(0..60).collect()).unwrap();
+        let found = smooth(&record);
+        assert!(found.iter().all(|f| f.variable <= Variable::Pressure));
+        // Degrees i <= 11 (12 contractions are told apart) and i + 1.5 j <= 12 with j <= 2: 12 + 11 + 10.
+        assert_eq!(found.len(), 33);
+        assert!(found[0].values.iter().all(|v| (*v - 1.0).abs() < 1e-15));
+    }
+
+    #[test]
+    fn what_does_not_vary_is_not_there() {
+        let moments: Vec<Moment> = (0..30)
+            .map(|i| Moment {
+                direction: 1.0,
+                clock: f64::from(i),
+                time: f64::from(i),
+                ..Moment::at_rest(2e5, 0.01 * f64::from(i))
+            })
+            .collect();
+        let record = Record::from_moments(moments, vec![0.0; 30], std::iter::once(0..30).collect()).unwrap();
+        let variables: Vec<Variable> = smooth(&record).iter().map(|f| f.variable).collect();
+        for absent in [Variable::Pressure, Variable::Temperature, Variable::Cycle, Variable::Specimen] {
+            assert!(!variables.contains(&absent), "{absent:?}");
+        }
+        assert!(variables.contains(&Variable::Time) && variables.contains(&Variable::Direction));
+    }
+}

@@ -1,0 +1,42 @@
+//! A model at its numbers on a record: the misfit, and how the force moves with each free number.
+
+use bulge_model::{ModelError, Record, Wanted, Warm};
+
+use crate::diagnosis::as_set::as_set;
+use crate::fit::nuisance::Prepared;
+use crate::fit::problem::free;
+
+/// Force and derivatives of a model.
+pub(crate) struct Tangents {
+    /// The history as it was set, at which the columns are taken: functions of what was set, not of what was read.
+    pub(crate) set: Record,
+    /// Force at the readings \[N\].
+    pub(crate) force: Vec<f64>,
+    /// Force at the history as set \[N\].
+    pub(crate) force_as_set: Vec<f64>,
+    /// Measured less computed force \[N\].
+    pub(crate) residual: Vec<f64>,
+    /// Places of the free numbers.
+    pub(crate) free: Vec<usize>,
+    /// Derivative of the force by each of them, column by column.
+    pub(crate) columns: Vec<Vec<f64>>,
+    /// What is remembered of the equilibria as set.
+    pub(crate) warm: Warm,
+}
+
+impl Tangents {
+    /// Of a model with the numbers `theta`.
+    pub(crate) fn of(prepared: &Prepared, theta: &[f64], record: &Record) -> Result<Self, ModelError> {
+        let model = &prepared.model;
+        let wanted = Wanted { parameters: free(model), readings: false };
+        let set = as_set(record);
+        let warm = Warm::new();
+        warm.hold();
+        let at_set = model.evaluate_warm(&set, theta, &wanted, &warm)?;
+        let force = model.evaluate_warm(record, theta, &Wanted::default(), &warm.shared())?.force;
+        let residual = record.force().iter().zip(&force).map(|(measured, force)| measured - force).collect();
+        let k = wanted.parameters.len();
+        let columns = (0..k).map(|j| at_set.jacobian.iter().skip(j).step_by(k).copied().collect()).collect();
+        Ok(Self { set, force, force_as_set: at_set.force, residual, free: wanted.parameters, columns, warm })
+    }
+}

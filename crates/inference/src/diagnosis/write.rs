@@ -1,0 +1,467 @@
+//! From what was found to the diagnosis as people and programs read it.
+
+use bulge_effects::Effect;
+use bulge_measurements::Data;
+use bulge_muscles::units::significant;
+use bulge_muscles::{Muscle, Quantity};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::comparison::document::{Comparison, DataSummary};
+use crate::comparison::rows::full_scale;
+use crate::diagnosis::classes::{Class, Rival};
+use crate::diagnosis::confidence::Confidence;
+use crate::diagnosis::document::{
+    CandidateResult, DiagnosedData, DiagnosedNoise, Diagnosis, ExplainedStep, LadderStep, Missing,
+    NextExperiment, ParameterResult, Remaining, RivalResult, Verdict,
+};
+use crate::diagnosis::explained::{explained, surface};
+use crate::diagnosis::hints::hints;
+use crate::diagnosis::misfit::{located, misfit};
+use crate::diagnosis::plan::SEEN;
+use crate::diagnosis::scene::Given;
+use crate::diagnosis::search::{Search, Stage, singles};
+use crate::dot::dot;
+use crate::fit::interval;
+use crate::fit::problem::{FitProblem, free};
+use crate::noise::law::{NoiseLaw, NoiseSource};
+use bulge_numerics::least_squares::Side;
+
+/// The family of hysteresis with a transition after each reversal, and what it is without.
+const HYSTERESIS: &str = "presliding-hysteresis";
+const COULOMB: &str = "coulomb-friction";
+/// A transition shorter than this part of the stroke is none.
+const SHORT: f64 = 0.025;
+/// Part of the square of the misfit that may be left where effects are named though something remains.
+const FORWARD: f64 = 0.02;
+
+/// Everything that was found.
+pub(crate) struct Findings<'a> {
+    pub(crate) given: &'a Given<'a>,
+    pub(crate) search: &'a Search,
+    pub(crate) classes: &'a [(Class, Confidence)],
+    /// Standard deviation of a single row \[N\].
+    pub(crate) sd_n: f64,
+    pub(crate) effective_rows: f64,
+    /// How many effects the base has.
+    pub(crate) known: usize,
+    pub(crate) tolerance_n: Option<f64>,
+    pub(crate) next: Option<NextExperiment>,
+}
+
+/// The diagnosis.
+pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Comparison) -> Diagnosis {
+    let Findings { given, search, classes, sd_n, .. } = *found;
+    let (verdict, says) = found.verdict();
+    // Where no effect is named, none is shown: what is left is what the base leaves.
+    let named = shows_effects(verdict);
+    let classes = if named { classes } else { &[] };
+    let last = if named { found.last() } else { &search.stages[0] };
+    let adequate = last.adequate || verdict == Verdict::Adequate;
+    let (misfit_n, misfit_interval_n) = misfit(&last.scene, given.seed);
+    let left = located(&last.scene);
+    let added = || classes.iter().map(|(class, sure)| found.missing(class, *sure)).collect::<Vec<_>>();
+    Diagnosis {
+        schema: "bulge.diagnosis/1",
+        muscle: muscle.name().to_owned(),
+        data: DiagnosedData {
+            rows: comparison.data.rows,
+            used: comparison.data.used,
+            effective_rows: found.effective_rows,
+            sha256: comparison.data.sha256.clone(),
+            sweeps: comparison.data.sweeps,
+            specimens: comparison.data.specimens.len(),
+        },
+        noise: DiagnosedNoise {
+            sd_n,
+            correlated: !given.law.is_white(),
+            source: source(given.law.source).to_owned(),
+            law: given.law.clone(),
+        },
+        verdict,
+        says,
+        missing: if verdict == Verdict::Missing { added() } else { Vec::new() },
+        nearest: if verdict == Verdict::Unknown { added() } else { Vec::new() },
+        candidates: found.candidates(classes, verdict == Verdict::Missing),
+        ladder: found.ladder(&comparison, last.added.len(), adequate),
+        noise_floor_n: sd_n,
+        r#where: located(&search.stages[0].scene),
+        explained: if named { found.explained() } else { Vec::new() },
+        remaining: Remaining {
+            structured: !adequate,
+            misfit_n,
+            misfit_interval_n,
+            hints: if adequate { Vec::new() } else { hints(given.record, &last.scene, &left) },
+            surface: surface(given.record, &last.scene),
+        },
+        next_experiment: found.next.clone().filter(|_| named),
+        warnings: comparison.warnings.clone(),
+        comparison,
+    }
+}
+
+const fn shows_effects(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Missing | Verdict::Unknown)
+}
+
+/// Too few rows for any statement.
+pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnosis {
+    let stated = muscle.instruments().force.map_or(0.0, |force| force.noise());
+    let law = NoiseLaw::white(stated, NoiseSource::Instruments, 0.0, "not known from these rows".to_owned());
+    Diagnosis {
+        schema: "bulge.diagnosis/1",
+        muscle: muscle.name().to_owned(),
+        data: DiagnosedData {
+            rows: data.len(),
+            used: data.len(),
+            effective_rows: data.len() as f64,
+            sha256: data.sha256(),
+            sweeps: data.sweeps().len(),
+            specimens: data.specimens().len(),
+        },
+        noise: DiagnosedNoise { sd_n: stated, correlated: false, source: source(law.source).to_owned(), law },
+        verdict: Verdict::CannotTell,
+        says: format!(
+            "these data can't tell: {reason}. Measure at least three pressures with 20 rows each, shortening and lengthening, with a column `time`"
+        ),
+        missing: Vec::new(),
+        nearest: Vec::new(),
+        candidates: Vec::new(),
+        ladder: Vec::new(),
+        noise_floor_n: stated,
+        r#where: Vec::new(),
+        explained: Vec::new(),
+        remaining: Remaining {
+            structured: false,
+            misfit_n: 0.0,
+            misfit_interval_n: [0.0, 0.0],
+            hints: Vec::new(),
+            surface: Vec::new(),
+        },
+        next_experiment: None,
+        warnings: Vec::new(),
+        comparison: nothing_compared(data, muscle),
+    }
+}
+
+/// What was measured, and no model beside it.
+fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
+    let range = |values: &[f64]| {
+        values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
+    };
+    let summary = DataSummary {
+        rows: data.len(),
+        used: data.len(),
+        left_out: Vec::new(),
+        sha256: data.sha256(),
+        files: data.files().iter().map(|file| file.name.clone()).collect(),
+        sweeps: data.sweeps().len(),
+        specimens: data.specimens().to_vec(),
+        is_path: data.time().is_some(),
+        pressure_pa: range(data.pressure()),
+        contraction: range(&data.contraction(muscle.length().si())),
+        force_n: range(data.force()),
+        full_scale_n: full_scale(data.force()),
+    };
+    Comparison {
+        schema: "bulge.comparison/1",
+        muscle: muscle.name().to_owned(),
+        base: "equilibrium".to_owned(),
+        data: summary,
+        quality: Vec::new(),
+        noise_floor: None,
+        ladder: Vec::new(),
+        by: Vec::new(),
+        loops: Vec::new(),
+        maps: Vec::new(),
+        curves: Vec::new(),
+        contributions: Vec::new(),
+        scatter: Vec::new(),
+        rivals: Vec::new(),
+        warnings: Vec::new(),
+    }
+}
+
+const fn source(source: NoiseSource) -> &'static str {
+    match source {
+        NoiseSource::Repeats => "repeats",
+        NoiseSource::Saturated => "saturated",
+        NoiseSource::Instruments => "instruments",
+    }
+}
+
+impl Findings<'_> {
+    /// Effects that the answer shows as added.
+    pub(crate) fn shown(&self) -> &[Arc<dyn Effect>] {
+        if shows_effects(self.verdict().0) { &self.last().added } else { &[] }
+    }
+
+    fn last(&self) -> &Stage {
+        &self.search.stages[self.search.stages.len() - 1]
+    }
+
+    /// The verdict, and a sentence or two.
+    fn verdict(&self) -> (Verdict, String) {
+        let last = self.last();
+        let (misfit_n, interval) = misfit(&last.scene, self.given.seed);
+        let size = format!(
+            "{} N ({} to {})",
+            significant(misfit_n, 2),
+            significant(interval[0], 2),
+            significant(interval[1], 2)
+        );
+        if self.given.law.source == NoiseSource::Instruments {
+            let says = "these rows are too few to know their noise, and data sheets allow a ranking but no verdict: measure at least three pressures \
+                        with 20 rows each, or repeat some rows";
+            return (Verdict::CannotTell, says.to_owned());
+        }
+        if let Some(tolerance) = self.tolerance_n {
+            let (base, small) = (&self.search.stages[0], format!("{} N", significant(tolerance, 3)));
+            let (base_misfit, base_interval) = misfit(&base.scene, self.given.seed);
+            if base_interval[1] <= tolerance {
+                let says = format!(
+                    "the model explains these data within the tolerance of {small}: its systematic misfit is {} N (at most {})",
+                    significant(base_misfit, 2),
+                    significant(base_interval[1], 2)
+                );
+                return (Verdict::Adequate, says);
+            }
+            if last.added.is_empty() && last.adequate {
+                let says = format!(
+                    "nothing is seen, but these data can't exclude a systematic misfit above the tolerance of {small}: it is {size}; measure more rows"
+                );
+                return (Verdict::CannotTell, says);
+            }
+        }
+        let names: Vec<String> = last.added.iter().map(|effect| self.label(effect)).collect();
+        if last.adequate && names.is_empty() {
+            let says = format!(
+                "the model explains these data: nothing is missing that they could show; its systematic misfit is {size}"
+            );
+            return (Verdict::Adequate, says);
+        }
+        if last.adequate {
+            return (
+                Verdict::Missing,
+                format!(
+                    "missing: {}; with {} the model explains the data",
+                    names.join(" and "),
+                    if names.len() == 1 { "it" } else { "them" }
+                ),
+            );
+        }
+        let most = last.scene.structure() < FORWARD * self.search.stages[0].scene.structure();
+        // Where something remains, numbers that no muscle has are a cure of the wrong thing.
+        let sound = last.added.iter().all(|effect| self.plausible(effect.card().name));
+        if !names.is_empty() && most && sound {
+            let says = format!(
+                "missing: {}; that explains most of the misfit, and {size} of structure remain that no further effect explains",
+                names.join(" and ")
+            );
+            return (Verdict::Missing, says);
+        }
+        let says = format!("these data hold a structure of {size} that no effect of the catalogue explains");
+        (Verdict::Unknown, says)
+    }
+
+    /// Each step of the search with what it explained.
+    fn explained(&self) -> Vec<ExplainedStep> {
+        let step = |pair: &[Stage]| {
+            let is_new = |effect: &&Arc<dyn Effect>| {
+                pair[0].added.iter().all(|other| other.card().name != effect.card().name)
+            };
+            let names: Vec<String> =
+                pair[1].added.iter().filter(is_new).map(|effect| self.label(effect)).collect();
+            explained(&names.join(" + "), self.given.record, &pair[0].scene.force, &pair[1].scene.force)
+        };
+        self.search.stages.windows(2).map(step).collect()
+    }
+
+    /// The rungs of the base and of the first `added` effects.
+    fn ladder(&self, comparison: &Comparison, added: usize, adequate: bool) -> Vec<LadderStep> {
+        let (steps, last) = (self.known + 1 + added, self.last());
+        let rungs = comparison.ladder.iter().enumerate().take(steps).skip(self.known);
+        rungs
+            .map(|(i, rung)| LadderStep {
+                added: i.checked_sub(self.known + 1).and_then(|step| Some(self.label(last.added.get(step)?))),
+                rmse_n: rung.rmse_n,
+                held_out_rmse_n: rung.held_out_rmse_n,
+                adequate: i + 1 == steps && adequate,
+            })
+            .collect()
+    }
+
+    /// The name under which an effect is reported: hysteresis whose transition is much shorter than the stroke is Coulomb's friction to all intents, with the
+    /// transition that every real contact has.
+    fn label(&self, effect: &Arc<dyn Effect>) -> String {
+        let card = effect.card();
+        let confirmed = &self.last().confirmed;
+        let distance = confirmed
+            .prepared
+            .model
+            .parameters()
+            .iter()
+            .zip(&confirmed.theta)
+            .find(|(p, _)| p.effect == card.name && p.name == "distance")
+            .map(|(_, value)| *value);
+        let [low, high] =
+            self.given.record.moments().iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], m| {
+                [l.min(m.contraction), h.max(m.contraction)]
+            });
+        // Beside Coulomb's friction it is what that lacks.
+        let has_coulomb = confirmed.prepared.model.effects().iter().any(|c| c.effect.card().name == COULOMB);
+        let is_short =
+            card.family == HYSTERESIS && !has_coulomb && distance.is_some_and(|d| d < SHORT * (high - low));
+        if is_short { COULOMB.to_owned() } else { card.name.to_owned() }
+    }
+
+    fn missing(&self, class: &Class, sure: Confidence) -> Missing {
+        let name = self.label(&class.effect);
+        let own = class.effect.card().family.to_owned();
+        let mut names = vec![name.clone()];
+        if name != class.effect.card().name {
+            names.push(own.clone());
+        }
+        for rival in class.rivals.iter().filter(|rival| rival.in_class) {
+            let family = rival.effect.card().family.to_owned();
+            if family != own && !names.contains(&family) {
+                names.push(family);
+            }
+        }
+        let mut rivals: Vec<RivalResult> =
+            class.rivals.iter().map(|rival| rival_result(rival, class)).collect();
+        rivals.sort_by(|a, b| a.behind.total_cmp(&b.behind));
+        Missing {
+            class: names,
+            confidence: sure.named,
+            simulated: sure,
+            parameters: self.parameters(&class.effect),
+            plausible: self.plausible(class.effect.card().name),
+            detectability: class.detectability,
+            rivals,
+            effect: name,
+        }
+    }
+
+    /// The numbers of an effect with 95 % intervals: from the covariance, and from the profile where that can't be trusted.
+    fn parameters(&self, effect: &Arc<dyn Effect>) -> BTreeMap<String, ParameterResult> {
+        let last = self.last();
+        let confirmed = &last.confirmed;
+        let model = &confirmed.prepared.model;
+        let priors: Vec<Option<(f64, f64)>> = confirmed
+            .prepared
+            .priors
+            .iter()
+            .zip(&confirmed.prepared.nuisance)
+            .map(|(prior, nuisance)| prior.filter(|_| *nuisance))
+            .collect();
+        let problem = FitProblem::whitened(
+            model,
+            self.given.record,
+            self.given.whitening,
+            confirmed.theta.clone(),
+            &priors,
+        );
+        let scale = interval::Scale::known(last.scatter(), self.given.law.degrees_of_freedom);
+        let mut found = BTreeMap::new();
+        for (place, index) in free(model).into_iter().enumerate() {
+            let p = &model.parameters()[index];
+            if p.effect != effect.card().name {
+                continue;
+            }
+            let value = confirmed.theta[index];
+            let at_bound =
+                matches!(confirmed.minimum.certificate.at_bound[place], Some(Side::Lower | Side::Upper));
+            let determined = confirmed.minimum.certificate.is_determined(place);
+            let found_interval =
+                interval::of(&problem, &confirmed.minimum, place, &scale, at_bound || !determined);
+            let name = p.specimen.as_ref().map_or_else(|| p.name.clone(), |s| format!("{}[{s}]", p.name));
+            let [low, high] = found_interval.ends;
+            let result = ParameterResult {
+                value: p.shown(value),
+                unit: p.unit.clone(),
+                low: p.shown(low),
+                high: p.shown(high),
+            };
+            found.insert(name, result);
+        }
+        found
+    }
+
+    fn plausible(&self, effect: &str) -> bool {
+        let confirmed = &self.last().confirmed;
+        let numbers = confirmed.prepared.model.parameters().iter().zip(&confirmed.theta);
+        numbers.filter(|(p, _)| p.effect == effect).all(|(p, value)| {
+            let rounding = 1e-9 * (p.high - p.low);
+            (p.plausible.0 - rounding..=p.plausible.1 + rounding).contains(value)
+        })
+    }
+}
+
+fn rival_result(rival: &Rival, class: &Class) -> RivalResult {
+    RivalResult {
+        effect: rival.effect.card().name.to_owned(),
+        behind: class.log_evidence - rival.log_evidence,
+        separation: rival.separation,
+    }
+}
+
+impl Findings<'_> {
+    /// Every effect of the catalogue, beside the base.
+    fn candidates(&self, classes: &[(Class, Confidence)], is_claimed: bool) -> Vec<CandidateResult> {
+        let given = self.given;
+        let stage = &self.search.stages[0];
+        let scene = &stage.scene;
+        let linear = singles(scene, &stage.confirmed.prepared.model);
+        let given_muscle = stage.confirmed.prepared.model.muscle();
+        let mut found: Vec<CandidateResult> = Vec::new();
+        for (place, screened) in scene.showings.effects.iter().enumerate() {
+            let name = screened.effect.card().name;
+            let alone = linear.iter().find(|h| h.effects == [place]);
+            let tried = stage.tried.iter().find(|t| t.hypothesis.effects == [place]);
+            let is_rival =
+                |class: &Class| class.rivals.iter().any(|r| r.in_class && r.effect.card().name == name);
+            let is_named = classes.iter().any(|(class, _)| self.label(&class.effect) == name);
+            let status = if is_named && is_claimed {
+                "confirmed"
+            } else if is_named
+                || classes.iter().any(|(class, _)| is_rival(class) || class.effect.card().name == name)
+            {
+                "rival"
+            } else if screened.untestable.is_some() || alone.is_none() {
+                "not-testable"
+            } else if tried.is_some_and(|t| t.confirmed.as_ref().is_none_or(|c| !c.converged)) {
+                "not-converged"
+            } else {
+                "rejected"
+            };
+            let candidate = scene.candidates.iter().find(|c| c.effect == place);
+            let numbers = screened.effect.parameters();
+            let number = candidate.and_then(|c| numbers.get(c.sizes.first()?.place));
+            let per_size = candidate.map_or(0.0, |c| c.detectability(1.0));
+            let limit = (per_size > 0.0).then(|| SEEN / per_size);
+            // Beyond the bounds of the number it is no limit: these data can't show the effect.
+            let limit = limit
+                .filter(|l| number.is_none_or(|n| *l <= n.of(given_muscle).high - n.of(given_muscle).low));
+            let column = candidate.and_then(|c| scene.showings.showings[c.showing].columns.first());
+            let rms = column.map(|c| (dot(c, c) / given.record.len().max(1) as f64).sqrt());
+            let fitted = tried.map(|t| t.log_evidence).filter(|evidence| evidence.is_finite());
+            found.push(CandidateResult {
+                effect: name.to_owned(),
+                log_evidence: fitted.or(alone.map(|h| h.log_evidence)).unwrap_or(0.0),
+                score: alone.map_or(0.0, |h| h.gain),
+                status,
+                // What is there or not has no size.
+                detection_limit: number
+                    .filter(|_| candidate.is_some_and(|c| !c.whole))
+                    .and_then(|n| Some(limit? / n.factor)),
+                unit: number.map_or(String::new(), |n| n.unit.to_owned()),
+                detection_limit_n: limit.zip(rms).map(|(limit, rms)| limit * rms),
+                compensation: candidate.map_or(1.0, |c| c.compensated),
+                why: screened.untestable.clone(),
+            });
+        }
+        found.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+        found
+    }
+}

@@ -1,0 +1,110 @@
+//! What a fit found, put into the muscle: effects that shape it into its own numbers, all others into tables of their own.
+
+use bulge_effects::{Group, learnt};
+use bulge_model::{Chosen, Model, ModelError, ModelParameter};
+use bulge_muscles::{Muscle, SHAPE_EFFECTS, units};
+
+use crate::fit::document::{Fit, Fitted};
+
+/// The quantile of a normal number that the ends of a 95 % interval stand for.
+const NORMAL: f64 = 1.959_964;
+
+/// A muscle with what a fit has found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Extension {
+    /// The muscle; [`bulge_muscles::to_toml`] writes it, and [`bulge_effects::known`] reads its effects.
+    pub muscle: Muscle,
+    /// Effects whose numbers it holds.
+    pub written: Vec<String>,
+    /// Effects that it can't hold, with the reason.
+    pub left_out: Vec<(String, &'static str)>,
+}
+
+/// The muscle of a fitted model with the fitted effects.
+///
+/// Rig errors that were fitted as noise within the data sheets are not learnt: the next data set has its own. Effects of single specimens
+/// have no place in the file of the muscle. The standard deviation of a number is half its 95 % interval over 1.96; a number is rounded
+/// to a thousandth of it.
+///
+/// # Errors
+/// If the muscle can't have an effect with these numbers.
+pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
+    let mut extension =
+        Extension { muscle: model.muscle().clone(), written: Vec::new(), left_out: Vec::new() };
+    for chosen in model.effects() {
+        let card = chosen.effect.card();
+        let name = card.name.to_owned();
+        if chosen.fixed {
+            // In the muscle already, with its widths.
+            continue;
+        }
+        if card.group == Group::Specimen {
+            extension.left_out.push((name, "it belongs to single specimens, not to the muscle"));
+            continue;
+        }
+        let places: Vec<usize> =
+            (0..model.parameters().len()).filter(|i| model.parameters()[*i].effect == name).collect();
+        let fitted: Vec<Option<&Fitted>> = places.iter().map(|i| fitted(model, fit, *i)).collect();
+        if fitted.iter().flatten().any(|f| f.nuisance) {
+            extension.left_out.push((name, "it was fitted as noise of the rig, within its data sheets"));
+            continue;
+        }
+        let numbers: Vec<f64> = places
+            .iter()
+            .zip(&fitted)
+            .map(|(i, found)| {
+                found.map_or(fit.theta[*i], |f| rounded(fit.theta[*i], f, &model.parameters()[*i]))
+            })
+            .collect();
+        let widths: Vec<Option<f64>> = places
+            .iter()
+            .zip(&fitted)
+            .map(|(i, found)| found.and_then(width).map(|sd| in_si(sd, &model.parameters()[*i])))
+            .collect();
+        extension.muscle = put(&extension.muscle, chosen, &numbers, &widths)?;
+        extension.written.push(name);
+    }
+    Ok(extension)
+}
+
+fn fitted<'f>(model: &Model, fit: &'f Fit, index: usize) -> Option<&'f Fitted> {
+    let number = &model.parameters()[index];
+    let is_it =
+        |f: &&Fitted| f.effect == number.effect && f.name == number.name && f.specimen == number.specimen;
+    fit.parameters.iter().find(is_it)
+}
+
+/// One standard deviation in the unit shown; none where the interval is none.
+fn width(fitted: &Fitted) -> Option<f64> {
+    let sure = fitted.determined && fitted.at_bound.is_none();
+    sure.then(|| units::rounded((fitted.high - fitted.low) / (2.0 * NORMAL), 2))
+}
+
+/// A fitted number to a thousandth of its standard deviation, or to nine digits: what is read in a file should not pretend to be exact.
+fn rounded(value: f64, fitted: &Fitted, number: &ModelParameter) -> f64 {
+    let shown = value / number.factor;
+    let digits = width(fitted).map_or(9.0, |sd| (shown.abs() / sd).log10().ceil() + 3.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 3 and 15")]
+    let digits = digits.clamp(3.0, 15.0) as usize;
+    in_si(units::rounded(shown, digits), number).clamp(number.low, number.high)
+}
+
+/// As a file's reader would take it: then it is written as short as it was rounded.
+fn in_si(shown: f64, number: &ModelParameter) -> f64 {
+    units::any(&format!("{shown} {}", number.unit)).map_or(shown * number.factor, |value| value.si)
+}
+
+fn put(
+    muscle: &Muscle,
+    chosen: &Chosen,
+    numbers: &[f64],
+    widths: &[Option<f64>],
+) -> Result<Muscle, ModelError> {
+    let card = chosen.effect.card();
+    let about = |source| ModelError::Reshape { effect: card.name.to_owned(), source: Box::new(source) };
+    if SHAPE_EFFECTS.contains(&card.name) {
+        return Ok(chosen.effect.reshape(muscle, numbers).map_err(about)?.muscle);
+    }
+    let table = learnt(chosen.effect.as_ref(), numbers, widths).map_err(about)?;
+    Ok(muscle.clone().with_learnt(table))
+}

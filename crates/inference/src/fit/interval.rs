@@ -1,0 +1,101 @@
+//! Intervals of fitted numbers: from the covariance, and from the profile of the likelihood where that can't be trusted.
+
+use bulge_numerics::least_squares::{Bounds, Minimum, Options, ProfileEnd, profile};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use crate::fit::problem::FitProblem;
+
+/// The 95 % interval of one number, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Interval {
+    pub(crate) ends: [f64; 2],
+    pub(crate) method: &'static str,
+}
+
+/// What turns unit covariances into intervals.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scale {
+    /// Variance of a weighted residual, not below 1 where the noise is known, times rows per independent row.
+    variance: f64,
+    /// Quantile 0.975 of Student's t.
+    quantile: f64,
+}
+
+impl Scale {
+    /// For a minimum with `rows` rows of which `effective` are independent.
+    pub(crate) fn new(minimum: &Minimum, rows: usize, effective: f64) -> Self {
+        let freedom = (rows as f64 - minimum.certificate.rank as f64).max(1.0);
+        // Of the rows alone: priors behind them say nothing about the noise.
+        let cost: f64 = minimum.residuals.iter().take(rows).map(|r| r * r).sum();
+        let spread = (cost / freedom).max(1.0);
+        let independent = (effective - minimum.certificate.rank as f64).max(1.0);
+        let quantile = quantile(independent);
+        Self { variance: spread * (rows as f64 / effective).max(1.0), quantile }
+    }
+
+    /// For noise that is known: whitened residuals have this variance, the law so many degrees of freedom.
+    pub(crate) fn known(variance: f64, freedom: f64) -> Self {
+        Self { variance, quantile: quantile(freedom) }
+    }
+}
+
+/// Quantile 0.975 of Student's t.
+fn quantile(freedom: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, freedom.max(1.0))
+        .map_or(1.959_964, |t| t.inverse_cdf(0.975))
+        .clamp(1.959_964, 12.71)
+}
+
+/// Rows up to which a profile is affordable: each is some forty fits more.
+const MOST_ROWS: usize = 20_000;
+
+/// The interval of the free number `place`: from the covariance, or where that can't be trusted (`flagged`) from the profile of the likelihood,
+/// whose ends are where the sum of squares, minimised over all other numbers, has risen by the square of Student's quantile.
+pub(crate) fn of(
+    problem: &FitProblem<'_>,
+    minimum: &Minimum,
+    place: usize,
+    scale: &Scale,
+    flagged: bool,
+) -> Interval {
+    let bounds = problem.bounds();
+    let back = |x: f64| if problem.is_logarithmic(place) { x.exp() } else { x };
+    let profiled = if flagged && problem.measured() <= MOST_ROWS {
+        profiled(problem, minimum, &bounds, place, scale)
+    } else {
+        None
+    };
+    if let Some(ends) = profiled {
+        return Interval { ends: ends.map(back), method: "profile" };
+    }
+    let x = minimum.theta[place];
+    let sd = minimum.standard_deviations(scale.variance)[place];
+    let ends = match sd {
+        Some(sd) => [x - scale.quantile * sd, x + scale.quantile * sd],
+        None => [bounds.lower[place], bounds.upper[place]],
+    };
+    let ends = [ends[0].max(bounds.lower[place]), ends[1].min(bounds.upper[place])];
+    Interval { ends: ends.map(back), method: "covariance" }
+}
+
+/// The ends of the profile; none if the searches over the other numbers fail.
+fn profiled(
+    problem: &FitProblem<'_>,
+    minimum: &Minimum,
+    bounds: &Bounds,
+    place: usize,
+    scale: &Scale,
+) -> Option<[f64; 2]> {
+    let rise = scale.quantile * scale.quantile * scale.variance;
+    // An end to a thousandth of a standard deviation is more than anybody reads.
+    let options =
+        Options { tolerance: 1e-4, check_curvature: false, max_evaluations: 60, ..Options::default() };
+    let found = profile(problem, minimum, bounds, &options, place, rise).ok()?;
+    let end = |end| match end {
+        ProfileEnd::Crossed(value)
+        | ProfileEnd::AtBound { value, .. }
+        | ProfileEnd::Unbounded { value, .. }
+        | ProfileEnd::Undefined { value, .. } => value,
+    };
+    Some([end(found.lower), end(found.upper)])
+}

@@ -1,0 +1,213 @@
+//! A fit as a problem of least squares: weighted residuals of the used rows, then one row for each prior.
+
+use bulge_model::{Model, ModelError, ModelParameter, Record, Wanted, Warm};
+use bulge_numerics::least_squares::{Bounds, Residuals};
+use rayon::prelude::*;
+use std::ops::Range;
+
+use crate::noise::whitening::Whitening;
+
+/// Rows that one core weights at a time.
+const ROWS: usize = 4096;
+
+/// The free numbers of a model against a record.
+pub(crate) struct FitProblem<'a> {
+    model: &'a Model,
+    record: &'a Record,
+    /// Rows that count.
+    rows: Vec<usize>,
+    /// One standard deviation per row of the record.
+    sd: Vec<f64>,
+    /// Places of the free numbers.
+    free: Vec<usize>,
+    /// All numbers; the free ones are replaced.
+    base: Vec<f64>,
+    /// (place among the free, mean, standard deviation), in the coordinates of the search.
+    priors: Vec<(usize, f64, f64)>,
+    logarithmic: Vec<bool>,
+    /// Takes the correlations of the noise out, where they are known; standard deviations are then 1.
+    whitening: Option<&'a Whitening>,
+    /// Equilibria of the evaluation before, from which the next one starts.
+    warm: Warm,
+}
+
+impl<'a> FitProblem<'a> {
+    pub(crate) fn new(
+        model: &'a Model,
+        record: &'a Record,
+        used: &[bool],
+        sd: Vec<f64>,
+        base: Vec<f64>,
+        priors: &[Option<(f64, f64)>],
+    ) -> Self {
+        let free = free(model);
+        let numbers = model.parameters();
+        let logarithmic: Vec<bool> = free.iter().map(|i| numbers[*i].logarithmic).collect();
+        let of_free = |(place, index): (usize, &usize)| {
+            let (mean, sd) = priors[*index]?;
+            // A relative standard deviation on a logarithmic scale.
+            Some(if logarithmic[place] { (place, mean.ln(), sd / mean) } else { (place, mean, sd) })
+        };
+        let priors = free.iter().enumerate().filter_map(of_free).collect();
+        let rows = (0..record.len()).filter(|row| used[*row]).collect();
+        let warm = Warm::of_rows(used);
+        Self { model, record, rows, sd, free, base, priors, logarithmic, whitening: None, warm }
+    }
+
+    /// The same for correlated noise: all rows of the record count, and the law says how much.
+    pub(crate) fn whitened(
+        model: &'a Model,
+        record: &'a Record,
+        whitening: &'a Whitening,
+        base: Vec<f64>,
+        priors: &[Option<(f64, f64)>],
+    ) -> Self {
+        let rows = record.len();
+        let plain = Self::new(model, record, &vec![true; rows], vec![1.0; rows], base, priors);
+        Self { whitening: Some(whitening), ..plain }
+    }
+
+    /// All numbers of the model, from the coordinates of the search.
+    pub(crate) fn theta(&self, free: &[f64]) -> Vec<f64> {
+        let mut theta = self.base.clone();
+        for ((index, value), logarithmic) in self.free.iter().zip(free).zip(&self.logarithmic) {
+            theta[*index] = if *logarithmic { value.exp() } else { *value };
+        }
+        theta
+    }
+
+    /// Coordinates of the search.
+    pub(crate) fn coordinates(&self, theta: &[f64]) -> Vec<f64> {
+        let coordinate = |(index, logarithmic): (&usize, &bool)| {
+            if *logarithmic { theta[*index].ln() } else { theta[*index] }
+        };
+        self.free.iter().zip(&self.logarithmic).map(coordinate).collect()
+    }
+
+    /// Bounds in the coordinates of the search.
+    pub(crate) fn bounds(&self) -> Bounds {
+        let numbers = self.model.parameters();
+        let low: Vec<f64> = numbers.iter().map(|p| p.low).collect();
+        let high: Vec<f64> = numbers.iter().map(|p| p.high).collect();
+        Bounds { lower: self.coordinates(&low), upper: self.coordinates(&high) }
+    }
+
+    /// Solves the equilibria of the next evaluation only, see [`Warm::hold`].
+    pub(crate) fn hold(&self) {
+        self.warm.hold();
+    }
+
+    /// Solves those of each evaluation.
+    pub(crate) fn release(&self) {
+        self.warm.release();
+    }
+
+    pub(crate) fn is_held(&self) -> bool {
+        self.warm.is_held()
+    }
+
+    /// The force of every row of the record \[N\] that goes with residuals; 0 where a row doesn't count.
+    pub(crate) fn force(&self, residuals: &[f64]) -> Vec<f64> {
+        let mut force = vec![0.0; self.record.len()];
+        for (row, residual) in self.rows.iter().zip(residuals) {
+            force[*row] = self.record.force()[*row] - residual * self.sd[*row];
+        }
+        force
+    }
+
+    /// Number of rows of the record that count.
+    pub(crate) fn measured(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Standard deviation of each row of the record.
+    pub(crate) fn sd(&self) -> &[f64] {
+        &self.sd
+    }
+
+    /// Whether a free number is fitted over its logarithm.
+    pub(crate) fn is_logarithmic(&self, place: usize) -> bool {
+        self.logarithmic[place]
+    }
+}
+
+impl FitProblem<'_> {
+    fn whiten(&self, columns: &mut [f64]) -> Result<(), ModelError> {
+        let Some(whitening) = self.whitening else { return Ok(()) };
+        let what = "the noise law doesn't suit the record";
+        whitening.apply(columns).map_err(|_| ModelError::NotFinite { rows: Vec::new(), what })
+    }
+}
+
+/// Places of the numbers that a fit may change.
+pub(crate) fn free(model: &Model) -> Vec<usize> {
+    let is_free = |(_, p): &(usize, &ModelParameter)| !p.fixed;
+    model.parameters().iter().enumerate().filter(is_free).map(|(i, _)| i).collect()
+}
+
+impl Residuals for FitProblem<'_> {
+    type Error = ModelError;
+
+    fn rows(&self) -> usize {
+        self.rows.len() + self.priors.len()
+    }
+
+    fn parameters(&self) -> usize {
+        self.free.len()
+    }
+
+    /// All at once: rows of a sweep depend on each other, and the model is parallel itself.
+    fn block(&self) -> usize {
+        self.rows()
+    }
+
+    /// Derivatives come along with the equilibria.
+    fn joint(&self) -> bool {
+        true
+    }
+
+    fn evaluate(
+        &self,
+        coordinates: &[f64],
+        _: Range<usize>,
+        residuals: &mut [f64],
+        jacobian: Option<&mut [f64]>,
+    ) -> Result<(), ModelError> {
+        let theta = self.theta(coordinates);
+        let parameters = if jacobian.is_some() { self.free.clone() } else { Vec::new() };
+        let wanted = Wanted { parameters, readings: false };
+        let prediction = self.model.evaluate_warm(self.record, &theta, &wanted, &self.warm)?;
+        let measured = self.record.force();
+        let (used, _) = residuals.split_at_mut(self.rows.len());
+        used.par_chunks_mut(ROWS).zip(self.rows.par_chunks(ROWS)).for_each(|(residuals, rows)| {
+            for (residual, row) in residuals.iter_mut().zip(rows) {
+                *residual = (measured[*row] - prediction.force[*row]) / self.sd[*row];
+            }
+        });
+        let n = self.rows.len();
+        self.whiten(&mut residuals[..n])?;
+        for (residual, (place, mean, sd)) in residuals[n..].iter_mut().zip(&self.priors) {
+            *residual = (coordinates[*place] - mean) / sd;
+        }
+        let k = self.free.len();
+        let Some(jacobian) = jacobian.filter(|_| k > 0) else { return Ok(()) };
+        let scale: Vec<f64> =
+            (0..k).map(|place| if self.logarithmic[place] { theta[self.free[place]] } else { 1.0 }).collect();
+        let (used, priors) = jacobian.split_at_mut(n * k);
+        used.par_chunks_mut(ROWS * k).zip(self.rows.par_chunks(ROWS)).for_each(|(lines, rows)| {
+            for (line, row) in lines.chunks_exact_mut(k).zip(rows) {
+                let slopes = &prediction.jacobian[row * k..(row + 1) * k];
+                let weight = -1.0 / self.sd[*row];
+                for ((out, slope), scale) in line.iter_mut().zip(slopes).zip(&scale) {
+                    *out = slope * scale * weight;
+                }
+            }
+        });
+        self.whiten(used)?;
+        for (line, (place, _, sd)) in priors.chunks_exact_mut(k).zip(&self.priors) {
+            line.fill(0.0);
+            line[*place] = 1.0 / sd;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,378 @@
+//! The fit: many starts on a thinned record, the best ones polished on all rows, and what is to be said about the result.
+
+use bulge_model::{Model, ModelError, Record, Wanted, Warm};
+use bulge_numerics::least_squares::{
+    Bounds, LeastSquaresError, Minimum, Options, Reason, Side, starts_in_box,
+};
+
+use rayon::prelude::*;
+
+use crate::fit::document::{Convergence, Fit, Fitted};
+use crate::fit::interval;
+use crate::fit::nuisance::Prepared;
+use crate::fit::problem::{FitProblem, free};
+use crate::fit::settle::settled;
+use crate::fit::weights::{Noise, effective_rows};
+use bulge_muscles::units::significant;
+
+/// Rows on which starts are tried.
+const FEW_ROWS: usize = 400;
+/// Starting points.
+const STARTS: usize = 8;
+/// Part of the plausible box at either end in which no start lies.
+const EDGE: f64 = 0.1;
+/// Minima of the thinned record that are followed further.
+const POLISHED: usize = 2;
+/// Rows on which they are followed before all rows, where those are many more.
+const MORE_ROWS: usize = 4000;
+/// Rows from which that saves time: several minima, and one.
+const MANY_ROWS: [usize; 2] = [8000, 20_000];
+/// Part by which a minimum may be above the least one there, and is still followed on all rows.
+const RIVAL: f64 = 0.05;
+/// Costs that differ by less than this part belong to the same minimum.
+const SAME: f64 = 1e-3;
+/// Correlations beyond this are spoken of.
+const INSEPARABLE: f64 = 0.98;
+
+/// What a fit needs besides the model.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Task<'a> {
+    pub(crate) record: &'a Record,
+    pub(crate) used: &'a [bool],
+    pub(crate) noise: Noise,
+    /// Tries only the start that it is given: one that is known to be near the minimum.
+    pub(crate) is_near: bool,
+    /// Makes no statement about uncertainty: for held-out errors.
+    pub(crate) quick: bool,
+}
+
+/// Fits the free numbers of a model.
+pub(crate) fn fit(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Fit, ModelError> {
+    fit_and_force(prepared, start, task).map(|(fit, _)| fit)
+}
+
+/// The same with the force that goes with the fit \[N\]; it is 0 in rows that don't count.
+pub(crate) fn fit_and_force(
+    prepared: &Prepared,
+    start: &[f64],
+    task: &Task<'_>,
+) -> Result<(Fit, Vec<f64>), ModelError> {
+    let model = &prepared.model;
+    let mut best = vec![start.to_vec()];
+    let mut minima = 1;
+    let mut agreeing = 1;
+    let mut tried = 1;
+    let all_narrow = free(model).into_iter().all(|index| prepared.nuisance[index]);
+    if !(task.is_near || all_narrow) {
+        let searched = search(prepared, start, task)?;
+        (best, minima, agreeing, tried) = (searched.best, searched.minima, searched.agreeing, searched.tried);
+    }
+    if task.record.len() > MANY_ROWS[usize::from(best.len() == 1)] && !task.quick {
+        best = followed(prepared, best, task)?;
+    }
+    let mut found: Option<(Minimum, FitProblem<'_>)> = None;
+    for theta in &best {
+        let sd = weights(model, theta, task)?;
+        let problem = FitProblem::new(model, task.record, task.used, sd, theta.clone(), &prepared.priors);
+        let minimum = settle(&problem, theta, task.quick)?;
+        if found.as_ref().is_none_or(|(other, _)| minimum.cost < other.cost) {
+            found = Some((minimum, problem));
+        }
+    }
+    let Some((minimum, problem)) = found else {
+        return Err(ModelError::Values { given: 0, expected: 1 });
+    };
+    let force = problem.force(&minimum.residuals);
+    let fit = report(
+        prepared,
+        &minimum,
+        &problem,
+        task,
+        Convergence {
+            converged: minimum.certificate.converged,
+            reason: reason(minimum.certificate.reason).to_owned(),
+            gradient_cosine: minimum.certificate.gradient_cosine,
+            iterations: minimum.iterations,
+            starts: tried,
+            agreeing,
+            minima,
+            rank: minimum.certificate.rank,
+        },
+    );
+    Ok((fit, force))
+}
+
+struct Searched {
+    best: Vec<Vec<f64>>,
+    minima: usize,
+    agreeing: usize,
+    tried: usize,
+}
+
+/// Starts all over the plausible box, each followed to its minimum on few rows.
+fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searched, ModelError> {
+    let model = &prepared.model;
+    let (thin, kept) = task.record.thinned(FEW_ROWS);
+    let used: Vec<bool> = kept.iter().map(|row| task.used[*row]).collect();
+    let few = Task { record: &thin, used: &used, ..*task };
+    let sd = weights(model, start, &few)?;
+    // Each start remembers equilibria of its own: they run at the same time.
+    let problem_of = || FitProblem::new(model, &thin, &used, sd.clone(), start.to_vec(), &prepared.priors);
+    let problem = problem_of();
+    let bounds = problem.bounds();
+    let options =
+        Options { check_curvature: false, tolerance: 1e-4, max_evaluations: 60, ..Options::default() };
+    let mut starts = vec![clamped(problem.coordinates(start), &bounds.lower, &bounds.upper)];
+    starts.push(clamped(problem.coordinates(&nearly_off(model, start)), &bounds.lower, &bounds.upper));
+    starts.extend(scattered(prepared, &problem, start, STARTS - 2));
+    let tried = starts.len();
+    let followed: Vec<_> =
+        starts.par_iter().map(|coordinates| settled(&problem_of(), coordinates, &bounds, &options)).collect();
+    let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
+    let mut first_error = None;
+    for end in followed {
+        match end {
+            Ok(minimum) => ends.push((minimum.cost, problem.theta(&minimum.theta))),
+            Err(LeastSquaresError::Start(error)) => first_error = first_error.or(Some(error)),
+            Err(_) => {}
+        }
+    }
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some(least) = ends.first().map(|end| end.0) else {
+        return Err(first_error.unwrap_or(ModelError::Values { given: 0, expected: 1 }));
+    };
+    let same = |a: f64, b: f64| (a - b).abs() <= SAME * (a.abs() + b.abs()) + 1e-12;
+    let mut best: Vec<(f64, Vec<f64>)> = Vec::new();
+    for end in &ends {
+        if !best.iter().any(|other| same(other.0, end.0)) {
+            best.push(end.clone());
+        }
+    }
+    let agreeing = ends.iter().filter(|end| same(end.0, least)).count();
+    let minima = best.len();
+    Ok(Searched {
+        best: best.into_iter().take(POLISHED).map(|(_, theta)| theta).collect(),
+        minima,
+        agreeing,
+        tried,
+    })
+}
+
+/// Minima of few rows followed on more rows; those that are far above the least one are dropped.
+fn followed(
+    prepared: &Prepared,
+    minima: Vec<Vec<f64>>,
+    task: &Task<'_>,
+) -> Result<Vec<Vec<f64>>, ModelError> {
+    let model = &prepared.model;
+    let (thin, kept) = task.record.thinned(MORE_ROWS);
+    let used: Vec<bool> = kept.iter().map(|row| task.used[*row]).collect();
+    let some = Task { record: &thin, used: &used, ..*task };
+    let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
+    for theta in minima {
+        let sd = weights(model, &theta, &some)?;
+        let problem = FitProblem::new(model, &thin, &used, sd, theta.clone(), &prepared.priors);
+        let minimum = settle(&problem, &theta, true)?;
+        ends.push((minimum.cost, problem.theta(&minimum.theta)));
+    }
+    let least = ends.iter().map(|end| end.0).fold(f64::INFINITY, f64::min);
+    ends.retain(|end| end.0 <= least * (1.0 + RIVAL));
+    Ok(ends.into_iter().map(|(_, theta)| theta).collect())
+}
+
+/// Nine tenths of the way from a start to where effects are off: there the muscle is nearly as stated, which has an equilibrium in most rows.
+fn nearly_off(model: &Model, start: &[f64]) -> Vec<f64> {
+    let towards = |(value, off): (&f64, f64)| value + 0.9 * (off - value);
+    start.iter().zip(model.off()).map(towards).collect()
+}
+
+/// Points of the plausible box, in the coordinates of the search; numbers with a narrow prior stay near its mean.
+fn scattered(prepared: &Prepared, problem: &FitProblem<'_>, start: &[f64], count: usize) -> Vec<Vec<f64>> {
+    let model = &prepared.model;
+    let (mut lowest, mut highest) = (start.to_vec(), start.to_vec());
+    for index in free(model) {
+        let p = &model.parameters()[index];
+        let (low, high) = match prepared.priors[index] {
+            Some((mean, sd)) if prepared.nuisance[index] => (mean - sd, mean + sd),
+            _ => p.plausible,
+        };
+        (lowest[index], highest[index]) = (low.max(p.low), high.min(p.high));
+    }
+    let (mut lower, mut upper) = (problem.coordinates(&lowest), problem.coordinates(&highest));
+    for (low, high) in lower.iter_mut().zip(&mut upper) {
+        // Not on the ends: there effects may be off or absurd.
+        let inset = EDGE * (*high - *low);
+        (*low, *high) = (*low + inset, *high - inset);
+    }
+    // Without a finite box there is only the start itself.
+    starts_in_box(count, &Bounds { lower, upper }).unwrap_or_default()
+}
+
+fn clamped(mut coordinates: Vec<f64>, lower: &[f64], upper: &[f64]) -> Vec<f64> {
+    for ((x, low), high) in coordinates.iter_mut().zip(lower).zip(upper) {
+        *x = x.clamp(*low, *high);
+    }
+    coordinates
+}
+
+fn weights(model: &Model, theta: &[f64], task: &Task<'_>) -> Result<Vec<f64>, ModelError> {
+    let readings = task.noise.pressure_pa > 0.0 || task.noise.contraction > 0.0;
+    let wanted = Wanted { parameters: Vec::new(), readings };
+    let prediction = if readings {
+        model.evaluate_warm(task.record, theta, &wanted, &Warm::of_rows(task.used))?
+    } else {
+        bulge_model::Prediction {
+            force: Vec::new(),
+            jacobian: Vec::new(),
+            by_pressure: Vec::new(),
+            by_contraction: Vec::new(),
+        }
+    };
+    Ok(task.noise.of_rows(task.record, &prediction))
+}
+
+fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimum, ModelError> {
+    let bounds = problem.bounds();
+    let start = clamped(problem.coordinates(theta), &bounds.lower, &bounds.upper);
+    // Numbers are then off by this part of sqrt(rows) standard deviations.
+    let tolerance = if quick { 1e-4 } else { 1e-5 };
+    let options = Options { check_curvature: false, tolerance, max_evaluations: 200, ..Options::default() };
+    settled(problem, &start, &bounds, &options).map_err(|error| match error {
+        LeastSquaresError::Start(error) => error,
+        _ => ModelError::NotFinite {
+            rows: Vec::new(),
+            what: "the fit cannot start: the model has no finite derivatives there",
+        },
+    })
+}
+
+fn reason(reason: Reason) -> &'static str {
+    if reason.is_converged() {
+        "residuals are orthogonal to what the numbers can change"
+    } else {
+        "the search ended before the residuals were orthogonal to what the numbers can change"
+    }
+}
+
+/// Numbers with intervals, and warnings.
+fn report(
+    prepared: &Prepared,
+    minimum: &Minimum,
+    problem: &FitProblem<'_>,
+    task: &Task<'_>,
+    convergence: Convergence,
+) -> Fit {
+    let model = &prepared.model;
+    let theta = problem.theta(&minimum.theta);
+    let n = problem.measured();
+    let mut residuals = vec![0.0; task.record.len()];
+    let rows = (0..task.record.len()).filter(|row| task.used[*row]);
+    for (row, residual) in rows.zip(&minimum.residuals) {
+        residuals[row] = *residual;
+    }
+    let square: f64 = residuals.iter().zip(problem.sd()).map(|(r, sd)| (r * sd) * (r * sd)).sum();
+    let effective = if task.quick { n as f64 } else { effective_rows(task.record, &residuals, task.used) };
+    let mut fit = Fit {
+        parameters: Vec::new(),
+        theta,
+        rmse_n: (square / n.max(1) as f64).sqrt(),
+        cost: minimum.cost,
+        sd_n: task.noise.force_n,
+        effective_rows: effective,
+        correlations: minimum.correlation(),
+        convergence,
+        warnings: Vec::new(),
+    };
+    if task.quick {
+        return fit;
+    }
+    let scale = interval::Scale::new(minimum, n, effective);
+    for (place, index) in free(model).into_iter().enumerate() {
+        let mut fitted = fitted(prepared, index, fit.theta[index]);
+        fitted.determined = minimum.certificate.flat.iter().all(|v| v[place].abs() < 0.5);
+        fitted.at_bound = minimum.certificate.at_bound[place].map(|side| match side {
+            Side::Lower => "lower",
+            Side::Upper => "upper",
+        });
+        let flagged = fitted.at_bound.is_some() || !fitted.plausible || !fitted.determined;
+        let found = interval::of(problem, minimum, place, &scale, flagged);
+        fitted.interval = found.method;
+        let factor = model.parameters()[index].factor;
+        [fitted.low, fitted.high] = found.ends.map(|x| x / factor);
+        fit.parameters.push(fitted);
+    }
+    fit.warnings = warnings(&fit);
+    fit
+}
+
+fn fitted(prepared: &Prepared, index: usize, value: f64) -> Fitted {
+    let p = &prepared.model.parameters()[index];
+    let tiny = 1e-9 * (p.high - p.low);
+    let plausible = value >= p.plausible.0 - tiny && value <= p.plausible.1 + tiny;
+    let effect = prepared.model.effects().iter().find(|c| c.effect.card().name == p.effect);
+    let cards = effect.map(|c| c.effect.parameters()).unwrap_or_default();
+    let reciprocal = cards.iter().find(|card| card.name == p.name).and_then(|card| card.reciprocal);
+    let also = reciprocal
+        .filter(|_| value > 0.0)
+        .map(|(name, unit, size)| (name.to_owned(), 1.0 / (value * size), unit.to_owned()));
+    Fitted {
+        effect: p.effect.clone(),
+        name: p.name.clone(),
+        specimen: p.specimen.clone(),
+        value: p.shown(value),
+        low: p.shown(value),
+        high: p.shown(value),
+        unit: p.unit.clone(),
+        interval: "covariance",
+        at_bound: None,
+        plausible: plausible || prepared.nuisance[index],
+        plausible_range: [p.shown(p.plausible.0), p.shown(p.plausible.1)],
+        determined: true,
+        nuisance: prepared.nuisance[index],
+        also,
+        about: p.about.clone(),
+    }
+}
+
+fn warnings(fit: &Fit) -> Vec<String> {
+    let label = |p: &Fitted| format!("{} of {}", p.name, p.effect);
+    let mut warnings = Vec::new();
+    if !fit.convergence.converged {
+        warnings.push(format!(
+            "the fit did not converge ({}): its numbers are not to be relied on",
+            fit.convergence.reason
+        ));
+    }
+    for p in &fit.parameters {
+        let value = format!("{} {}", significant(p.value, 3), p.unit);
+        if !p.plausible {
+            warnings.push(format!(
+                "implausible: {} = {value}, outside {} to {} {}: a wrong cure, even if the error falls",
+                label(p),
+                significant(p.plausible_range[0], 3),
+                significant(p.plausible_range[1], 3),
+                p.unit
+            ));
+        }
+        if let Some(side) = p.at_bound {
+            warnings.push(format!("{} lies on the {side} bound of the search, {value}", label(p)));
+        }
+        if !p.determined {
+            warnings.push(format!("these data do not determine {}", label(p)));
+        }
+    }
+    let k = fit.parameters.len();
+    for i in 0..k {
+        for j in 0..i {
+            let r = fit.correlations.get(i * k + j).copied().unwrap_or(0.0);
+            if r.abs() > INSEPARABLE {
+                warnings.push(format!(
+                    "{} and {} cannot be told apart by these data (correlation {r:.3})",
+                    label(&fit.parameters[j]),
+                    label(&fit.parameters[i])
+                ));
+            }
+        }
+    }
+    warnings
+}

@@ -1,0 +1,405 @@
+//! What a test bench does and how it reads: pressures, motion, cycles, repeats, noise; made ready for models before anything is measured.
+
+use serde::Serialize;
+use std::ops::RangeInclusive;
+
+use crate::error::InferenceError;
+
+/// Most rows of a protocol.
+pub const MOST_ROWS: usize = 1_000_000;
+/// Most pressures of a block, and most cycles, repeats, specimens and levels of stairs.
+const MOST_COUNT: u32 = 10_000;
+/// Contractions that a bench can set.
+const CONTRACTIONS: RangeInclusive<f64> = -1.0..=0.6;
+/// Highest gauge pressure \[Pa\].
+const MOST_PRESSURE: f64 = 1e8;
+/// Longest period, hold and pause \[s\].
+const MOST_TIME: f64 = 1e7;
+/// Largest noise, in the SI unit of what is read, and most warming \[K\].
+const MOST_NOISE: f64 = 1e7;
+const MOST_WARMING: f64 = 200.0;
+/// Fewest degrees of freedom of Student's t that have a standard deviation, with some room.
+const LEAST_TAILS: f64 = 2.1;
+
+/// A test: blocks one after the other, and how the rig reads. All numbers are SI.
+///
+/// ```
+/// use bulge_inference::{Block, Protocol};
+///
+/// // Three triangular loops from 1 % to 15 % at each of two pressures.
+/// let block = Block { cycles: 3, ..Block::loops(vec![2e5, 4e5], [0.01, 0.15], 50.0) };
+/// let record = Protocol::new(vec![block]).moments(&bulge_muscles::preset("ppam-2-r16").unwrap())?;
+/// assert_eq!((record.len(), record.sweeps().len(), record.moments()[10].direction), (300, 2, 1.0));
+/// # Ok::<(), bulge_inference::InferenceError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Protocol {
+    /// The blocks in the order of the test: all of them static maps, or none.
+    pub blocks: Vec<Block>,
+    /// Noise of the readings.
+    pub noise: ReadingNoise,
+    /// Steps in which the sensors read.
+    pub steps: ReadingSteps,
+    /// Zero and gain errors of the sensors.
+    pub rig: RigErrors,
+    /// Pause between sweeps \[s\]; one row's time if that is longer.
+    pub pause_s: f64,
+    /// Rise of the temperature over the whole test \[K\], even in time; 0: no column of temperatures.
+    pub warming_k: f64,
+}
+
+/// The same motion at several pressures.
+///
+/// Each specimen goes through all repeats, each repeat through all pressures; each pressure is one sweep.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Block {
+    /// Gauge pressures \[Pa\], > 0.
+    pub pressures_pa: Vec<f64>,
+    /// Lowest and highest contraction.
+    pub contraction: [f64; 2],
+    /// How the muscle moves between them.
+    pub path: Path,
+    /// Cycles of each sweep; without meaning in a static map.
+    pub cycles: u32,
+    /// Time of one cycle \[s\]; without meaning in a static map.
+    pub period_s: f64,
+    /// Rows of one cycle, or contractions of a static map at each pressure.
+    pub rows: u32,
+    /// How often the whole block is done.
+    pub repeats: u32,
+    /// Number of specimens, named 1, 2, and so on.
+    pub specimens: u32,
+}
+
+/// How a muscle moves.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Path {
+    /// Up and down at constant speed.
+    Triangle,
+    /// Up and down as a sine.
+    Sine,
+    /// Up and down in steps of equal size, with a hold on each level.
+    Stairs {
+        /// Steps up; as many go down.
+        steps: u32,
+        /// Hold on each level \[s\].
+        hold_s: f64,
+    },
+    /// A grid of single readings, without time.
+    Static,
+}
+
+/// Noise of single readings, one standard deviation each.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct ReadingNoise {
+    /// White noise of the force \[N\].
+    pub force_n: f64,
+    /// Degrees of freedom of Student's t, of which the white noise of the force is then; its standard deviation stays what it is.
+    pub tails: Option<f64>,
+    /// Noise of the force that is exponentially correlated in time within a sweep \[N\].
+    pub correlated_n: f64,
+    /// Its correlation time \[s\].
+    pub correlation_time_s: f64,
+    /// Offset of the force of each sweep \[N\].
+    pub offset_n: f64,
+    /// Of the pressure \[Pa\].
+    pub pressure_pa: f64,
+    /// Of the length \[m\].
+    pub length_m: f64,
+}
+
+/// The smallest differences that the sensors show; 0: none.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct ReadingSteps {
+    /// Of the force \[N\].
+    pub force_n: f64,
+    /// Of the pressure \[Pa\].
+    pub pressure_pa: f64,
+    /// Of the length \[m\].
+    pub length_m: f64,
+}
+
+/// Zero and gain errors of the sensors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RigErrors {
+    /// None.
+    #[default]
+    None,
+    /// Drawn by the seed from the widths of the muscle's `[instruments]`.
+    Drawn,
+}
+
+/// What is wrong with a number: its key in a file, a sentence, and what to write.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Wrong {
+    pub(crate) key: &'static str,
+    pub(crate) what: String,
+    pub(crate) instead: String,
+}
+
+impl Block {
+    /// One triangular loop of 50 rows at each pressure \[Pa\], between two contractions, in `period_s` \[s\].
+    #[must_use]
+    pub fn loops(pressures_pa: Vec<f64>, contraction: [f64; 2], period_s: f64) -> Self {
+        Self {
+            pressures_pa,
+            contraction,
+            path: Path::Triangle,
+            cycles: 1,
+            period_s,
+            rows: 50,
+            repeats: 1,
+            specimens: 1,
+        }
+    }
+
+    /// A static map with `rows` contractions at each pressure \[Pa\].
+    #[must_use]
+    pub fn map(pressures_pa: Vec<f64>, contraction: [f64; 2], rows: u32) -> Self {
+        Self { path: Path::Static, rows, ..Self::loops(pressures_pa, contraction, 0.0) }
+    }
+
+    /// Rows of one sweep.
+    fn rows_of_sweep(&self) -> u64 {
+        u64::from(self.rows) * u64::from(if self.path == Path::Static { 1 } else { self.cycles })
+    }
+
+    /// Rows of the whole block.
+    #[must_use]
+    pub fn len(&self) -> u64 {
+        let sweeps = (self.pressures_pa.len() as u64)
+            .saturating_mul(u64::from(self.repeats))
+            .saturating_mul(u64::from(self.specimens));
+        self.rows_of_sweep().saturating_mul(sweeps)
+    }
+
+    /// Whether it has no row.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    pub(crate) fn check(&self) -> Result<(), Wrong> {
+        let count = |key, value: u32, least: u32, example: &str| {
+            let what = format!("`{key}` is {value}, but must be a whole number from {least} to {MOST_COUNT}");
+            let instead = format!("write such as `{example}`");
+            if (least..=MOST_COUNT).contains(&value) { Ok(()) } else { Err(Wrong { key, what, instead }) }
+        };
+        if self.pressures_pa.is_empty() || self.pressures_pa.len() > MOST_COUNT as usize {
+            let what = format!(
+                "there are {} pressures, but 1 to {MOST_COUNT} are possible",
+                self.pressures_pa.len()
+            );
+            let instead = "write such as `pressures = [\"2 bar\", \"3 bar\"]`".to_owned();
+            return Err(Wrong { key: "pressures", what, instead });
+        }
+        if let Some(pressure) = self.pressures_pa.iter().find(|p| !(**p > 0.0 && **p <= MOST_PRESSURE)) {
+            let what = format!(
+                "a pressure of {pressure} Pa is not possible: gauge pressures lie above 0 and up to 1000 bar"
+            );
+            return Err(Wrong { key: "pressures", what, instead: "write such as \"2 bar\"".to_owned() });
+        }
+        let [low, high] = self.contraction;
+        if !(CONTRACTIONS.contains(&low) && CONTRACTIONS.contains(&high) && low < high) {
+            let what = format!(
+                "a contraction from {:.4} % to {:.4} % is not possible: it must rise, within -100 % and 60 %",
+                100.0 * low,
+                100.0 * high
+            );
+            let instead = "write such as `contraction = \"1 %..20 %\"`".to_owned();
+            return Err(Wrong { key: "contraction", what, instead });
+        }
+        count("rows", self.rows, 2, "rows = 50")?;
+        count("repeats", self.repeats, 1, "repeats = 2")?;
+        count("specimens", self.specimens, 1, "specimens = 3")?;
+        if self.path == Path::Static {
+            return Ok(());
+        }
+        count("rows", self.rows, 4, "rows = 50")?;
+        count("cycles", self.cycles, 1, "cycles = 3")?;
+        if !(self.period_s > 0.0 && self.period_s <= MOST_TIME) {
+            let what = format!(
+                "a period of {} s is not possible: it must be > 0 s and at most 1e7 s",
+                self.period_s
+            );
+            return Err(Wrong {
+                key: "period",
+                what,
+                instead: "write such as `period = \"50 s\"`".to_owned(),
+            });
+        }
+        self.check_stairs(count)
+    }
+
+    fn check_stairs(
+        &self,
+        count: impl Fn(&'static str, u32, u32, &str) -> Result<(), Wrong>,
+    ) -> Result<(), Wrong> {
+        let Path::Stairs { steps, hold_s } = self.path else { return Ok(()) };
+        count("steps", steps, 1, "steps = 8")?;
+        let stage = self.period_s / f64::from(2 * steps);
+        if !(hold_s >= 0.0 && hold_s < stage) {
+            let what = format!(
+                "a hold of {hold_s} s is not possible: a period of {} s leaves {stage} s for each of {} steps, and the way takes some of it",
+                self.period_s,
+                2 * steps
+            );
+            let instead = "write a shorter `hold`, or a longer `period`".to_owned();
+            return Err(Wrong { key: "hold", what, instead });
+        }
+        if u64::from(self.rows) < 4 * u64::from(steps) {
+            let what =
+                format!("{} rows are too few for {} steps: each needs two or more", self.rows, 2 * steps);
+            return Err(Wrong {
+                key: "rows",
+                what,
+                instead: format!("write `rows = {}` or more", 4 * steps),
+            });
+        }
+        Ok(())
+    }
+}
+
+impl ReadingNoise {
+    pub(crate) fn check(&self, is_static: bool) -> Result<(), Wrong> {
+        let sizes = [
+            ("force", self.force_n, "2 N"),
+            ("correlated", self.correlated_n, "1 N"),
+            ("offset", self.offset_n, "1 N"),
+            ("pressure", self.pressure_pa, "100 Pa"),
+            ("length", self.length_m, "20 um"),
+        ];
+        for (key, value, example) in sizes {
+            size(key, value, "a standard deviation", example)?;
+        }
+        if let Some(tails) = self.tails.filter(|tails| !(LEAST_TAILS..=1e6).contains(tails)) {
+            let what = format!(
+                "`tails` is {tails}, but must be from {LEAST_TAILS} to 1e6: the degrees of freedom of Student's t"
+            );
+            let instead = "write such as `tails = 4`, or leave it out for normal noise".to_owned();
+            return Err(Wrong { key: "tails", what, instead });
+        }
+        if self.correlated_n > 0.0 && is_static {
+            let what = "`correlated` noise needs time, and a static map has none".to_owned();
+            return Err(Wrong { key: "correlated", what, instead: "leave it out".to_owned() });
+        }
+        if self.correlated_n > 0.0 && !(self.correlation_time_s > 0.0 && self.correlation_time_s <= MOST_TIME)
+        {
+            let what = format!(
+                "a correlation time of {} s is not possible: `correlated` noise needs one > 0 s",
+                self.correlation_time_s
+            );
+            let instead = "write such as `correlation_time = \"5 s\"`".to_owned();
+            return Err(Wrong { key: "correlation_time", what, instead });
+        }
+        Ok(())
+    }
+}
+
+impl ReadingSteps {
+    pub(crate) fn check(&self) -> Result<(), Wrong> {
+        size("force", self.force_n, "a step", "0.1 N")?;
+        size("pressure", self.pressure_pa, "a step", "10 Pa")?;
+        size("length", self.length_m, "a step", "10 um")
+    }
+}
+
+fn size(key: &'static str, value: f64, name: &str, example: &str) -> Result<(), Wrong> {
+    if (0.0..=MOST_NOISE).contains(&value) {
+        return Ok(());
+    }
+    let what = format!("`{key}` is {value} in SI units: {name} lies between 0 and 1e7");
+    Err(Wrong { key, what, instead: format!("write such as `{key} = \"{example}\"`, or leave it out") })
+}
+
+impl Protocol {
+    /// Blocks without noise, rig errors and warming, with 10 s between sweeps.
+    #[must_use]
+    pub fn new(blocks: Vec<Block>) -> Self {
+        Self {
+            blocks,
+            noise: ReadingNoise::default(),
+            steps: ReadingSteps::default(),
+            rig: RigErrors::None,
+            pause_s: 10.0,
+            warming_k: 0.0,
+        }
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> u64 {
+        self.blocks.iter().fold(0, |all, block| all.saturating_add(block.len()))
+    }
+
+    /// Whether it has no row.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether it is a static map, without time.
+    #[must_use]
+    pub fn is_static(&self) -> bool {
+        self.blocks.first().is_some_and(|block| block.path == Path::Static)
+    }
+
+    /// Names of the specimens.
+    #[must_use]
+    pub fn specimens(&self) -> Vec<String> {
+        let count = self.blocks.iter().map(|block| block.specimens).max().unwrap_or(1);
+        (1..=count).map(|specimen| specimen.to_string()).collect()
+    }
+
+    /// What must hold for all: of a protocol that a program made.
+    pub(crate) fn check(&self) -> Result<(), InferenceError> {
+        for (i, block) in self.blocks.iter().enumerate() {
+            block.check().map_err(|wrong| wrong.of(&format!("block {}", i + 1)))?;
+        }
+        self.noise.check(self.is_static()).map_err(|wrong| wrong.of("noise"))?;
+        self.steps.check().map_err(|wrong| wrong.of("sampling"))?;
+        self.check_whole().map_err(|wrong| wrong.of("protocol"))
+    }
+
+    /// What concerns no single table.
+    pub(crate) fn check_whole(&self) -> Result<(), Wrong> {
+        if self.blocks.is_empty() {
+            let what = "a protocol needs a block".to_owned();
+            return Err(Wrong { key: "block", what, instead: "write such as `[[block]]`".to_owned() });
+        }
+        if self.blocks.iter().any(|block| (block.path == Path::Static) != self.is_static()) {
+            let what =
+                "a static map has no time, the other blocks have: they don't fit into one file".to_owned();
+            return Err(Wrong { key: "block", what, instead: "write two protocols".to_owned() });
+        }
+        if self.len() > MOST_ROWS as u64 {
+            let what = format!("the protocol has {} rows, and {MOST_ROWS} are the most", self.len());
+            let instead =
+                "take fewer `rows`, `cycles`, `repeats` or `specimens`, or a longer `interval`".to_owned();
+            return Err(Wrong { key: "block", what, instead });
+        }
+        if !(0.0..=MOST_TIME).contains(&self.pause_s) {
+            let what =
+                format!("a pause of {} s is not possible: it lies between 0 s and 1e7 s", self.pause_s);
+            return Err(Wrong { key: "pause", what, instead: "write such as `pause = \"10 s\"`".to_owned() });
+        }
+        if self.warming_k.abs() > MOST_WARMING || !self.warming_k.is_finite() {
+            let what =
+                format!("a warming by {} K is not possible: at most {MOST_WARMING} K are", self.warming_k);
+            return Err(Wrong {
+                key: "warming",
+                what,
+                instead: "write such as `warming = \"10 K\"`".to_owned(),
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Wrong {
+    fn of(self, place: &str) -> InferenceError {
+        InferenceError::Protocol { what: format!("{place}: {}", self.what), instead: self.instead }
+    }
+}

@@ -1,0 +1,403 @@
+//! Synthetic measurements: a model along a protocol, read with the noise, the steps and the rig errors that the protocol states.
+
+use bulge_measurements::Data;
+use bulge_model::{Model, ModelError, Prediction, Record, Wanted};
+use bulge_muscles::{Instrument, Instruments, Muscle, Quantity, Ratio, units};
+use std::fmt::Write;
+
+use crate::comparison::requirements::check_needs;
+use crate::error::InferenceError;
+use crate::protocol::bench::{Block, Path, Protocol, RigErrors};
+use crate::protocol::planned::Run;
+use crate::protocol::truth::{Ended, RigReadings, Truth, hidden};
+use crate::random::Random;
+
+/// How often ranges may be ended anew.
+const MOST_PASSES: usize = 60;
+/// Rows of a cycle that say where a range ends.
+const FEW_ROWS: u32 = 200;
+/// A sweep over less of the contraction is none.
+const LEAST_RANGE: f64 = 2e-3;
+/// Decimals of the file: of time \[s\], pressure \[bar\], contraction \[%\], temperature \[K\] and force \[N\].
+const DECIMALS: [usize; 5] = [6, 7, 6, 4, 4];
+
+/// Streams of random numbers: that of the rig, and five for each sweep, so that no noise changes another.
+const RIG_STREAM: u64 = 0;
+const STREAMS: u64 = 8;
+const WHITE: u64 = 0;
+const CORRELATED: u64 = 1;
+const OFFSET: u64 = 2;
+const PRESSURE: u64 = 3;
+const LENGTH: u64 = 4;
+
+/// Synthetic measurements, and what is hidden in them.
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    /// The data file, as text.
+    pub csv: String,
+    /// The same, read.
+    pub data: Data,
+    /// The planned moments of its rows, without noise, with the exact force that the model says of them.
+    pub exact: Record,
+    /// The muscle as stated, which knows nothing of hidden effects; its `[instruments]` have the noise.
+    pub muscle: Muscle,
+    /// What is hidden.
+    pub truth: Truth,
+}
+
+/// The rows that a muscle can do, with the forces there.
+struct Done {
+    runs: Vec<Run>,
+    /// Of a static map: whether each planned row is in it.
+    kept: Vec<bool>,
+    data: Data,
+    record: Record,
+    force: Vec<f64>,
+}
+
+/// What a bench would measure of a model with the numbers `theta` along a protocol.
+///
+/// ```text
+/// force = F(p, eps, history; theta) (1 + g_f) + z_f + u + a + w        u per sweep, a exponentially correlated in time, w white
+/// pressure = p (1 + g_p) + z_p + w_p,    contraction = eps (1 + g_l) - (z_l + w_l)/l0        all rounded to the steps of the sensors
+/// ```
+/// p and eps are the planned ones. A sweep ends before the contractions at which the muscle would push or has no equilibrium; of a static map such rows
+/// are left out. Random numbers are counted ([`Random`]), so that a seed gives the same text whatever the number of threads.
+///
+/// # Errors
+/// If the protocol is not possible, if it can't show an effect whose numbers are not fixed, or if the muscle pulls nowhere.
+pub fn simulate(
+    model: &Model,
+    theta: &[f64],
+    protocol: &Protocol,
+    seed: u64,
+) -> Result<Simulation, InferenceError> {
+    protocol.check()?;
+    let done = done(model, theta, protocol)?;
+    for chosen in model.effects().iter().filter(|chosen| !chosen.fixed) {
+        check_needs(&chosen.effect, &done.record)?;
+    }
+    let rig = rig(model.muscle(), protocol, seed)?;
+    let csv = Readings { protocol, done: &done, rig, l0: model.muscle().length().si(), seed }.csv();
+    let data = Data::from_csv(&csv, "data.csv").map_err(|error| InferenceError::Protocol {
+        what: format!("the simulated readings make no data: {error}"),
+        instead: "check the noise of the protocol".to_owned(),
+    })?;
+    let truth = Truth {
+        schema: "bulge.simulation/1",
+        muscle: model.muscle().name().to_owned(),
+        seed,
+        rows: data.len(),
+        sweeps: data.sweeps().len(),
+        effects: hidden(model, theta),
+        rig,
+        ended: ended(protocol, &done),
+        protocol: protocol.clone(),
+    };
+    Ok(Simulation { csv, data, exact: done.exact(), muscle: stated(model.muscle(), protocol), truth })
+}
+
+impl Protocol {
+    /// The planned moments as far as a model with the numbers `theta` pulls: sweeps end before the contractions at which it would push or has no
+    /// equilibrium, and of a static map such rows are left out. The forces of the record are those that the model says.
+    ///
+    /// # Errors
+    /// If the protocol is not possible, or the muscle pulls nowhere in it.
+    pub fn moments_within(&self, model: &Model, theta: &[f64]) -> Result<Record, InferenceError> {
+        self.check()?;
+        Ok(done(model, theta, self)?.exact())
+    }
+}
+
+impl Done {
+    /// The rows with the forces of the model. Sweeps are those of the record, and as many as the forces.
+    fn exact(self) -> Record {
+        let (moments, sweeps) = (self.record.moments().to_vec(), self.record.sweeps().to_vec());
+        Record::from_moments(moments, self.force, sweeps).unwrap_or(self.record)
+    }
+}
+
+/// The rows of a protocol that a model can do.
+fn done(model: &Model, theta: &[f64], protocol: &Protocol) -> Result<Done, InferenceError> {
+    let mut runs = protocol.runs();
+    if !protocol.is_static() {
+        // A search for an equilibrium that isn't there takes long: few rows say where the ranges end.
+        runs = pulled(model, theta, &thinned(protocol), runs)?.runs;
+    }
+    pulled(model, theta, protocol, runs)
+}
+
+/// One cycle of few rows in the same time.
+fn thinned(protocol: &Protocol) -> Protocol {
+    let thin = |block: &Block| {
+        let least = if let Path::Stairs { steps, .. } = block.path { 4 * steps } else { 0 };
+        Block { cycles: 1, rows: block.rows.min(FEW_ROWS.max(least)), ..block.clone() }
+    };
+    Protocol { blocks: protocol.blocks.iter().map(thin).collect(), ..protocol.clone() }
+}
+
+/// Ends ranges, or leaves rows out, until the muscle pulls everywhere.
+fn pulled(
+    model: &Model,
+    theta: &[f64],
+    protocol: &Protocol,
+    mut runs: Vec<Run>,
+) -> Result<Done, InferenceError> {
+    let l0 = model.muscle().length().si();
+    let mut reason = None;
+    let mut kept: Vec<bool> = Vec::new();
+    for _ in 0..MOST_PASSES {
+        if runs.is_empty() {
+            break;
+        }
+        let mut data = protocol.planned(&runs)?;
+        if protocol.is_static() {
+            kept.resize(data.len(), true);
+            data = data.subset(&kept);
+            if data.is_empty() {
+                break;
+            }
+        }
+        let record = Record::new(&data, l0);
+        let bad: Vec<usize> = match model.evaluate(&record, theta, &Wanted::default()) {
+            Ok(Prediction { force, .. }) => {
+                let bad: Vec<usize> = (0..force.len()).filter(|row| force[*row] <= 0.0).collect();
+                if bad.is_empty() {
+                    return Ok(Done { runs, kept, data, record, force });
+                }
+                bad
+            }
+            Err(error) => {
+                let rows = match &error {
+                    ModelError::NoEquilibrium { rows, .. } | ModelError::NotFinite { rows, .. } => {
+                        rows.clone()
+                    }
+                    _ => return Err(InferenceError::Model { what: String::new(), source: Box::new(error) }),
+                };
+                reason = Some(error);
+                rows
+            }
+        };
+        if protocol.is_static() {
+            let places: Vec<usize> = (0..kept.len()).filter(|row| kept[*row]).collect();
+            for row in bad {
+                kept[places[row]] = false;
+            }
+        } else {
+            runs = shortened(&runs, &record, &bad);
+        }
+    }
+    Err(match reason {
+        Some(error) => InferenceError::Model { what: String::new(), source: Box::new(error) },
+        None => InferenceError::Protocol {
+            what: "the muscle pulls nowhere in the protocol".to_owned(),
+            instead: "take higher pressures or smaller contractions, or check the hidden effects".to_owned(),
+        },
+    })
+}
+
+/// The sweeps ended before their bad rows; without those that have nothing left.
+fn shortened(runs: &[Run], record: &Record, bad: &[usize]) -> Vec<Run> {
+    let mut is_bad = vec![false; record.len()];
+    for row in bad {
+        is_bad[*row] = true;
+    }
+    let contraction = |row: usize| record.moments()[row].contraction;
+    let one = |(run, rows): (&Run, &std::ops::Range<usize>)| {
+        if !rows.clone().any(|row| is_bad[row]) {
+            return Some(*run);
+        }
+        let good = || rows.clone().filter(|row| !is_bad[*row]).map(contraction);
+        let low = good().fold(f64::INFINITY, f64::min);
+        let first = rows.clone().filter(|row| is_bad[*row]).map(contraction).filter(|e| *e >= low);
+        let first = first.fold(f64::INFINITY, f64::min);
+        let high = good().filter(|e| *e < first).fold(f64::NEG_INFINITY, f64::max);
+        (high - low >= LEAST_RANGE).then_some(Run { contraction: [low, high], ..*run })
+    };
+    runs.iter().zip(record.sweeps()).filter_map(one).collect()
+}
+
+/// The draws of the sensors' errors.
+fn rig(muscle: &Muscle, protocol: &Protocol, seed: u64) -> Result<RigReadings, InferenceError> {
+    if protocol.rig == RigErrors::None {
+        return Ok(RigReadings::default());
+    }
+    let Instruments { force, pressure, length } = *muscle.instruments();
+    let widths = [force, pressure, length].map(|i| i.map_or([0.0; 2], |i| [i.zero(), i.gain().si()]));
+    if widths.iter().flatten().all(|width| *width == 0.0) {
+        return Err(InferenceError::Protocol {
+            what: format!("`rig = \"drawn\"` needs widths of `zero` or `gain`, and {} states none", muscle.name()),
+            instead: "add such as `force = { zero = \"1 N\", gain = \"0.1 %\" }` to the `[instruments]` of the muscle".to_owned(),
+        });
+    }
+    let mut random = Random::new(seed, RIG_STREAM);
+    let [[fz, fg], [pz, pg], [lz, lg]] = widths.map(|pair| pair.map(|width| width * random.normal()));
+    Ok(RigReadings {
+        force_zero_n: fz,
+        force_gain: fg,
+        pressure_zero_pa: pz,
+        pressure_gain: pg,
+        length_zero_m: lz,
+        length_gain: lg,
+    })
+}
+
+/// Everything that makes readings of forces.
+struct Readings<'a> {
+    protocol: &'a Protocol,
+    done: &'a Done,
+    rig: RigReadings,
+    l0: f64,
+    seed: u64,
+}
+
+impl Readings<'_> {
+    fn csv(&self) -> String {
+        let is_static = self.protocol.is_static();
+        let several = self.done.data.specimens().len() > 1;
+        let warms = self.done.data.temperature().is_some();
+        let mut text = format!("# Simulated, not measured: `bulge simulate`, seed {}.\n", self.seed);
+        text.push_str(if is_static { "" } else { "time [s],sweep," });
+        text.push_str(if several { "specimen," } else { "" });
+        text.push_str("pressure [bar],contraction [%],");
+        text.push_str(if warms { "temperature [degC]," } else { "" });
+        text.push_str("force [N]\n");
+        for (number, sweep) in self.done.record.sweeps().iter().enumerate() {
+            let forces = self.forces(number, sweep);
+            let [mut pressures, mut lengths] = [PRESSURE, LENGTH].map(|kind| self.random(number, kind));
+            for (row, force) in sweep.clone().zip(forces) {
+                let [pressure, contraction] = self.inputs(row, [pressures.normal(), lengths.normal()]);
+                if let Some(time) = self.done.data.time() {
+                    let _ = write!(text, "{},{},", decimal(time[row], DECIMALS[0]), number + 1);
+                }
+                if several {
+                    let specimen = self.done.data.specimen()[row] as usize;
+                    let _ = write!(text, "{},", self.done.data.specimens()[specimen]);
+                }
+                let _ = write!(text, "{},", decimal(pressure / 1e5, DECIMALS[1]));
+                let _ = write!(text, "{},", decimal(100.0 * contraction, DECIMALS[2]));
+                if let Some(temperature) = self.done.data.temperature() {
+                    let celsius = temperature[row] - 273.15;
+                    let _ = write!(text, "{},", decimal(celsius, DECIMALS[3]));
+                }
+                let _ = writeln!(text, "{}", decimal(force, DECIMALS[4]));
+            }
+        }
+        text
+    }
+
+    fn random(&self, sweep: usize, kind: u64) -> Random {
+        Random::new(self.seed, STREAMS * (sweep as u64 + 1) + kind)
+    }
+
+    /// What the pressure and length sensors read, with standard normal noise.
+    fn inputs(&self, row: usize, noise: [f64; 2]) -> [f64; 2] {
+        let Protocol { noise: sd, steps, .. } = self.protocol;
+        let moment = &self.done.record.moments()[row];
+        let pressure = moment.pressure * (1.0 + self.rig.pressure_gain)
+            + self.rig.pressure_zero_pa
+            + sd.pressure_pa * noise[0];
+        let way = self.l0 * moment.contraction * (1.0 + self.rig.length_gain)
+            - self.rig.length_zero_m
+            - sd.length_m * noise[1];
+        [stepped(pressure, steps.pressure_pa), stepped(way, steps.length_m) / self.l0]
+    }
+
+    /// What the load cell reads in one sweep.
+    fn forces(&self, number: usize, sweep: &std::ops::Range<usize>) -> Vec<f64> {
+        let sd = &self.protocol.noise;
+        let [mut white, mut correlated, mut offset] =
+            [WHITE, CORRELATED, OFFSET].map(|kind| self.random(number, kind));
+        let offset = sd.offset_n * offset.normal();
+        let mut drift = sd.correlated_n * correlated.normal();
+        let reading = |row: usize| {
+            let since = self.done.record.moments()[row].since;
+            if row > sweep.start && sd.correlated_n > 0.0 {
+                // Exact for any times between the rows.
+                let kept = (-since / sd.correlation_time_s).exp();
+                drift = kept * drift + sd.correlated_n * (1.0 - kept * kept).sqrt() * correlated.normal();
+            }
+            let single = match sd.tails {
+                Some(tails) => white.student(tails) * ((tails - 2.0) / tails).sqrt(),
+                None => white.normal(),
+            };
+            let exact = self.done.force[row] * (1.0 + self.rig.force_gain) + self.rig.force_zero_n;
+            stepped(exact + offset + drift + sd.force_n * single, self.protocol.steps.force_n)
+        };
+        sweep.clone().map(reading).collect()
+    }
+}
+
+/// To the nearest step.
+fn stepped(value: f64, step: f64) -> f64 {
+    if step > 0.0 { (value / step).round() * step } else { value }
+}
+
+/// A number with so many decimals at most: the last bits, in which machines may differ, are not written.
+fn decimal(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// What of the plan is not in the data, each pressure and range once.
+fn ended(protocol: &Protocol, done: &Done) -> Vec<Ended> {
+    let mut found: Vec<Ended> = Vec::new();
+    let mut add = |run: &Run, reached: Option<[f64; 2]>, count: usize| {
+        // Twelve digits hide the rounding of the grid.
+        let reached = reached.map(|range| range.map(|e| units::rounded(e, 12)));
+        let ended = Ended { pressure_pa: run.pressure_pa, planned: run.contraction, reached, count };
+        match found.iter_mut().find(|other| Ended { count, ..**other } == ended) {
+            Some(same) => same.count += count,
+            None => found.push(ended),
+        }
+    };
+    let planned = protocol.runs();
+    if protocol.is_static() {
+        let mut first = 0;
+        for run in &planned {
+            let rows = protocol.blocks[run.block].rows;
+            let is_kept = |row: &u32| done.kept.get(first + *row as usize).copied().unwrap_or(true);
+            let kept: Vec<f64> =
+                (0..rows).filter(is_kept).map(|row| run.contraction_at(protocol, row)).collect();
+            first += rows as usize;
+            if kept.len() < rows as usize {
+                let reached = kept.first().zip(kept.last()).map(|(low, high)| [*low, *high]);
+                add(run, reached, rows as usize - kept.len());
+            }
+        }
+        return found;
+    }
+    let mut left = done.runs.iter().peekable();
+    for run in &planned {
+        // Both lists are in the same order, one without the sweeps that have nothing left.
+        match left.next_if(|other| Run { contraction: run.contraction, ..**other } == *run) {
+            Some(other) if other == run => {}
+            other => add(run, other.map(|other| other.contraction), 1),
+        }
+    }
+    found
+}
+
+/// The muscle with the noise of one reading in its `[instruments]`, where the protocol states one:
+///
+/// ```text
+/// sd^2 = white^2 + correlated^2 + step^2/12
+/// ```
+fn stated(muscle: &Muscle, protocol: &Protocol) -> Muscle {
+    let Protocol { noise, steps, .. } = protocol;
+    let Instruments { force, pressure, length } = *muscle.instruments();
+    let one = |known: Option<Instrument>, white: f64, correlated: f64, step: f64| {
+        let sd = (white * white + correlated * correlated + step * step / 12.0).sqrt();
+        let (zero, gain) = known.map_or((0.0, None), |known| (known.zero(), Some(known.gain())));
+        let gain = gain.unwrap_or(Ratio::one(0.0));
+        // Four digits: what is read in a file should not pretend to be exact.
+        let sd = units::rounded(sd, 4);
+        if sd > 0.0 { Instrument::new(sd, zero, gain).ok() } else { known }
+    };
+    muscle.clone().with_instruments(Instruments {
+        force: one(force, noise.force_n, noise.correlated_n, steps.force_n),
+        pressure: one(pressure, noise.pressure_pa, 0.0, steps.pressure_pa),
+        length: one(length, noise.length_m, 0.0, steps.length_m),
+    })
+}

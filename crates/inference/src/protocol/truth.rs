@@ -1,0 +1,107 @@
+//! What is hidden in synthetic measurements: effects with their numbers, errors of the sensors, and where the muscle didn't pull.
+
+use bulge_model::{Model, ModelParameter};
+use bulge_muscles::units;
+use serde::Serialize;
+
+use crate::protocol::bench::Protocol;
+
+/// What is hidden in synthetic measurements: the document `bulge.simulation/1`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Truth {
+    /// Name and version of the document.
+    pub schema: &'static str,
+    /// The muscle.
+    pub muscle: String,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Rows.
+    pub rows: usize,
+    /// Sweeps; the specimens of a static map.
+    pub sweeps: usize,
+    /// The hidden effects.
+    pub effects: Vec<HiddenEffect>,
+    /// Zero and gain errors of the sensors.
+    pub rig: RigReadings,
+    /// Sweeps, or rows of a static map, that ended or were left out because the muscle doesn't pull there.
+    pub ended: Vec<Ended>,
+    /// The protocol, with its noise.
+    pub protocol: Protocol,
+}
+
+/// An effect with its numbers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HiddenEffect {
+    /// Its name.
+    pub effect: String,
+    /// The family it counts under.
+    pub family: String,
+    /// Its numbers.
+    pub numbers: Vec<HiddenNumber>,
+}
+
+/// A number of a hidden effect.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HiddenNumber {
+    /// Its key in a muscle file.
+    pub key: String,
+    /// Its value in the unit shown.
+    pub value: f64,
+    /// That unit.
+    pub unit: String,
+    /// The specimen it belongs to, if each has its own.
+    pub specimen: Option<String>,
+}
+
+/// Errors of the sensors: reading = true (1 + gain) + zero; of the length sensor, the gain is that of the way.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct RigReadings {
+    /// Zero of the load cell \[N\].
+    pub force_zero_n: f64,
+    /// Its gain error.
+    pub force_gain: f64,
+    /// Zero of the pressure sensor \[Pa\].
+    pub pressure_zero_pa: f64,
+    /// Its gain error.
+    pub pressure_gain: f64,
+    /// Zero of the length sensor \[m\].
+    pub length_zero_m: f64,
+    /// Its gain error.
+    pub length_gain: f64,
+}
+
+/// Where the muscle doesn't pull, or has no equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Ended {
+    /// Gauge pressure \[Pa\].
+    pub pressure_pa: f64,
+    /// Contractions that were planned.
+    pub planned: [f64; 2],
+    /// Contractions that are in the data; none if nothing of the sweep is.
+    pub reached: Option<[f64; 2]>,
+    /// Sweeps to which that happened, or rows of a static map that were left out.
+    pub count: usize,
+}
+
+/// The effects whose numbers are not fixed, with what `theta` says of them.
+pub(crate) fn hidden(model: &Model, theta: &[f64]) -> Vec<HiddenEffect> {
+    let of = |name: &str| {
+        let numbers = model.parameters().iter().zip(theta).filter(|(p, _)| p.effect == name);
+        let number = |(p, value): (&ModelParameter, &f64)| HiddenNumber {
+            key: p.key.clone(),
+            // Twelve digits hide the rounding of the change of units.
+            value: units::rounded(value / p.factor, 12),
+            unit: p.unit.clone(),
+            specimen: p.specimen.clone(),
+        };
+        numbers.map(number).collect()
+    };
+    let shown = model.effects().iter().filter(|chosen| !chosen.fixed).map(|chosen| chosen.effect.card());
+    shown
+        .map(|card| HiddenEffect {
+            effect: card.name.to_owned(),
+            family: card.family.to_owned(),
+            numbers: of(card.name),
+        })
+        .collect()
+}
