@@ -7,7 +7,7 @@
 //! - `diagnosis`: [`diagnose`] finds what is missing, [`plan`] what a test would show,
 //! - `protocol`: what a test bench does ([`Protocol`]) and would measure ([`simulate`]).
 //!
-//! Results are plain values that text, JSON and report are functions of. `noise` and `fit` know nothing of the others; `diagnosis` knows them all.
+//! Results are plain values that text, JSON and report are functions of. `noise` knows none of the others, `fit` only `noise`; `diagnosis` knows them all.
 //!
 //! Deliberately absent: equilibria (it asks `bulge-model`), files to write, plots.
 

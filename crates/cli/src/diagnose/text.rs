@@ -79,12 +79,12 @@ fn measured(out: &mut String, diagnosis: &Diagnosis) {
 /// The verdict in plain words, and each effect with its class and numbers.
 pub(crate) fn verdict(out: &mut String, diagnosis: &Diagnosis) {
     out.push('\n');
-    let mut missing = diagnosis.added().iter();
+    let mut missing = diagnosis.added();
     for line in headlines(diagnosis) {
         paragraph(out, "  ", &line);
         let is_claim = line.starts_with("missing: ") || line.starts_with("nearest: ");
         if let Some(missing) = is_claim.then(|| missing.next()).flatten() {
-            found(out, missing, diagnosis.verdict == Verdict::Missing);
+            found(out, missing, line.starts_with("missing: "));
         }
     }
     if let Some(says) = further(diagnosis) {

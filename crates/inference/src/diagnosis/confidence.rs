@@ -302,6 +302,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn claims_are_alike_if_they_lead_by_as_much() {
+        // Within 1 below a lead of 3.3, within three tenths above, and all from 6 on.
+        assert!(is_as_clear(1.9, 1.0) && !is_as_clear(2.1, 1.0));
+        assert!(is_as_clear(3.1, 4.0) && is_as_clear(5.1, 4.0) && !is_as_clear(5.3, 4.0));
+        assert!(is_as_clear(60.0, 9.0) && is_as_clear(4.3, 100.0) && !is_as_clear(4.1, 100.0));
+    }
+
+    #[test]
     fn wilsons_interval_by_hand() {
         // 93 of 100: 0.8625 to 0.9657 (Wilson 1927).
         let [low, high] = wilson(93, 100);

@@ -287,3 +287,65 @@ pub(crate) fn starts(
     }
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::law::{NoiseLaw, NoiseSource};
+    use crate::noise::whitening::Whitening;
+    use crate::random::Random;
+    use bulge_effects::{Catalogue, Moment};
+    use bulge_model::{Record, Wanted};
+    use bulge_muscles::preset;
+
+    const NOISE: f64 = 2.0;
+
+    /// A static map of a pleated muscle whose load cell reads 3 N too much.
+    fn record(base: &Model) -> Record {
+        let at = |i: u32| Moment::at_rest(1e5 * f64::from(1 + i % 3), 0.05 + 0.003 * f64::from(i / 3));
+        let record =
+            Record::from_moments((0..90).map(at).collect(), vec![0.0; 90], std::iter::once(0..90).collect())
+                .unwrap();
+        let exact = base.evaluate(&record, &[], &Wanted::default()).unwrap().force;
+        let mut random = Random::new(8, 0);
+        record.with_force(exact.iter().map(|force| force + 3.0 + NOISE * random.normal()).collect())
+    }
+
+    #[test]
+    fn evidence_is_the_integral_over_the_prior() {
+        let catalogue = Catalogue::builtin();
+        let base = Model::new(&preset("ppam-2-r16").unwrap());
+        let record = record(&base);
+        let law = NoiseLaw::white(NOISE, NoiseSource::Saturated, 1e6, String::new());
+        let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
+        let given = Given {
+            catalogue: &catalogue,
+            record: &record,
+            whitening: &whitening,
+            law: &law,
+            row_n: NOISE,
+            seed: 1,
+            tolerance_n: None,
+            only: None,
+        };
+        let offset = catalogue.find("force-offset").unwrap();
+        let without = given.confirm(&base, &[], None, &[]).unwrap();
+        let with = given.confirm(&base, &[Arc::clone(offset)], None, &[]).unwrap();
+        let found = with.log_evidence - without.log_evidence;
+        // The sum of squares is a parabola of the offset.
+        let model = base.with(offset, None).unwrap();
+        let size = roles(&model)[0].unwrap();
+        let exact = base.evaluate(&record, &[], &Wanted::default()).unwrap().force;
+        let square = |a: f64| -> f64 {
+            record.force().iter().zip(&exact).map(|(y, f)| ((y - f - a) / NOISE).powi(2)).sum()
+        };
+        let steps = 20_000;
+        let width = 20.0 / f64::from(steps);
+        let sum: f64 = (0..steps)
+            .map(|i| -10.0 + (f64::from(i) + 0.5) * width)
+            .map(|a| (log_prior(&size, a) - 0.5 * (square(a) - square(0.0))).exp() * width)
+            .sum();
+        assert!((found - sum.ln()).abs() < 0.02, "{found} {}", sum.ln());
+        assert!((with.theta[0] - 3.0).abs() < 4.0 * NOISE / 90.0_f64.sqrt() && with.converged);
+    }
+}

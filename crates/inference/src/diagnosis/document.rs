@@ -24,7 +24,7 @@ pub struct Diagnosis {
     pub says: String,
     /// Effects that are missing, in the order of adding.
     pub missing: Vec<Missing>,
-    /// Where the verdict is *unknown*: effects that lower the error and leave the structure. Nothing is claimed of them.
+    /// Effects that lower the error and are no claim: where the verdict is *unknown*, and where something remains and their numbers are implausible.
     pub nearest: Vec<Missing>,
     /// All effects that were looked at.
     pub candidates: Vec<CandidateResult>,
@@ -48,10 +48,9 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// The effects that were added: those that are missing, or where the verdict is *unknown* the nearest ones.
-    #[must_use]
-    pub fn added(&self) -> &[Missing] {
-        if self.missing.is_empty() { &self.nearest } else { &self.missing }
+    /// The effects that were added: those that are missing, then those of which nothing is claimed.
+    pub fn added(&self) -> impl Iterator<Item = &Missing> {
+        self.missing.iter().chain(&self.nearest)
     }
 }
 

@@ -13,6 +13,8 @@ use crate::diagnosis::scene::{Given, Scene};
 
 /// Chance with which the screen may raise a false alarm, and the smooth test.
 pub(crate) const ALARM: [f64; 2] = [0.03, 0.006];
+/// Chance with which the smooth test may raise one where effects are named: to say that they explain everything takes more than to say nothing.
+const EXPLAINED: f64 = 0.02;
 /// Log evidence from which the first effect is worth naming: before any data it is seven times as likely that something is missing in a model of a real muscle
 /// as that nothing is. That a second effect is missing too is no more likely than not.
 pub(crate) const WORTH: [f64; 2] = [-2.0, 0.0];
@@ -58,6 +60,8 @@ pub(crate) struct Tried {
 #[derive(Debug, Clone)]
 pub(crate) struct Adequacy {
     pub(crate) null: Null,
+    /// Whether effects are named.
+    names: bool,
     /// How often chance alone gives as much: the screen, the smooth test.
     pub(crate) chance: [f64; 2],
 }
@@ -68,7 +72,7 @@ impl Adequacy {
     }
 
     pub(crate) fn smooth_fails(&self) -> bool {
-        self.chance[1] < ALARM[1]
+        self.chance[1] < if self.names { EXPLAINED } else { ALARM[1] }
     }
 
     pub(crate) fn holds(&self) -> bool {
@@ -131,7 +135,7 @@ impl Given<'_> {
     ) -> Result<Stage, ModelError> {
         let scene = self.scene(&confirmed.prepared, &confirmed.theta)?;
         let (null, chance) = scene.chance(self);
-        let adequacy = Adequacy { null, chance };
+        let adequacy = Adequacy { null, names: !added.is_empty(), chance };
         let is_small =
             || self.tolerance_n.is_some_and(|tolerance| misfit(&scene, self.seed).1[1] <= tolerance);
         let adequate = adequacy.holds() || is_small();
@@ -387,4 +391,17 @@ fn pairs(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
         kept.push(Hypothesis { effects, log_evidence, gain, starts });
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scatter_beyond_the_noise_takes_its_part_of_the_evidence() {
+        let is = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found}");
+        // ln Z holds gain/2; with four times the variance a quarter of that is left.
+        is(tempered(10.0, 12.0, 4.0), 10.0 - 6.0 + 1.5);
+        is(tempered(10.0, 12.0, 1.0), 10.0);
+    }
 }

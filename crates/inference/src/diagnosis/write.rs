@@ -60,7 +60,10 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
     let adequate = last.adequate || verdict == Verdict::Adequate;
     let (misfit_n, misfit_interval_n) = misfit(&last.scene, given.seed);
     let left = located(&last.scene);
-    let added = || classes.iter().map(|(class, sure)| found.missing(class, *sure)).collect::<Vec<_>>();
+    let added = classes.iter().map(|(class, sure)| found.missing(class, *sure));
+    // Where something remains, numbers that no muscle has stand in for something else: no claim.
+    let (missing, nearest): (Vec<Missing>, Vec<Missing>) =
+        added.partition(|m| verdict == Verdict::Missing && (last.adequate || m.plausible));
     Diagnosis {
         schema: "bulge.diagnosis/1",
         muscle: muscle.name().to_owned(),
@@ -80,9 +83,9 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
         },
         verdict,
         says,
-        missing: if verdict == Verdict::Missing { added() } else { Vec::new() },
-        nearest: if verdict == Verdict::Unknown { added() } else { Vec::new() },
-        candidates: found.candidates(classes, verdict == Verdict::Missing),
+        candidates: found.candidates(classes, &missing),
+        missing,
+        nearest,
         ladder: found.ladder(&comparison, last.added.len(), adequate),
         noise_floor_n: sd_n,
         r#where: located(&search.stages[0].scene),
@@ -251,12 +254,23 @@ impl Findings<'_> {
             );
         }
         let most = last.scene.structure() < FORWARD * self.search.stages[0].scene.structure();
-        // Where something remains, numbers that no muscle has are a cure of the wrong thing.
-        let sound = last.added.iter().all(|effect| self.plausible(effect.card().name));
-        if !names.is_empty() && most && sound {
+        let (sound, odd): (Vec<_>, Vec<_>) =
+            last.added.iter().partition(|effect| self.plausible(effect.card().name));
+        if !sound.is_empty() && most {
+            let listed = |effects: Vec<&Arc<dyn Effect>>| {
+                effects.into_iter().map(|effect| self.label(effect)).collect::<Vec<_>>().join(" and ")
+            };
+            let beside = if odd.is_empty() {
+                "that explains".to_owned()
+            } else {
+                format!(
+                    "with {}, whose numbers no muscle has and which stands in for something else, that explains",
+                    listed(odd)
+                )
+            };
             let says = format!(
-                "missing: {}; that explains most of the misfit, and {size} of structure remain that no further effect explains",
-                names.join(" and ")
+                "missing: {}; {beside} most of the misfit, and {size} of structure remain that no further effect explains",
+                listed(sound)
             );
             return (Verdict::Missing, says);
         }
@@ -408,7 +422,7 @@ fn rival_result(rival: &Rival, class: &Class) -> RivalResult {
 
 impl Findings<'_> {
     /// Every effect of the catalogue, beside the base.
-    fn candidates(&self, classes: &[(Class, Confidence)], is_claimed: bool) -> Vec<CandidateResult> {
+    fn candidates(&self, classes: &[(Class, Confidence)], claimed: &[Missing]) -> Vec<CandidateResult> {
         let given = self.given;
         let stage = &self.search.stages[0];
         let scene = &stage.scene;
@@ -422,7 +436,7 @@ impl Findings<'_> {
             let is_rival =
                 |class: &Class| class.rivals.iter().any(|r| r.in_class && r.effect.card().name == name);
             let is_named = classes.iter().any(|(class, _)| self.label(&class.effect) == name);
-            let status = if is_named && is_claimed {
+            let status = if claimed.iter().any(|missing| missing.effect == name) {
                 "confirmed"
             } else if is_named
                 || classes.iter().any(|(class, _)| is_rival(class) || class.effect.card().name == name)

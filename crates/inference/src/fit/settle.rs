@@ -69,3 +69,65 @@ fn cost(problem: &FitProblem<'_>, at: &[f64]) -> Result<f64, ModelError> {
     problem.evaluate(at, 0..rows, &mut residuals, Some(&mut jacobian))?;
     Ok(residuals.iter().map(|r| r * r).sum())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::nuisance::with_nuisances;
+    use crate::random::Random;
+    use bulge_effects::{Catalogue, Moment};
+    use bulge_model::{Model, Record};
+    use bulge_muscles::from_toml;
+
+    const BRAID: &str = "name = \"b\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm +- 0.1 mm\"\nbraid_angle = \"25 deg +- 0.2 deg\"\n\
+                         ends = \"clamped\"\nwall = \"1.8 mm\"\n[instruments]\nforce = { noise = \"2 N\", zero = \"1 N\" }\n";
+
+    /// Three strokes of a braid with rubber and friction.
+    fn measured(model: &Model, theta: &[f64]) -> Record {
+        let moment = |i: u32| Moment {
+            direction: 1.0,
+            begins: i.is_multiple_of(150),
+            ..Moment::at_rest(2e5 + 1e5 * f64::from(i / 150), 0.01 + 0.001 * f64::from(i % 150))
+        };
+        let moments: Vec<Moment> = (0..450).map(moment).collect();
+        let sweeps = (0..3).map(|i| 150 * i..150 * (i + 1)).collect();
+        let record = Record::from_moments(moments, vec![0.0; 450], sweeps).unwrap();
+        let exact = model.evaluate(&record, theta, &bulge_model::Wanted::default()).unwrap().force;
+        let mut random = Random::new(5, 0);
+        record.with_force(exact.iter().map(|force| force + 2.0 * random.normal()).collect())
+    }
+
+    #[test]
+    fn rounds_lead_to_the_minimum_of_the_model_itself() {
+        let catalogue = Catalogue::builtin();
+        let add = |model: Model, name: &str| model.with(catalogue.find(name).unwrap(), None).unwrap();
+        let base = Model::new(&from_toml(BRAID, "braid").unwrap());
+        let model = ["bladder-elasticity", "coulomb-friction"].into_iter().fold(base, add);
+        let record = measured(&model, &[2e5, 8.0]);
+        let prepared = with_nuisances(&model, &catalogue).unwrap();
+        let start = prepared.model.start();
+        let problem = || {
+            let used = vec![true; record.len()];
+            FitProblem::new(
+                &prepared.model,
+                &record,
+                &used,
+                vec![2.0; record.len()],
+                start.clone(),
+                &prepared.priors,
+            )
+        };
+        let (rounds, plain) = (problem(), problem());
+        let (bounds, at) = (plain.bounds(), plain.coordinates(&start));
+        let options = Options { check_curvature: false, tolerance: 1e-6, ..Options::default() };
+        let found = settled(&rounds, &at, &bounds, &options).unwrap();
+        let exact = minimise(&plain, &at, &bounds, &options).unwrap();
+        assert!(found.certificate.converged && !rounds.is_held());
+        assert!((found.cost - exact.cost).abs() < 0.02, "{} {}", found.cost, exact.cost);
+        let sd = exact.covariance(1.0);
+        for (j, (a, b)) in found.theta.iter().zip(&exact.theta).enumerate() {
+            let sd = sd[j * exact.theta.len() + j].sqrt();
+            assert!((a - b).abs() < 0.05 * sd, "number {j}: {a} {b}, {sd}");
+        }
+    }
+}

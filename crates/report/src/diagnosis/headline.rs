@@ -30,11 +30,12 @@ pub fn headlines(diagnosis: &Diagnosis) -> Vec<String> {
         format!("{MISSING}{} (on data like these such a claim is right {right} of the time)", missing.effect)
     };
     let nearest = |why: &str| -> Vec<String> {
-        diagnosis.added().iter().map(|missing| format!("nearest: {} ({why})", missing.effect)).collect()
+        diagnosis.nearest.iter().map(|missing| format!("nearest: {} ({why})", missing.effect)).collect()
     };
     let (verdict, says, rest) = match diagnosis.verdict {
         Verdict::Missing => {
             let mut lines: Vec<String> = diagnosis.missing.iter().map(claim).collect();
+            lines.extend(nearest("its numbers are implausible: it stands in for something else"));
             if diagnosis.remaining.structured {
                 let size = newton(diagnosis.remaining.misfit_n);
                 lines.push(format!(

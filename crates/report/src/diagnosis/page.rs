@@ -86,7 +86,12 @@ fn page(diagnosis: &Diagnosis) -> Result<Page<'_>, PlotError> {
         tone: tone(diagnosis.verdict),
         headlines: headlines(diagnosis).iter().map(|line| sentence(line)).collect(),
         says: further(diagnosis).unwrap_or_default(),
-        found: diagnosis.added().iter().map(|missing| found(missing, diagnosis.verdict)).collect(),
+        found: diagnosis
+            .missing
+            .iter()
+            .map(|missing| found(missing, diagnosis.verdict))
+            .chain(diagnosis.nearest.iter().map(|nearest| found(nearest, Verdict::Unknown)))
+            .collect(),
         base: words::base_name(diagnosis),
         data_says: data_says(diagnosis),
         steps: figure(steps::plot(diagnosis)?),

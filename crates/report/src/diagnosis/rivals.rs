@@ -37,7 +37,6 @@ pub(super) fn nearest(missing: &Missing) -> Vec<&RivalResult> {
 pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
     let groups: Vec<(&Missing, Vec<&RivalResult>)> = diagnosis
         .added()
-        .iter()
         .map(|missing| (missing, nearest(missing).into_iter().take(MOST).collect::<Vec<_>>()))
         .filter(|(_, rivals)| !rivals.is_empty())
         .collect();
@@ -114,9 +113,9 @@ pub(super) fn says(diagnosis: &Diagnosis) -> String {
             format!("these data cannot tell {} from {}", missing.effect, and(&others))
         }
     };
-    if diagnosis.added().is_empty() {
+    if diagnosis.added().next().is_none() {
         return "No effect was found, so there is none to be told apart from another.".to_owned();
     }
-    let all: Vec<String> = diagnosis.added().iter().map(of).collect();
+    let all: Vec<String> = diagnosis.added().map(of).collect();
     format!("{}.", crate::comparison::wording::sentence(&all.join("; ")))
 }
