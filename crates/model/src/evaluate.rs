@@ -272,7 +272,10 @@ impl Run<'_> {
     ) -> Option<Lattice> {
         let rows = self.inputs(record);
         let counted = || rows.iter().enumerate().filter(|(row, _)| counts(*row)).map(|(_, row)| row);
-        let lattice = Lattice::around(equilibrium, self.shapes.len(), self.model.refinement, counted());
+        // Zero errors move rows a little while a lattice is held: into the next cell at most.
+        let margin = i64::from(slots.holds);
+        let lattice =
+            Lattice::around(equilibrium, self.shapes.len(), self.model.refinement, margin, counted());
         // A node costs what a row costs, in one evaluation; what is held serves many.
         let evaluations = if slots.holds { HELD_FOR } else { 1 };
         if lattice.needed() >= evaluations * counted().count() {

@@ -66,11 +66,12 @@ struct Place {
 }
 
 impl Lattice {
-    /// A lattice for rows at these pressures and ranges of contraction, not yet solved.
+    /// A lattice for rows at these pressures and ranges of contraction, with a margin of so many nodes, not yet solved.
     pub(crate) fn around<'a>(
         equilibrium: &Equilibrium,
         shapes: usize,
         refinement: f64,
+        margin: i64,
         rows: impl Iterator<Item = &'a (f64, [f64; 2])>,
     ) -> Self {
         let mut lattice = Self {
@@ -84,7 +85,11 @@ impl Lattice {
             is_solved: Vec::new(),
             nodes: Vec::new(),
         };
-        let spans: Vec<[[i64; 2]; 2]> = rows.filter_map(|row| lattice.span(row)).collect();
+        let margins = [if lattice.scale_free { 0 } else { margin }, margin];
+        let wider = |span: [[i64; 2]; 2]| {
+            [0, 1].map(|axis| [span[axis][0] - margins[axis], span[axis][1] + margins[axis]])
+        };
+        let spans: Vec<[[i64; 2]; 2]> = rows.filter_map(|row| lattice.span(row)).map(wider).collect();
         let Some(first) = spans.first() else { return lattice };
         let mut extent = *first;
         for span in &spans {

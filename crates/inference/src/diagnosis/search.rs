@@ -14,7 +14,7 @@ use crate::diagnosis::scene::{Given, Scene};
 /// Chance with which the screen may raise a false alarm, and the smooth test.
 pub(crate) const ALARM: [f64; 2] = [0.03, 0.006];
 /// Chance with which the smooth test may raise one where effects are named: to say that they explain everything takes more than to say nothing.
-const EXPLAINED: f64 = 0.02;
+const EXPLAINED: f64 = 0.01;
 /// Log evidence from which the first effect is worth naming: before any data it is seven times as likely that something is missing in a model of a real muscle
 /// as that nothing is. That a second effect is missing too is no more likely than not.
 pub(crate) const WORTH: [f64; 2] = [-2.0, 0.0];
