@@ -29,6 +29,8 @@ pub(crate) const FEWEST_NODES: usize = WIDTH * WIDTH;
 const STEP: [f64; 2] = [0.125, 0.1];
 /// Contraction below which the lattice is even, above which it is logarithmic.
 const BEND: f64 = 0.02;
+/// Nodes by which a stencil may lie aside, so that the row stays within it.
+const INWARDS: [i64; 5] = [0, -1, 1, -2, 2];
 /// Outputs of a node: force, tension, radius, volume.
 const OUTPUTS: usize = 4;
 
@@ -254,25 +256,39 @@ impl Lattice {
         Some((std::iter::once(values).chain(slopes).collect(), start))
     }
 
+    /// The stencil around a contraction, moved inwards where equilibria end: a row in the last cells is still between solved nodes. None if there is no such stencil.
+    fn within(&self, around: Place, first: i64, rows: usize) -> Option<Place> {
+        let is_solved = |place: &Place| {
+            (first..).zip(0..rows).all(|(row, _)| {
+                let start = self
+                    .index(row, place.first)
+                    .filter(|_| self.index(row, place.first + SPAN - 1).is_some());
+                let nodes = start.and_then(|start| self.is_solved.get(start..start + WIDTH));
+                nodes.is_some_and(|nodes| nodes.iter().all(|solved| *solved))
+            })
+        };
+        INWARDS
+            .iter()
+            .map(|shift| Place { first: around.first + shift, offset: around.offset - *shift as f64 })
+            .find(is_solved)
+    }
+
     /// The interpolated answer; none where the lattice has no node.
     pub(crate) fn answer(&self, pressure: f64, contraction: f64) -> Option<Answer> {
         let x = self.pressure_axis(pressure)?;
         let s = self.contraction_axis(contraction)?;
-        let [along_p, along_s] = [self.place(0, x)?, self.place(1, s)?];
+        let along_p = self.place(0, x)?;
         let (wp, dp) = if self.scale_free { flat() } else { weights(along_p.offset) };
-        let (ws, ds) = weights(along_s.offset);
         let first = if self.scale_free { 0 } else { along_p.first };
         let rows = if self.scale_free { 1 } else { WIDTH };
+        let along_s = self.within(self.place(1, s)?, first, rows)?;
+        let (ws, ds) = weights(along_s.offset);
         // Values with their shape derivatives, and the values' slopes in steps.
         let mut sums = [[0.0; OUTPUTS]; 1 + SHAPE];
         let mut slopes = [[0.0; OUTPUTS]; 2];
         let stride = 1 + self.shapes;
         for (row, i) in (first..).zip(0..rows) {
             let start = self.index(row, along_s.first)?;
-            self.index(row, along_s.first + SPAN - 1)?;
-            if !self.is_solved.get(start..start + WIDTH)?.iter().all(|solved| *solved) {
-                return None;
-            }
             let nodes = self.nodes[start * stride..].chunks_exact(stride);
             for (node, j) in nodes.zip(0..WIDTH) {
                 let w = wp[i] * ws[j];
