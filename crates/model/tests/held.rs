@@ -108,3 +108,32 @@ fn what_is_shared_serves_the_same_muscle_only() {
         }
     }
 }
+
+/// Near the largest contraction the nodes beyond have no equilibrium: stencils lie aside there.
+#[test]
+fn rows_next_to_the_end_of_equilibria_are_those_solved_alone() {
+    let model = model(&["radius-error", "bladder-elasticity"]);
+    let theta = [0.0102, 3e5];
+    let forces = |contractions: &[f64]| {
+        let moment = |e: &f64| Moment { begins: *e == contractions[0], ..Moment::at_rest(2e5, *e) };
+        let rows = contractions.len();
+        let moments = contractions.iter().map(moment).collect();
+        let record =
+            Record::from_moments(moments, vec![0.0; rows], std::iter::once(0..rows).collect()).unwrap();
+        model.evaluate(&record, &theta, &Wanted::default()).map(|found| found.force)
+    };
+    let mut end = 0.1;
+    // The last of them are hard to find for any search.
+    while forces(&[end + 0.005]).is_ok() {
+        end += 0.001;
+    }
+    let contractions: Vec<f64> = (0..4000).map(|i| end - (end - 0.02) * f64::from(i) / 4000.0).collect();
+    let found = forces(&contractions).unwrap();
+    let errors: Vec<f64> =
+        (0..4000).step_by(17).map(|i| (found[i] - forces(&contractions[i..=i]).unwrap()[0]).abs()).collect();
+    let full = found.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    let interpolated = errors.iter().filter(|error| **error > 0.0).count();
+    let worst = errors.iter().copied().fold(0.0, f64::max);
+    // Two thirds and more are interpolated; the rest, next to the end, is solved row by row.
+    assert!(worst < 1e-4 * full && 3 * interpolated > 2 * errors.len(), "{worst} N, {interpolated}");
+}
