@@ -115,9 +115,9 @@ fn rows_next_to_the_end_of_equilibria_are_those_solved_alone() {
     let model = model(&["radius-error", "bladder-elasticity"]);
     let theta = [0.0102, 3e5];
     let forces = |contractions: &[f64]| {
-        let moment = |e: &f64| Moment { begins: *e == contractions[0], ..Moment::at_rest(2e5, *e) };
+        let moment = |(i, e): (usize, &f64)| Moment { begins: i == 0, ..Moment::at_rest(2e5, *e) };
         let rows = contractions.len();
-        let moments = contractions.iter().map(moment).collect();
+        let moments = contractions.iter().enumerate().map(moment).collect();
         let record =
             Record::from_moments(moments, vec![0.0; rows], std::iter::once(0..rows).collect()).unwrap();
         model.evaluate(&record, &theta, &Wanted::default()).map(|found| found.force)
