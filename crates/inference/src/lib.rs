@@ -20,8 +20,8 @@ mod fit;
 mod noise;
 mod progress;
 mod protocol;
-mod random;
 
+pub use bulge_numerics::Random;
 pub use comparison::analysis::Options;
 pub use comparison::compare::{Fitting, compare, fit_effects};
 pub use comparison::document::{
@@ -46,4 +46,3 @@ pub use protocol::bench::{Block, MOST_ROWS, Path, Protocol, ReadingNoise, Readin
 pub use protocol::file::PROTOCOL_EXAMPLE;
 pub use protocol::simulation::{Simulation, simulate};
 pub use protocol::truth::{Ended, HiddenEffect, HiddenNumber, RigReadings, Truth};
-pub use random::Random;

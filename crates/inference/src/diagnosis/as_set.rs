@@ -101,8 +101,8 @@ fn parabola_at_zero(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
     use bulge_effects::Moment;
+    use bulge_numerics::Random;
 
     fn record(contraction: &[f64]) -> Record {
         let moments: Vec<Moment> = contraction

@@ -14,7 +14,7 @@ use crate::diagnosis::scene::{Given, Scene};
 use crate::diagnosis::search::{ALARM, Tried, WORTH, ticket};
 use crate::diagnosis::showing::Screened;
 use crate::dot::dot;
-use crate::random::Random;
+use bulge_numerics::Random;
 
 /// Simulated data sets.
 const DRAWS: usize = 4000;

@@ -293,10 +293,10 @@ mod tests {
     use super::*;
     use crate::noise::law::{NoiseLaw, NoiseSource};
     use crate::noise::whitening::Whitening;
-    use crate::random::Random;
     use bulge_effects::{Catalogue, Moment};
     use bulge_model::{Record, Wanted};
     use bulge_muscles::preset;
+    use bulge_numerics::Random;
 
     const NOISE: f64 = 2.0;
 

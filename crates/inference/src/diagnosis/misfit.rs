@@ -6,7 +6,7 @@ use crate::diagnosis::document::Located;
 use crate::diagnosis::scene::{Direction, Scene};
 use crate::diagnosis::smooth::Variable;
 use crate::dot::dot;
-use crate::random::Random;
+use bulge_numerics::Random;
 
 /// Draws for the interval of the misfit.
 const DRAWS: usize = 400;

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use crate::diagnosis::candidates::Candidate;
 use crate::dot::dot;
 use crate::noise::offset_belief::OffsetBelief;
-use crate::random::Random;
+use bulge_numerics::Random;
 
 /// Draws.
 const DRAWS: usize = 2000;

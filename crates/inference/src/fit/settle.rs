@@ -74,10 +74,10 @@ fn cost(problem: &FitProblem<'_>, at: &[f64]) -> Result<f64, ModelError> {
 mod tests {
     use super::*;
     use crate::fit::nuisance::with_nuisances;
-    use crate::random::Random;
     use bulge_effects::{Catalogue, Moment};
     use bulge_model::{Model, Record};
     use bulge_muscles::from_toml;
+    use bulge_numerics::Random;
 
     const BRAID: &str = "name = \"b\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm +- 0.1 mm\"\nbraid_angle = \"25 deg +- 0.2 deg\"\n\
                          ends = \"clamped\"\nwall = \"1.8 mm\"\n[instruments]\nforce = { noise = \"2 N\", zero = \"1 N\" }\n";

@@ -101,7 +101,7 @@ fn fitted(squares: &[f64], shape: &[f64]) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use bulge_numerics::Random;
 
     fn steep(n: usize) -> Vec<f64> {
         (0..n).map(|i| 1.0 / (0.05 + i as f64 / n as f64)).collect()

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::noise::offset_belief::OffsetBelief;
 use crate::noise::whitening::{gap, moment_of};
-use crate::random::Random;
+use bulge_numerics::Random;
 
 /// Noise of the force at row i of sweep b:
 ///

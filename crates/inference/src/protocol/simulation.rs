@@ -10,7 +10,7 @@ use crate::error::InferenceError;
 use crate::protocol::bench::{Block, Path, Protocol, RigErrors};
 use crate::protocol::planned::Run;
 use crate::protocol::truth::{Ended, RigReadings, Truth, hidden};
-use crate::random::Random;
+use bulge_numerics::Random;
 
 /// How often ranges may be ended anew.
 const MOST_PASSES: usize = 60;

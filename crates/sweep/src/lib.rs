@@ -1,0 +1,1 @@
+//! Parallel parameter sweeps and certified tables.
