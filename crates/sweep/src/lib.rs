@@ -1,1 +1,6 @@
-//! Parallel parameter sweeps and certified tables.
+//! Parallel, resumable parameter sweeps of pneumatic muscles, and certified tables from them.
+
+mod output;
+pub mod plan;
+
+pub use output::Output;

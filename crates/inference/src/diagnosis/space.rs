@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     fn column(seed: u64) -> Vec<f64> {
-        let mut random = crate::random::Random::new(seed, 0);
+        let mut random = bulge_numerics::Random::new(seed, 0);
         (0..50).map(|_| random.normal()).collect()
     }
 
