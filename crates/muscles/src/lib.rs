@@ -47,6 +47,7 @@ mod muscle;
 mod parameter;
 mod presets;
 mod quantity;
+pub mod settings;
 mod table;
 mod unit_error;
 mod unit_expression;

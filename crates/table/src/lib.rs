@@ -1,1 +1,70 @@
-//! x
+//! Certified force and volume tables of pneumatic muscles: one binary format and its lookup.
+//!
+//! A table holds a few outputs (force f, volume v, ...) over one to four axes (contraction, slenderness, ...) as piecewise or global polynomials
+//! of coordinates that follow the domain, and what was measured of its error. A lookup gives value and exact gradient of the stored polynomial,
+//! or `None` outside the domain; nothing is ever extrapolated.
+//!
+//! ```
+//! # fn look(bytes: &[u8]) -> Result<(), bulge_table::TableError> {
+//! let table = bulge_table::Table::from_bytes(bytes)?;
+//! let lookup = table.lookup::<2, 2>()?; // two axes, two outputs
+//! if let Some([force, volume]) = lookup.at([0.2, 6.875]) {
+//!     // value and gradient [d/d(contraction), d/d(slenderness)]
+//!     let _ = (force.value, force.gradient, volume.value);
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Coordinates
+//!
+//! ```text
+//! axis i >= 1:   v_i = q/Q,  q = s/(s + c),  s = x - low,  Q = q(high)          (c infinite: linear)
+//! axis 0:        u = q K(v), s = x - low or sqrt(x - low),  K = 1/q(edge)       edge: fitted upper end, such as the contraction limit
+//! output:        y = g(u, v) (1 - u)^j / u^k                                    j = 1: vanishes at the edge, k = 1: singular at low
+//! ```
+//!
+//! # Format (version 1, little endian)
+//!
+//! | bytes | content |
+//! |---|---|
+//! | 0..8 | `BulgeTab` |
+//! | 8..12 | version u16; form u8 (1 Hermite, 2 Chebyshev); bytes of a coefficient u8 (4 or 8) |
+//! | 12..16 | axes A u8 (1..=4); outputs O u8 (1..=8); 0 u16 |
+//! | 16..32 | length of the file u32; place of the coefficients u32; of the edge u32; of the text u32 |
+//! | 32..48 | number of checks u64; seed of the checks u64 (0: none) |
+//! | 48..64 | length of the text u32; flags u32 (bit 0: root on axis 0, bit 1: fitted edge on axis 0); largest error of the edge f64 |
+//! | then A x 96 | name \[u8; 32\]; unit \[u8; 16\]; low, high, c, scale f64 (scale: 1/Q, on axis 0 without fitted edge K); nodes u32; nodes of the edge u32; 8 bytes 0 |
+//! | then O x 112 | name \[u8; 32\]; unit \[u8; 16\]; k u8; j u8; 6 bytes 0; largest and RMS error of the value, of the gradient, bound, scale: 6 f64 |
+//! | edge | Hermite nodes of K over axes 1.. as f64, if it is fitted |
+//! | coefficients | see below |
+//! | text | UTF-8: where the table comes from |
+//! | last 8 | CRC-64/XZ of all bytes before |
+//!
+//! Hermite: for each node (axis 0 slowest, the last axis fastest), for each d of 2^A derivatives (bit A-1-i set: once by axis i), for each output:
+//! the derivative per cell width. Chebyshev: for each degree (i_0, .., i_{A-1}) in the same order, for each output: the coefficient of
+//! T_{i_0}(2u - 1) T_{i_1}(2v_1 - 1) ...
+//!
+//! Deliberately absent: std, an allocator, dependencies, `unsafe`, and building tables (`bulge-sweep` does that).
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+mod chebyshev;
+mod coordinate;
+mod crc64;
+mod error;
+pub mod format;
+mod hermite;
+mod lookup;
+mod sqrt;
+mod table;
+
+pub use chebyshev::MOST_ORDERS;
+pub use crc64::crc64;
+pub use error::TableError;
+pub use format::{Axis, Certificate, Form, Output};
+pub use lookup::{Lookup, Sample};
+pub use table::Table;

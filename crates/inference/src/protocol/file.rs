@@ -1,18 +1,12 @@
 //! Protocol files: TOML into a protocol, with the place and the cure for everything that is wrong.
 
-use bulge_muscles::{Dimension, FileError, Force, Length, Pressure, Quantity, Ratio, UnitError, units};
-use std::fs::File;
-use std::io::Read;
-use std::ops::Range;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use bulge_muscles::settings::{Document, FileKind, Setting, Settings};
+use bulge_muscles::{Dimension, FileError, Force, Length, Pressure, Quantity, Ratio, units};
 
 use crate::protocol::bench::{Block, Path, Protocol, ReadingNoise, ReadingSteps, RigErrors, Wrong};
 
-/// Most bytes of a protocol file.
-const MOST_BYTES: usize = 1 << 20;
-/// How many characters of a mistaken text are shown.
-const MOST_SHOWN: usize = 40;
+/// What messages call the file.
+const KIND: FileKind = FileKind { name: "protocol", file: "protocol.toml", line: "period = \"50 s\"" };
 /// Rows of a cycle, or of each pressure of a map, where neither the block nor an interval says how many.
 const USUAL_ROWS: u32 = 50;
 
@@ -95,16 +89,6 @@ enum Shape {
     Static,
 }
 
-/// One table, with its place and its keys.
-struct Table<'a> {
-    origin: &'a str,
-    text: &'a str,
-    title: &'static str,
-    span: Range<usize>,
-    entries: &'a DeTable<'a>,
-    keys: &'static [(&'static str, &'static str)],
-}
-
 impl Protocol {
     /// Reads a protocol file; [`PROTOCOL_EXAMPLE`] has every key.
     ///
@@ -112,21 +96,7 @@ impl Protocol {
     /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid protocol. The message is complete.
     pub fn read(path: impl AsRef<std::path::Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
-        let origin = path.display().to_string();
-        let failed =
-            |what: String| FileError::whole(&origin, what, "name a protocol file, such as `protocol.toml`");
-        if path.is_dir() {
-            return Err(failed("this is a folder, not a protocol file".to_owned()));
-        }
-        let unreadable = |error: std::io::Error| failed(format!("the file cannot be read: {error}"));
-        let mut bytes = Vec::new();
-        let file = File::open(path).map_err(unreadable)?;
-        file.take(MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let instead = "save the file as plain text with the encoding UTF-8";
-            let what = format!("byte {} is not UTF-8 text", error.utf8_error().valid_up_to());
-            FileError::whole(&origin, what, instead)
-        })?;
+        let (text, origin) = (KIND.read(path)?, path.display().to_string());
         Self::from_toml(&text, &origin)
     }
 
@@ -144,342 +114,171 @@ impl Protocol {
     /// # Errors
     /// With the place and the cure, if the text is no valid protocol.
     pub fn from_toml(text: &str, origin: &str) -> Result<Self, FileError> {
-        if text.len() > MOST_BYTES {
-            let what = "the file is larger than 1 MiB, so it is no protocol";
-            return Err(FileError::whole(origin, what, "name a protocol file: some ten lines of TOML"));
-        }
-        let root = DeTable::parse(text).map_err(|error| {
-            let message = error.message().lines().collect::<Vec<_>>().join(", ");
-            let instead = "each line is `key = value`, a `[table]` or a `# comment`; numbers with a unit stand in quotes: `period = \"50 s\"`";
-            FileError::at(origin, text, error.span().unwrap_or(0..0), format!("this is not TOML: {message}"), instead)
-        })?;
-        let entries = root.get_ref();
-        Table { origin, text, title: "the protocol", span: 0..0, entries, keys: &TOP }.protocol()
+        protocol(&Document::parse(KIND, text, origin)?.settings("the protocol", &TOP))
     }
 }
 
-impl<'a> Table<'a> {
-    fn protocol(&self) -> Result<Protocol, FileError> {
-        self.check_keys()?;
-        let sampling = self.table("sampling", "`[sampling]`", &SAMPLING)?;
-        let noise = self.table("noise", "`[noise]`", &NOISE)?;
-        let interval = sampling.as_ref().map(Table::interval).transpose()?.flatten();
-        let tables = self.blocks()?;
-        let blocks = tables.iter().map(|table| table.block(interval)).collect::<Result<Vec<_>, _>>()?;
-        let mut protocol = Protocol::new(blocks);
-        if let Some(table) = &sampling {
-            protocol.steps = table.steps()?;
-        }
-        if let Some(table) = &noise {
-            protocol.noise = table.noise(protocol.is_static())?;
-        }
-        let rigs = [("none", RigErrors::None), ("drawn", RigErrors::Drawn)];
-        protocol.rig = self.word("rig", &rigs)?.unwrap_or_default();
-        if let Some(pause) = self.quantity("pause", Dimension::TIME)? {
-            protocol.pause_s = pause;
-        }
-        protocol.warming_k = self.quantity("warming", Dimension::TEMPERATURE)?.unwrap_or(0.0);
-        protocol.check_whole().map_err(|wrong| self.wrong(wrong))?;
-        Ok(protocol)
+fn protocol(settings: &Settings<'_>) -> Result<Protocol, FileError> {
+    settings.check_keys()?;
+    let sampling = settings.table("sampling", "`[sampling]`", &SAMPLING)?;
+    let noises = settings.table("noise", "`[noise]`", &NOISE)?;
+    let interval = sampling.as_ref().map(interval).transpose()?.flatten();
+    let tables = settings.tables("block", "this `[[block]]`", &BLOCK)?;
+    let tables = tables.ok_or_else(|| settings.missing("block"))?;
+    let blocks = tables.iter().map(|table| block(table, interval)).collect::<Result<Vec<_>, _>>()?;
+    let mut protocol = Protocol::new(blocks);
+    if let Some(table) = &sampling {
+        protocol.steps = steps(table)?;
     }
-
-    fn blocks(&self) -> Result<Vec<Table<'a>>, FileError> {
-        let Some(value) = self.get("block") else { return Err(self.missing("block")) };
-        let refused = || self.wrong_type("block", value, "an array of tables");
-        let DeValue::Array(items) = value.get_ref() else { return Err(refused()) };
-        let one = |item: &'a Spanned<DeValue<'a>>| {
-            let DeValue::Table(entries) = item.get_ref() else { return Err(refused()) };
-            Ok(Table { title: "this `[[block]]`", span: item.span(), entries, keys: &BLOCK, ..*self })
-        };
-        items.iter().map(one).collect()
+    if let Some(table) = &noises {
+        protocol.noise = noise(table, protocol.is_static())?;
     }
-
-    fn block(&self, interval: Option<f64>) -> Result<Block, FileError> {
-        self.check_keys()?;
-        let shapes = [("loops", Shape::Loops), ("stairs", Shape::Stairs), ("static", Shape::Static)];
-        let shape = self.word("shape", &shapes)?.unwrap_or(Shape::Loops);
-        self.check_shape(shape)?;
-        let mut block = Block::loops(self.pressures()?, self.range()?, 0.0);
-        block.repeats = self.count("repeats")?.unwrap_or(1);
-        block.specimens = self.count("specimens")?.unwrap_or(1);
-        block.cycles = self.count("cycles")?.unwrap_or(1);
-        block.path = match shape {
-            Shape::Static => Path::Static,
-            Shape::Loops => {
-                let waves = [("triangle", Path::Triangle), ("sine", Path::Sine)];
-                self.word("wave", &waves)?.unwrap_or(Path::Triangle)
-            }
-            Shape::Stairs => Path::Stairs {
-                steps: self.count("steps")?.unwrap_or(8),
-                hold_s: self.quantity("hold", Dimension::TIME)?.ok_or_else(|| self.missing("hold"))?,
-            },
-        };
-        if shape != Shape::Static {
-            block.period_s = self.period(&block)?;
-        }
-        let stated = self.count("rows")?;
-        block.rows = match interval.filter(|_| shape != Shape::Static && stated.is_none()) {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 0 and 1e9")]
-            Some(interval) => (block.period_s / interval).round().clamp(0.0, 1e9) as u32,
-            None => stated.unwrap_or(USUAL_ROWS),
-        };
-        block.check().map_err(|wrong| self.wrong(wrong))?;
-        Ok(block)
+    let rigs = [("none", RigErrors::None), ("drawn", RigErrors::Drawn)];
+    protocol.rig = settings.word("rig", &rigs)?.unwrap_or_default();
+    if let Some(pause) = settings.quantity("pause", Dimension::TIME)? {
+        protocol.pause_s = pause;
     }
-
-    /// Refuses keys that mean nothing for the shape.
-    fn check_shape(&self, shape: Shape) -> Result<(), FileError> {
-        let strange: &[&str] = match shape {
-            Shape::Loops => &["steps", "hold"],
-            Shape::Stairs => &["wave"],
-            Shape::Static => &["wave", "cycles", "period", "rate", "steps", "hold"],
-        };
-        let Some(key) = strange.iter().find(|key| self.get(key).is_some()) else { return Ok(()) };
-        let what = format!("`{key}` means nothing for this shape of the motion");
-        Err(self.error(self.key_span(key), what, format!("delete `{key}`, or write another `shape`")))
-    }
-
-    /// The period, or that of a mean speed: of the whole way in loops, of the steps between the holds in stairs.
-    fn period(&self, block: &Block) -> Result<f64, FileError> {
-        let period = self.quantity("period", Dimension::TIME)?;
-        let Some(rate) = self.quantity("rate", Dimension::RATE)? else {
-            return period.ok_or_else(|| self.missing("period"));
-        };
-        if period.is_some() {
-            let what = "`period` and `rate` say the same twice";
-            return Err(self.error(self.key_span("rate"), what, "delete one of the two"));
-        }
-        if rate <= 0.0 {
-            let what = format!("a rate of {rate} 1/s is not possible: it must be > 0");
-            return Err(self.error(self.value_span("rate"), what, "write such as `rate = \"0.8 %/s\"`"));
-        }
-        let moving = 2.0 * (block.contraction[1] - block.contraction[0]) / rate;
-        let Path::Stairs { steps, hold_s } = block.path else { return Ok(moving) };
-        Ok(moving + 2.0 * f64::from(steps) * hold_s)
-    }
-
-    fn pressures(&self) -> Result<Vec<f64>, FileError> {
-        let Some(value) = self.get("pressures") else { return Err(self.missing("pressures")) };
-        let si = |list: Vec<Pressure>| list.into_iter().map(Quantity::si).collect();
-        match value.get_ref() {
-            DeValue::String(text) => {
-                units::parse_list(text).map(si).map_err(|error| self.unit("pressures", value, &error))
-            }
-            DeValue::Array(items) => items
-                .iter()
-                .map(|item| {
-                    let text = number_text(item.get_ref()).ok_or_else(|| {
-                        self.wrong_type("pressures", item, "a list of pressures with their units")
-                    })?;
-                    let pressure = units::parse::<Pressure>(text);
-                    pressure.map(Quantity::si).map_err(|error| self.unit("pressures", item, &error))
-                })
-                .collect(),
-            _ => Err(self.wrong_type("pressures", value, "a list of pressures with their units")),
-        }
-    }
-
-    fn range(&self) -> Result<[f64; 2], FileError> {
-        let Some(value) = self.get("contraction") else { return Err(self.missing("contraction")) };
-        let DeValue::String(text) = value.get_ref() else {
-            return Err(self.wrong_type("contraction", value, "a range in quotes"));
-        };
-        let range = units::parse_range::<Ratio>(text);
-        range
-            .map(|(low, high)| [low.si(), high.si()])
-            .map_err(|error| self.unit("contraction", value, &error))
-    }
-
-    fn interval(&self) -> Result<Option<f64>, FileError> {
-        self.check_keys()?;
-        let interval = self.quantity("interval", Dimension::TIME)?;
-        if let Some(interval) = interval.filter(|interval| *interval <= 0.0) {
-            let what = format!("an interval of {interval} s is not possible: it must be > 0 s");
-            return Err(self.error(
-                self.value_span("interval"),
-                what,
-                "write such as `interval = \"0.5 s\"`",
-            ));
-        }
-        Ok(interval)
-    }
-
-    fn steps(&self) -> Result<ReadingSteps, FileError> {
-        let steps = ReadingSteps {
-            force_n: self.size::<Force>("force")?,
-            pressure_pa: self.size::<Pressure>("pressure")?,
-            length_m: self.size::<Length>("length")?,
-        };
-        steps.check().map_err(|wrong| self.wrong(wrong))?;
-        Ok(steps)
-    }
-
-    fn noise(&self, is_static: bool) -> Result<ReadingNoise, FileError> {
-        self.check_keys()?;
-        let noise = ReadingNoise {
-            force_n: self.size::<Force>("force")?,
-            tails: self.quantity("tails", Dimension::NONE)?,
-            correlated_n: self.size::<Force>("correlated")?,
-            correlation_time_s: self.quantity("correlation_time", Dimension::TIME)?.unwrap_or(0.0),
-            offset_n: self.size::<Force>("offset")?,
-            pressure_pa: self.size::<Pressure>("pressure")?,
-            length_m: self.size::<Length>("length")?,
-        };
-        noise.check(is_static).map_err(|wrong| self.wrong(wrong))?;
-        Ok(noise)
-    }
-
-    /// A quantity in SI; 0 if it is absent.
-    fn size<Q: Quantity>(&self, name: &'static str) -> Result<f64, FileError> {
-        let Some(value) = self.get(name) else { return Ok(0.0) };
-        let text = self.number(name, value)?;
-        units::parse::<Q>(text).map(Quantity::si).map_err(|error| self.unit(name, value, &error))
-    }
-
-    /// A quantity of a dimension in SI.
-    fn quantity(&self, name: &'static str, dimension: Dimension) -> Result<Option<f64>, FileError> {
-        let Some(value) = self.get(name) else { return Ok(None) };
-        let found = units::any(self.number(name, value)?)
-            .map_err(|error| self.error(value.span(), error.to_string(), self.write(name)))?;
-        if found.dimension == dimension {
-            return Ok(Some(found.si));
-        }
-        let what =
-            format!("`{name}` is {}, but must be {}", found.dimension.describe(), dimension.describe());
-        Err(self.error(value.span(), what, self.write(name)))
-    }
-
-    fn number(&self, name: &str, value: &'a Spanned<DeValue<'a>>) -> Result<&'a str, FileError> {
-        number_text(value.get_ref())
-            .ok_or_else(|| self.wrong_type(name, value, "text with a number and a unit"))
-    }
-
-    fn count(&self, name: &str) -> Result<Option<u32>, FileError> {
-        let Some(value) = self.get(name) else { return Ok(None) };
-        let whole = match value.get_ref() {
-            DeValue::Integer(number) => u32::from_str_radix(number.as_str(), number.radix()).ok(),
-            _ => None,
-        };
-        let refused = || self.wrong_type(name, value, "a whole number, 1 or more");
-        whole.map(Some).ok_or_else(refused)
-    }
-
-    /// One word of a list.
-    fn word<T: Copy>(&self, name: &str, known: &[(&'static str, T)]) -> Result<Option<T>, FileError> {
-        let Some(value) = self.get(name) else { return Ok(None) };
-        let DeValue::String(text) = value.get_ref() else {
-            return Err(self.wrong_type(name, value, "text in quotes"));
-        };
-        if let Some((_, found)) = known.iter().find(|(word, _)| word == text) {
-            return Ok(Some(*found));
-        }
-        let words: Vec<&'static str> = known.iter().map(|(word, _)| *word).collect();
-        let near = nearest(text, words.iter().copied()).unwrap_or(words[0]);
-        let what = format!("`{name}` is \"{}\", but must be one of: {}", shortened(text), words.join(", "));
-        Err(self.error(value.span(), what, format!("write `{name} = \"{near}\"`")))
-    }
-
-    fn table(
-        &self,
-        name: &str,
-        title: &'static str,
-        keys: &'static [(&'static str, &'static str)],
-    ) -> Result<Option<Table<'a>>, FileError> {
-        let Some(value) = self.get(name) else { return Ok(None) };
-        let DeValue::Table(entries) = value.get_ref() else {
-            return Err(self.wrong_type(name, value, "a table"));
-        };
-        Ok(Some(Table { title, span: value.span(), entries, keys, ..*self }))
-    }
-
-    fn get(&self, name: &str) -> Option<&'a Spanned<DeValue<'a>>> {
-        self.entries.iter().find(|(key, _)| key.get_ref() == name).map(|(_, value)| value)
-    }
-
-    fn check_keys(&self) -> Result<(), FileError> {
-        let mut names: Vec<_> = self.entries.keys().map(|key| (key.get_ref().as_ref(), key.span())).collect();
-        names.sort_by_key(|(_, span): &(&str, _)| span.start);
-        let known = || self.keys.iter().map(|(key, _)| *key);
-        let Some((name, span)) = names.into_iter().find(|(name, _)| known().all(|key| key != *name)) else {
-            return Ok(());
-        };
-        let instead = nearest(name, known()).map_or_else(
-            || {
-                format!(
-                    "known here: {}; leave the rest out, or write it behind a `#`",
-                    known().collect::<Vec<_>>().join(", ")
-                )
-            },
-            |near| format!("did you mean `{near}`?"),
-        );
-        Err(self.error(span, format!("unknown key `{}` in {}", shortened(name), self.title), instead))
-    }
-
-    /// The place of a key, or of the table where it is absent.
-    fn key_span(&self, name: &str) -> Range<usize> {
-        let key = self.entries.keys().find(|key| key.get_ref() == name);
-        key.map_or_else(|| self.span.clone(), Spanned::span)
-    }
-
-    fn value_span(&self, name: &str) -> Range<usize> {
-        self.get(name).map_or_else(|| self.span.clone(), Spanned::span)
-    }
-
-    fn error(&self, span: Range<usize>, what: impl Into<String>, instead: impl Into<String>) -> FileError {
-        FileError::at(self.origin, self.text, span, what, instead)
-    }
-
-    /// A number out of range, at its place.
-    fn wrong(&self, wrong: Wrong) -> FileError {
-        self.error(self.value_span(wrong.key), wrong.what, wrong.instead)
-    }
-
-    fn unit(&self, name: &str, value: &Spanned<DeValue<'_>>, error: &UnitError) -> FileError {
-        self.error(value.span(), error.to_string(), self.write(name))
-    }
-
-    fn write(&self, name: &str) -> String {
-        let example = self.keys.iter().find(|(key, _)| *key == name).map_or("", |(_, example)| example);
-        format!("write such as `{example}`")
-    }
-
-    fn missing(&self, name: &str) -> FileError {
-        let what = format!("{} needs `{name}`, which is missing", self.title);
-        self.error(self.span.clone(), what, self.write(name).replacen("write", "add", 1))
-    }
-
-    fn wrong_type(&self, name: &str, value: &Spanned<DeValue<'_>>, wanted: &str) -> FileError {
-        let found = match value.get_ref() {
-            DeValue::String(_) => "text",
-            DeValue::Integer(_) | DeValue::Float(_) => "a number",
-            DeValue::Boolean(_) => "true or false",
-            DeValue::Datetime(_) => "a date",
-            DeValue::Array(_) => "a list",
-            DeValue::Table(_) => "a table",
-        };
-        self.error(value.span(), format!("`{name}` is {found}, but must be {wanted}"), self.write(name))
-    }
+    protocol.warming_k = settings.quantity("warming", Dimension::TEMPERATURE)?.unwrap_or(0.0);
+    protocol.check_whole().map_err(|wrong| out_of_range(settings, &wrong))?;
+    Ok(protocol)
 }
 
-/// A number with its unit; a bare number goes the same way, and the message says which unit is missing.
-fn number_text<'a>(value: &'a DeValue<'a>) -> Option<&'a str> {
-    match value {
-        DeValue::String(text) => Some(text.as_ref()),
-        DeValue::Integer(number) => Some(number.as_str()),
-        DeValue::Float(number) => Some(number.as_str()),
-        _ => None,
+fn block(settings: &Settings<'_>, interval: Option<f64>) -> Result<Block, FileError> {
+    settings.check_keys()?;
+    let shapes = [("loops", Shape::Loops), ("stairs", Shape::Stairs), ("static", Shape::Static)];
+    let shape = settings.word("shape", &shapes)?.unwrap_or(Shape::Loops);
+    check_shape(settings, shape)?;
+    let mut block = Block::loops(pressures(settings)?, range(settings)?, 0.0);
+    block.repeats = settings.count("repeats")?.unwrap_or(1);
+    block.specimens = settings.count("specimens")?.unwrap_or(1);
+    block.cycles = settings.count("cycles")?.unwrap_or(1);
+    block.path = match shape {
+        Shape::Static => Path::Static,
+        Shape::Loops => {
+            let waves = [("triangle", Path::Triangle), ("sine", Path::Sine)];
+            settings.word("wave", &waves)?.unwrap_or(Path::Triangle)
+        }
+        Shape::Stairs => Path::Stairs {
+            steps: settings.count("steps")?.unwrap_or(8),
+            hold_s: settings.quantity("hold", Dimension::TIME)?.ok_or_else(|| settings.missing("hold"))?,
+        },
+    };
+    if shape != Shape::Static {
+        block.period_s = period(settings, &block)?;
     }
+    let stated = settings.count("rows")?;
+    block.rows = match interval.filter(|_| shape != Shape::Static && stated.is_none()) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 0 and 1e9")]
+        Some(interval) => (block.period_s / interval).round().clamp(0.0, 1e9) as u32,
+        None => stated.unwrap_or(USUAL_ROWS),
+    };
+    block.check().map_err(|wrong| out_of_range(settings, &wrong))?;
+    Ok(block)
 }
 
-fn shortened(text: &str) -> String {
-    text.chars().take(MOST_SHOWN).collect()
+/// Refuses keys that mean nothing for the shape.
+fn check_shape(settings: &Settings<'_>, shape: Shape) -> Result<(), FileError> {
+    let strange: &[&str] = match shape {
+        Shape::Loops => &["steps", "hold"],
+        Shape::Stairs => &["wave"],
+        Shape::Static => &["wave", "cycles", "period", "rate", "steps", "hold"],
+    };
+    let Some(key) = strange.iter().find(|key| settings.get(key).is_some()) else { return Ok(()) };
+    let what = format!("`{key}` means nothing for this shape of the motion");
+    Err(settings.error(settings.key_span(key), what, format!("delete `{key}`, or write another `shape`")))
 }
 
-/// The name that was probably meant: a slip or two away.
-fn nearest(word: &str, names: impl Iterator<Item = &'static str>) -> Option<&'static str> {
-    let word = word.to_lowercase().replace(['-', ' '], "_");
-    let slips = |name: &str| strsim::damerau_levenshtein(name, &word);
-    names.min_by_key(|name| slips(name)).filter(|name| slips(name) <= word.chars().count().div_ceil(3))
+/// The period, or that of a mean speed: of the whole way in loops, of the steps between the holds in stairs.
+fn period(settings: &Settings<'_>, block: &Block) -> Result<f64, FileError> {
+    let period = settings.quantity("period", Dimension::TIME)?;
+    let Some(rate) = settings.quantity("rate", Dimension::RATE)? else {
+        return period.ok_or_else(|| settings.missing("period"));
+    };
+    if period.is_some() {
+        let what = "`period` and `rate` say the same twice";
+        return Err(settings.error(settings.key_span("rate"), what, "delete one of the two"));
+    }
+    if rate <= 0.0 {
+        let what = format!("a rate of {rate} 1/s is not possible: it must be > 0");
+        return Err(settings.error(settings.value_span("rate"), what, "write such as `rate = \"0.8 %/s\"`"));
+    }
+    let moving = 2.0 * (block.contraction[1] - block.contraction[0]) / rate;
+    let Path::Stairs { steps, hold_s } = block.path else { return Ok(moving) };
+    Ok(moving + 2.0 * f64::from(steps) * hold_s)
+}
+
+fn pressures(settings: &Settings<'_>) -> Result<Vec<f64>, FileError> {
+    let Some(value) = settings.get("pressures") else { return Err(settings.missing("pressures")) };
+    if let Some(text) = value.text() {
+        let list = units::parse_list::<Pressure>(text);
+        return list
+            .map(|list| list.into_iter().map(Quantity::si).collect())
+            .map_err(|error| settings.unreadable("pressures", value, error));
+    }
+    let refused =
+        |value: Setting<'_>| settings.wrong_type("pressures", value, "a list of pressures with their units");
+    let items = value.items().ok_or_else(|| refused(value))?;
+    let one = |item| {
+        let text = item.number().ok_or_else(|| refused(item))?;
+        let pressure = units::parse::<Pressure>(text);
+        pressure.map(Quantity::si).map_err(|error| settings.unreadable("pressures", item, error))
+    };
+    items.into_iter().map(one).collect()
+}
+
+fn range(settings: &Settings<'_>) -> Result<[f64; 2], FileError> {
+    let Some(value) = settings.get("contraction") else { return Err(settings.missing("contraction")) };
+    let Some(text) = value.text() else {
+        return Err(settings.wrong_type("contraction", value, "a range in quotes"));
+    };
+    let range = units::parse_range::<Ratio>(text);
+    range
+        .map(|(low, high)| [low.si(), high.si()])
+        .map_err(|error| settings.unreadable("contraction", value, error))
+}
+
+fn interval(settings: &Settings<'_>) -> Result<Option<f64>, FileError> {
+    settings.check_keys()?;
+    let interval = settings.quantity("interval", Dimension::TIME)?;
+    if let Some(interval) = interval.filter(|interval| *interval <= 0.0) {
+        let what = format!("an interval of {interval} s is not possible: it must be > 0 s");
+        return Err(settings.error(
+            settings.value_span("interval"),
+            what,
+            "write such as `interval = \"0.5 s\"`",
+        ));
+    }
+    Ok(interval)
+}
+
+fn steps(settings: &Settings<'_>) -> Result<ReadingSteps, FileError> {
+    let steps = ReadingSteps {
+        force_n: settings.size::<Force>("force")?,
+        pressure_pa: settings.size::<Pressure>("pressure")?,
+        length_m: settings.size::<Length>("length")?,
+    };
+    steps.check().map_err(|wrong| out_of_range(settings, &wrong))?;
+    Ok(steps)
+}
+
+fn noise(settings: &Settings<'_>, is_static: bool) -> Result<ReadingNoise, FileError> {
+    settings.check_keys()?;
+    let noise = ReadingNoise {
+        force_n: settings.size::<Force>("force")?,
+        tails: settings.quantity("tails", Dimension::NONE)?,
+        correlated_n: settings.size::<Force>("correlated")?,
+        correlation_time_s: settings.quantity("correlation_time", Dimension::TIME)?.unwrap_or(0.0),
+        offset_n: settings.size::<Force>("offset")?,
+        pressure_pa: settings.size::<Pressure>("pressure")?,
+        length_m: settings.size::<Length>("length")?,
+    };
+    noise.check(is_static).map_err(|wrong| out_of_range(settings, &wrong))?;
+    Ok(noise)
+}
+
+/// A number out of range, at its place.
+fn out_of_range(settings: &Settings<'_>, wrong: &Wrong) -> FileError {
+    settings.error(settings.value_span(wrong.key), wrong.what.clone(), wrong.instead.clone())
 }
 
 #[cfg(test)]

@@ -1,0 +1,523 @@
+//! Settings files: tables of TOML with the place of every key, values with units, and a cure for each mistake.
+
+use crate::dimension::Dimension;
+use crate::file_error::FileError;
+use crate::units::{self, Quantity};
+use std::borrow::Cow;
+use std::fmt::Display;
+use std::fs::File;
+use std::io::Read;
+use std::ops::Range;
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Most bytes of a settings file.
+const MOST_BYTES: usize = 1 << 20;
+/// How many characters of a mistaken text are shown.
+const MOST_SHOWN: usize = 40;
+
+/// What messages call a kind of settings file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FileKind {
+    /// What the file is, such as "protocol".
+    pub name: &'static str,
+    /// What such a file may be called, such as "protocol.toml".
+    pub file: &'static str,
+    /// A line of it with a unit, such as `period = "50 s"`.
+    pub line: &'static str,
+}
+
+/// The keys of a table, each with a line that shows how it is written.
+pub type Keys = &'static [(&'static str, &'static str)];
+
+/// A parsed settings file.
+///
+/// ```
+/// use bulge_muscles::{Dimension, settings::{Document, FileKind}};
+///
+/// let kind = FileKind { name: "recipe", file: "recipe.toml", line: "time = \"50 s\"" };
+/// let document = Document::parse(kind, "time = \"1 min\"", "recipe.toml")?;
+/// let settings = document.settings("the recipe", &[("time", "time = \"50 s\"")]);
+/// settings.check_keys()?;
+/// assert_eq!(settings.quantity("time", Dimension::TIME)?, Some(60.0));
+/// # Ok::<(), bulge_muscles::FileError>(())
+/// ```
+#[derive(Debug)]
+pub struct Document<'t> {
+    origin: &'t str,
+    text: &'t str,
+    root: Spanned<DeTable<'t>>,
+}
+
+/// One table of a settings file.
+#[derive(Debug)]
+pub struct Settings<'a> {
+    origin: &'a str,
+    text: &'a str,
+    title: Cow<'a, str>,
+    span: Range<usize>,
+    entries: &'a DeTable<'a>,
+    keys: Keys,
+}
+
+/// One value of a settings file, with its place.
+#[derive(Debug, Clone, Copy)]
+pub struct Setting<'a> {
+    value: &'a Spanned<DeValue<'a>>,
+}
+
+impl FileKind {
+    /// The text of such a file.
+    ///
+    /// # Errors
+    /// If the file can't be read, is a folder, is larger than 1 MiB or is not UTF-8. The message is complete.
+    pub fn read(self, path: &Path) -> Result<String, FileError> {
+        let origin = path.display().to_string();
+        let failed = |what: String| {
+            FileError::whole(&origin, what, format!("name a {} file, such as `{}`", self.name, self.file))
+        };
+        if path.is_dir() {
+            return Err(failed(format!("this is a folder, not a {} file", self.name)));
+        }
+        let unreadable = |error: std::io::Error| failed(format!("the file cannot be read: {error}"));
+        let mut bytes = Vec::new();
+        let file = File::open(path).map_err(unreadable)?;
+        file.take(MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+        // Before the encoding: what is cut off may end within a character.
+        if bytes.len() > MOST_BYTES {
+            return Err(self.too_large(&origin));
+        }
+        String::from_utf8(bytes).map_err(|error| {
+            let instead = "save the file as plain text with the encoding UTF-8";
+            let what = format!("byte {} is not UTF-8 text", error.utf8_error().valid_up_to());
+            FileError::whole(&origin, what, instead)
+        })
+    }
+
+    fn too_large(self, origin: &str) -> FileError {
+        let what = format!("the file is larger than 1 MiB, so it is no {}", self.name);
+        FileError::whole(origin, what, format!("name a {} file: some ten lines of TOML", self.name))
+    }
+}
+
+impl<'t> Document<'t> {
+    /// Parses TOML text; `origin` is what messages call the text, usually a file name.
+    ///
+    /// # Errors
+    /// If the text is larger than 1 MiB or is not TOML.
+    pub fn parse(kind: FileKind, text: &'t str, origin: &'t str) -> Result<Self, FileError> {
+        if text.len() > MOST_BYTES {
+            return Err(kind.too_large(origin));
+        }
+        let root = DeTable::parse(text).map_err(|error| {
+            let message = error.message().lines().collect::<Vec<_>>().join(", ");
+            let instead = format!(
+                "each line is `key = value`, a `[table]` or a `# comment`; numbers with a unit stand in quotes: `{}`",
+                kind.line
+            );
+            let what = format!("this is not TOML: {message}");
+            FileError::at(origin, text, error.span().unwrap_or(0..0), what, instead)
+        })?;
+        Ok(Self { origin, text, root })
+    }
+
+    /// The top of the file: what messages call it, and the keys that it may have.
+    #[must_use]
+    pub fn settings(&self, title: &'static str, keys: Keys) -> Settings<'_> {
+        Settings {
+            origin: self.origin,
+            text: self.text,
+            title: title.into(),
+            span: 0..0,
+            entries: self.root.get_ref(),
+            keys,
+        }
+    }
+}
+
+impl<'a> Settings<'a> {
+    /// The value of a key.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<Setting<'a>> {
+        let found = self.entries.iter().find(|(key, _)| key.get_ref() == name);
+        found.map(|(_, value)| Setting { value })
+    }
+
+    /// The keys with their places, in the order of the file.
+    #[must_use]
+    pub fn names(&self) -> Vec<(&'a str, Range<usize>)> {
+        let mut names: Vec<_> = self.entries.keys().map(|key| (key.get_ref().as_ref(), key.span())).collect();
+        names.sort_by_key(|(_, span): &(&str, _)| span.start);
+        names
+    }
+
+    /// Refuses keys that the table doesn't have.
+    ///
+    /// # Errors
+    /// Names the first one in the file, with the nearest key that there is.
+    pub fn check_keys(&self) -> Result<(), FileError> {
+        let known = || self.keys.iter().map(|(key, _)| *key);
+        let stranger = self.names().into_iter().find(|(name, _)| known().all(|key| key != *name));
+        let Some((name, span)) = stranger else { return Ok(()) };
+        let instead = nearest(name, known()).map_or_else(
+            || {
+                format!(
+                    "known here: {}; leave the rest out, or write it behind a `#`",
+                    known().collect::<Vec<_>>().join(", ")
+                )
+            },
+            |near| format!("did you mean `{near}`?"),
+        );
+        Err(self.error(span, format!("unknown key `{}` in {}", shortened(name), self.title), instead))
+    }
+
+    /// A quantity of a type, in SI; 0 if it is absent.
+    ///
+    /// # Errors
+    /// If the value is no such quantity.
+    pub fn size<Q: Quantity>(&self, name: &str) -> Result<f64, FileError> {
+        let Some(value) = self.get(name) else { return Ok(0.0) };
+        let text = self.number(name, value)?;
+        units::parse::<Q>(text).map(Quantity::si).map_err(|error| self.unreadable(name, value, error))
+    }
+
+    /// A quantity of a dimension, in SI.
+    ///
+    /// # Errors
+    /// If the value is no such quantity.
+    pub fn quantity(&self, name: &str, dimension: Dimension) -> Result<Option<f64>, FileError> {
+        let Some(value) = self.get(name) else { return Ok(None) };
+        let found =
+            units::any(self.number(name, value)?).map_err(|error| self.unreadable(name, value, error))?;
+        if found.dimension == dimension {
+            return Ok(Some(found.si));
+        }
+        let what =
+            format!("`{name}` is {}, but must be {}", found.dimension.describe(), dimension.describe());
+        Err(self.unreadable(name, value, what))
+    }
+
+    fn number(&self, name: &str, value: Setting<'a>) -> Result<&'a str, FileError> {
+        value.number().ok_or_else(|| self.wrong_type(name, value, "text with a number and a unit"))
+    }
+
+    /// A whole number.
+    ///
+    /// # Errors
+    /// If the value is none, or is negative or too large for the type.
+    pub fn count<N: TryFrom<u64>>(&self, name: &str) -> Result<Option<N>, FileError> {
+        let Some(value) = self.get(name) else { return Ok(None) };
+        let refused = || self.wrong_type(name, value, "a whole number, 1 or more");
+        let number = value.whole().and_then(|number| N::try_from(number).ok());
+        number.map(Some).ok_or_else(refused)
+    }
+
+    /// Text in quotes.
+    ///
+    /// # Errors
+    /// If the value is something else.
+    pub fn text(&self, name: &str) -> Result<Option<&'a str>, FileError> {
+        let Some(value) = self.get(name) else { return Ok(None) };
+        value.text().map(Some).ok_or_else(|| self.wrong_type(name, value, "text in quotes"))
+    }
+
+    /// One word of a list, which must not be empty.
+    ///
+    /// # Errors
+    /// If the value is another one; the nearest word is named.
+    pub fn word<T: Copy>(&self, name: &str, known: &[(&'static str, T)]) -> Result<Option<T>, FileError> {
+        let (Some(value), Some(text)) = (self.get(name), self.text(name)?) else { return Ok(None) };
+        if let Some((_, found)) = known.iter().find(|(word, _)| *word == text) {
+            return Ok(Some(*found));
+        }
+        let words: Vec<&'static str> = known.iter().map(|(word, _)| *word).collect();
+        let near = nearest(text, words.iter().copied()).or(words.first().copied()).unwrap_or_default();
+        let what = format!("`{name}` is \"{}\", but must be one of: {}", shortened(text), words.join(", "));
+        Err(self.error(value.span(), what, format!("write `{name} = \"{near}\"`")))
+    }
+
+    /// A table within this one: what messages call it, and the keys that it may have.
+    ///
+    /// # Errors
+    /// If the value is no table.
+    pub fn table(
+        &self,
+        name: &str,
+        title: impl Into<Cow<'a, str>>,
+        keys: Keys,
+    ) -> Result<Option<Self>, FileError> {
+        let Some(value) = self.get(name) else { return Ok(None) };
+        let DeValue::Table(entries) = value.value.get_ref() else {
+            return Err(self.wrong_type(name, value, "a table"));
+        };
+        Ok(Some(self.inner(value.span(), entries, title.into(), keys)))
+    }
+
+    /// An array of tables, such as `[[block]]`: what messages call each, and the keys that it may have.
+    ///
+    /// # Errors
+    /// If the value is no array of tables.
+    pub fn tables(
+        &self,
+        name: &str,
+        title: &'static str,
+        keys: Keys,
+    ) -> Result<Option<Vec<Self>>, FileError> {
+        let Some(value) = self.get(name) else { return Ok(None) };
+        let refused = || self.wrong_type(name, value, "an array of tables");
+        let DeValue::Array(items) = value.value.get_ref() else { return Err(refused()) };
+        let one = |item: &'a Spanned<DeValue<'a>>| {
+            let DeValue::Table(entries) = item.get_ref() else { return Err(refused()) };
+            Ok(self.inner(item.span(), entries, title.into(), keys))
+        };
+        items.iter().map(one).collect::<Result<_, _>>().map(Some)
+    }
+
+    fn inner(&self, span: Range<usize>, entries: &'a DeTable<'a>, title: Cow<'a, str>, keys: Keys) -> Self {
+        Settings { origin: self.origin, text: self.text, title, span, entries, keys }
+    }
+
+    /// The place of a key, or of the table where it is absent.
+    #[must_use]
+    pub fn key_span(&self, name: &str) -> Range<usize> {
+        let key = self.entries.keys().find(|key| key.get_ref() == name);
+        key.map_or_else(|| self.span.clone(), Spanned::span)
+    }
+
+    /// The place of a value, or of the table where it is absent.
+    #[must_use]
+    pub fn value_span(&self, name: &str) -> Range<usize> {
+        self.get(name).map_or_else(|| self.span.clone(), Setting::span)
+    }
+
+    /// What is wrong at a place, and what to write instead.
+    #[must_use]
+    pub fn error(
+        &self,
+        span: Range<usize>,
+        what: impl Into<String>,
+        instead: impl Into<String>,
+    ) -> FileError {
+        FileError::at(self.origin, self.text, span, what, instead)
+    }
+
+    /// What is wrong with the value of a key, with the line that shows how it is written.
+    #[must_use]
+    pub fn unreadable(&self, name: &str, value: Setting<'_>, what: impl Display) -> FileError {
+        self.error(value.span(), what.to_string(), self.write(name))
+    }
+
+    /// A value of another type than `wanted`.
+    #[must_use]
+    pub fn wrong_type(&self, name: &str, value: Setting<'_>, wanted: &str) -> FileError {
+        self.unreadable(name, value, format!("`{name}` is {}, but must be {wanted}", value.type_name()))
+    }
+
+    /// A key that the table needs.
+    #[must_use]
+    pub fn missing(&self, name: &str) -> FileError {
+        let what = format!("{} needs `{name}`, which is missing", self.title);
+        self.error(self.span.clone(), what, self.write(name).replacen("write", "add", 1))
+    }
+
+    fn write(&self, name: &str) -> String {
+        let example = self.keys.iter().find(|(key, _)| *key == name).map_or("", |(_, example)| example);
+        format!("write such as `{example}`")
+    }
+}
+
+impl<'a> Setting<'a> {
+    /// Its place.
+    #[must_use]
+    pub fn span(self) -> Range<usize> {
+        self.value.span()
+    }
+
+    /// The text, if it is one.
+    #[must_use]
+    pub fn text(self) -> Option<&'a str> {
+        self.value.get_ref().as_str()
+    }
+
+    /// A number with its unit; a bare number goes the same way, and the message says which unit is missing.
+    #[must_use]
+    pub fn number(self) -> Option<&'a str> {
+        match self.value.get_ref() {
+            DeValue::String(text) => Some(text.as_ref()),
+            // The digits of 0x10 would read as ten.
+            DeValue::Integer(number) if number.radix() == 10 => Some(number.as_str()),
+            DeValue::Float(number) => Some(number.as_str()),
+            _ => None,
+        }
+    }
+
+    /// A whole number that is not negative.
+    #[must_use]
+    pub fn whole(self) -> Option<u64> {
+        match self.value.get_ref() {
+            DeValue::Integer(number) => u64::from_str_radix(number.as_str(), number.radix()).ok(),
+            _ => None,
+        }
+    }
+
+    /// The items, if it is a list.
+    #[must_use]
+    pub fn items(self) -> Option<Vec<Self>> {
+        match self.value.get_ref() {
+            DeValue::Array(items) => Some(items.iter().map(|value| Self { value }).collect()),
+            _ => None,
+        }
+    }
+
+    /// The keys and values, if it is a table.
+    #[must_use]
+    pub fn entries(self) -> Option<Vec<(&'a str, Self)>> {
+        match self.value.get_ref() {
+            DeValue::Table(table) => {
+                Some(table.iter().map(|(key, value)| (key.get_ref().as_ref(), Self { value })).collect())
+            }
+            _ => None,
+        }
+    }
+
+    /// What it is in words, such as "a number".
+    #[must_use]
+    pub fn type_name(self) -> &'static str {
+        crate::table::type_of(self.value.get_ref())
+    }
+}
+
+/// A quotation for a message, of at most 40 characters.
+#[must_use]
+pub fn shortened(text: &str) -> String {
+    text.chars().take(MOST_SHOWN).collect()
+}
+
+/// The name that was probably meant: a slip or two away.
+pub fn nearest<'n>(word: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+    let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
+    let word = plain(word);
+    let slips = |name: &str| strsim::damerau_levenshtein(&plain(name), &word);
+    names.min_by_key(|name| slips(name)).filter(|name| slips(name) <= word.chars().count().div_ceil(3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quantity::Length;
+
+    const KIND: FileKind = FileKind { name: "recipe", file: "recipe.toml", line: "time = \"50 s\"" };
+    const KEYS: Keys = &[
+        ("time", "time = \"50 s\""),
+        ("depth", "depth = \"2 mm\""),
+        ("count", "count = 3"),
+        ("name", "name = \"cake\""),
+        ("step", "[[step]]"),
+        ("oven", "[oven]"),
+    ];
+
+    #[track_caller]
+    fn refused<T: std::fmt::Debug>(found: Result<T, FileError>, parts: &[&str]) {
+        let message = found.unwrap_err().to_string();
+        for part in parts {
+            assert!(message.contains(part), "{message:?} does not say {part:?}");
+        }
+    }
+
+    #[test]
+    fn values_of_every_type() {
+        let text = "time = \"2 min\"\ndepth = \"3 mm\"\ncount = 0x10\nname = \"cake\"\nstep = [{time = \"1 s\"}, {}]\noven = {depth = \"1 m\"}\n";
+        let document = Document::parse(KIND, text, "r.toml").unwrap();
+        let top = document.settings("the recipe", KEYS);
+        top.check_keys().unwrap();
+        assert_eq!(top.quantity("time", Dimension::TIME).unwrap(), Some(120.0));
+        assert_eq!(
+            (top.size::<Length>("depth").unwrap(), top.size::<Length>("width").unwrap()),
+            (0.003, 0.0)
+        );
+        assert_eq!((top.count::<u32>("count").unwrap(), top.count::<u8>("x").unwrap()), (Some(16), None));
+        assert_eq!(top.text("name").unwrap(), Some("cake"));
+        assert_eq!(top.word("name", &[("pie", 1), ("cake", 2)]).unwrap(), Some(2));
+        let steps = top.tables("step", "this `[[step]]`", KEYS).unwrap().unwrap();
+        assert_eq!(steps.len(), 2);
+        assert_eq!(steps[0].quantity("time", Dimension::TIME).unwrap(), Some(1.0));
+        let oven = top.table("oven", "`[oven]`", KEYS).unwrap().unwrap();
+        assert_eq!(oven.size::<Length>("depth").unwrap(), 1.0);
+        assert!(top.names().iter().zip(KEYS).all(|((name, _), (key, _))| name == key));
+        let oven = top.get("oven").unwrap();
+        assert_eq!((oven.type_name(), oven.entries().unwrap()[0].0), ("a table", "depth"));
+        assert_eq!(
+            (&text[oven.span()], &text[top.key_span("oven")], top.key_span("x")),
+            ("{depth = \"1 m\"}", "oven", 0..0)
+        );
+    }
+
+    #[test]
+    fn mistakes_have_a_place_and_a_cure() {
+        let refuses = |text: &str, parts: &[&str], read: &dyn Fn(&Settings<'_>) -> Result<(), FileError>| {
+            let document = Document::parse(KIND, text, "r.toml").unwrap();
+            refused(read(&document.settings("the recipe", KEYS)), parts);
+        };
+        let time = |s: &Settings<'_>| s.quantity("time", Dimension::TIME).map(drop);
+        refuses(
+            "tmie = 1",
+            &["r.toml:1:1", "unknown key `tmie` in the recipe", "did you mean `time`?"],
+            &|s| s.check_keys(),
+        );
+        refuses("xyz = 1", &["known here: time, depth"], &|s| s.check_keys());
+        refuses("time = 40", &["r.toml:1:8", "a pure number, but must be a time", "time = \"50 s\""], &time);
+        refuses("time = 0x40", &["`time` is a number, but must be text with a number and a unit"], &time);
+        refuses("time = \"4 zs\"", &["r.toml:1:8", "unknown unit", "50 s"], &time);
+        refuses("depth = \"4 s\"", &["r.toml:1:9", "depth = \"2 mm\""], &|s| {
+            s.size::<Length>("depth").map(drop)
+        });
+        for count in ["-1", "2.5", "\"3\"", "300"] {
+            let text = format!("count = {count}");
+            refuses(&text, &["r.toml:1:9", "but must be a whole number", "count = 3"], &|s| {
+                s.count::<u8>("count").map(drop)
+            });
+        }
+        refuses("name = \"pi\"", &["one of: pie, cake", "write `name = \"pie\"`"], &|s| {
+            s.word("name", &[("pie", 1), ("cake", 2)]).map(drop)
+        });
+        refuses("name = 3", &["text in quotes"], &|s| s.word("name", &[("pie", 1)]).map(drop));
+        refuses("step = 3", &["an array of tables", "[[step]]"], &|s| s.tables("step", "", KEYS).map(drop));
+        refuses("step = [3]", &["an array of tables"], &|s| s.tables("step", "", KEYS).map(drop));
+        refuses("oven = true", &["is true or false, but must be a table"], &|s| {
+            s.table("oven", "", KEYS).map(drop)
+        });
+        refuses("", &["the recipe needs `time`", "add such as `time = \"50 s\"`"], &|s| {
+            Err(s.missing("time"))
+        });
+        refused(Document::parse(KIND, "time = 5 s", "r.toml"), &["r.toml:1:", "not TOML", "in quotes"]);
+    }
+
+    #[test]
+    fn only_small_text_files_are_read() {
+        let folder = std::env::temp_dir().join(format!("bulge-settings-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("r.toml");
+        refused(KIND.read(&folder), &["a folder, not a recipe file", "such as `recipe.toml`"]);
+        refused(KIND.read(&path), &["cannot be read"]);
+        std::fs::write(&path, b"a\xff").unwrap();
+        refused(KIND.read(&path), &["byte 1 is not UTF-8"]);
+        std::fs::write(&path, "\u{e9}".repeat(MOST_BYTES)).unwrap();
+        refused(KIND.read(&path), &["larger than 1 MiB, so it is no recipe"]);
+        std::fs::write(&path, "x = 1").unwrap();
+        assert_eq!(KIND.read(&path).unwrap(), "x = 1");
+        std::fs::remove_dir_all(&folder).unwrap();
+        let long = " ".repeat(MOST_BYTES + 1);
+        refused(Document::parse(KIND, &long, "r"), &["larger than 1 MiB", "some ten lines"]);
+        assert!(Document::parse(KIND, &long[1..], "r").is_ok());
+    }
+
+    #[test]
+    fn the_nearest_name() {
+        let names = || ["fibre_stiffness", "coulomb-friction.force", "radius"].into_iter();
+        assert_eq!(nearest("Fibre-Stifness", names()), Some("fibre_stiffness"));
+        assert_eq!(nearest("coulomb friction.force", names()), Some("coulomb-friction.force"));
+        assert_eq!(nearest("pressure", names()), None);
+        assert_eq!(shortened(&"x".repeat(50)).len(), 40);
+    }
+}

@@ -1,0 +1,79 @@
+//! Tensor products of Chebyshev polynomials over the whole domain.
+
+use crate::hermite::{Graded, Number};
+
+/// Most orders along an axis: what fits on a small stack.
+pub const MOST_ORDERS: usize = 96;
+
+/// T_i(2u - 1) and its derivative by u for the first orders.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Basis {
+    value: [f64; MOST_ORDERS],
+    slope: [f64; MOST_ORDERS],
+}
+
+impl Basis {
+    /// By the recurrences T_{i+1} = 2 x T_i - T_{i-1} and its derivative.
+    pub(crate) fn at(u: f64, orders: usize) -> Self {
+        let x = 2.0 * u - 1.0;
+        let mut basis = Self { value: [0.0; MOST_ORDERS], slope: [0.0; MOST_ORDERS] };
+        let orders = orders.min(MOST_ORDERS);
+        let (mut before, mut now) = ([1.0, 0.0], [x, 2.0]);
+        for i in 0..orders {
+            [basis.value[i], basis.slope[i]] = before;
+            let next = [2.0 * x * now[0] - before[0], 2.0 * x * now[1] - before[1] + 4.0 * now[0]];
+            (before, now) = (now, next);
+        }
+        basis
+    }
+}
+
+/// A polynomial over `A` axes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Polynomial<'a, const A: usize> {
+    pub(crate) data: &'a [u8],
+    /// Orders along each axis.
+    pub(crate) orders: [usize; A],
+}
+
+impl<const A: usize> Polynomial<'_, A> {
+    /// Value and derivatives by the coordinates.
+    pub(crate) fn at<N: Number, const O: usize>(&self, coordinates: [f64; A]) -> Graded<A, O> {
+        let mut basis = [Basis::at(0.0, 0); A];
+        for (basis, (u, orders)) in basis.iter_mut().zip(coordinates.into_iter().zip(self.orders)) {
+            *basis = Basis::at(u, orders);
+        }
+        self.contracted::<N, O>(0, 0, &basis)
+    }
+
+    /// The sum over the axes from `axis` on of the block with the number `block` among those of its level.
+    fn contracted<N: Number, const O: usize>(
+        &self,
+        axis: usize,
+        block: usize,
+        basis: &[Basis; A],
+    ) -> Graded<A, O> {
+        let mut sum = Graded::ZERO;
+        if axis == A {
+            let from = block * O * N::BYTES;
+            let bytes = self.data.get(from..from + O * N::BYTES).unwrap_or_default();
+            for (value, number) in sum.value.iter_mut().zip(bytes.chunks_exact(N::BYTES)) {
+                *value = N::read(number);
+            }
+            return sum;
+        }
+        for order in 0..self.orders[axis] {
+            let part: Graded<A, O> =
+                self.contracted::<N, O>(axis + 1, block * self.orders[axis] + order, basis);
+            let (weight, by) = (basis[axis].value[order], basis[axis].slope[order]);
+            for o in 0..O {
+                sum.value[o] += weight * part.value[o];
+                sum.by[axis][o] += by * part.value[o];
+                for later in axis + 1..A {
+                    sum.by[later][o] += weight * part.by[later][o];
+                }
+            }
+        }
+        sum
+    }
+}

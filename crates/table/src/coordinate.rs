@@ -1,0 +1,56 @@
+//! From a point to the unit coordinates, with derivatives.
+
+use crate::sqrt::reciprocal_root;
+
+/// The coordinate of an axis without fitted edge.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Fixed {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    /// Infinite for a linear coordinate.
+    pub(crate) pole: f64,
+    /// The coordinate is `scale` q; 1/(high - low) for a linear one.
+    pub(crate) scale: f64,
+}
+
+impl Fixed {
+    /// v in \[0, 1\] and dv/dx; `None` outside.
+    #[inline]
+    pub(crate) fn at(&self, x: f64) -> Option<[f64; 2]> {
+        if !(x >= self.low && x <= self.high) {
+            return None;
+        }
+        let [q, by_x] = stretched(x - self.low, self.pole);
+        // Rounding may pass 1 at the upper end.
+        Some([(self.scale * q).min(1.0), self.scale * by_x])
+    }
+}
+
+/// q = s/(s + c) and dq/ds; s itself where c is infinite.
+#[inline]
+pub(crate) fn stretched(s: f64, pole: f64) -> [f64; 2] {
+    if pole == f64::INFINITY {
+        return [s, 1.0];
+    }
+    let below = 1.0 / (s + pole);
+    [s * below, pole * below * below]
+}
+
+/// s and ds/dx of a distance from the lower end > 0: the distance or its root.
+#[inline]
+pub(crate) fn rooted(distance: f64, is_root: bool) -> [f64; 2] {
+    if !is_root {
+        return [distance, 1.0];
+    }
+    let r = reciprocal_root(distance);
+    [distance * r, 0.5 * r]
+}
+
+/// Cell of a coordinate in \[0, 1\] on `nodes` >= 2 equal nodes, and the place in it from 0 to 1.
+#[inline]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 0 and 2^32")]
+pub(crate) fn cell(v: f64, nodes: usize) -> (usize, f64) {
+    let along = v * (nodes - 1) as f64;
+    let cell = (along as usize).min(nodes - 2);
+    (cell, along - cell as f64)
+}

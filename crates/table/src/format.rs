@@ -1,0 +1,184 @@
+//! The layout of the bytes: places of the fields, and the records of axes and outputs. See the crate's documentation for the whole.
+
+use core::str;
+
+use crate::TableError;
+
+/// The first bytes.
+pub const MAGIC: [u8; 8] = *b"BulgeTab";
+/// The version written and read.
+pub const VERSION: u16 = 1;
+/// Bytes before the records.
+pub const HEADER: usize = 64;
+/// Bytes of an axis.
+pub const AXIS: usize = 96;
+/// Bytes of an output.
+pub const OUTPUT: usize = 112;
+/// Bytes of a name.
+pub const NAME: usize = 32;
+/// Bytes of a unit.
+pub const UNIT: usize = 16;
+/// Most axes.
+pub const MOST_AXES: usize = 4;
+/// Most outputs.
+pub const MOST_OUTPUTS: usize = 8;
+/// Flag: the coordinate of axis 0 is a root.
+pub const ROOT: u32 = 1;
+/// Flag: the upper end of axis 0 is fitted.
+pub const FITTED: u32 = 2;
+
+/// How the outputs are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// Cubic Hermite splines on equal cells of the coordinates: continuous values and gradients, fast.
+    Hermite,
+    /// One polynomial for the whole domain: small.
+    Chebyshev,
+}
+
+impl Form {
+    /// As stored.
+    #[must_use]
+    pub const fn code(self) -> u8 {
+        match self {
+            Self::Hermite => 1,
+            Self::Chebyshev => 2,
+        }
+    }
+
+    /// In words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Hermite => "cubic Hermite splines",
+            Self::Chebyshev => "Chebyshev polynomials",
+        }
+    }
+}
+
+/// One axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axis<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Its unit; "1" for a pure number.
+    pub unit: &'a str,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end; of a fitted axis the largest one.
+    pub high: f64,
+    /// Pole c of the coordinate s/(s + c), > 0; infinite for a linear one.
+    pub pole: f64,
+    /// Factor that makes the coordinate 1 at the upper end.
+    pub scale: f64,
+    /// Nodes (Hermite) or orders (Chebyshev).
+    pub nodes: usize,
+    /// Nodes of the edge along this axis; 0 on axis 0 or without a fitted edge.
+    pub edge_nodes: usize,
+}
+
+/// One output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Output<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Its unit; "1" for a pure number.
+    pub unit: &'a str,
+    /// Whether it grows as 1/u at the lower end of axis 0.
+    pub is_singular: bool,
+    /// Whether it vanishes as 1 - u at the upper end of axis 0.
+    pub vanishes: bool,
+    /// What was measured of its error.
+    pub certificate: Certificate,
+}
+
+/// Errors of an output, measured off the grid against the solver. Relative errors are |error|/max(|value|, 0.001 scale/u^k).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Certificate {
+    /// Largest relative error of the value.
+    pub value_max: f64,
+    /// Its root mean square.
+    pub value_rms: f64,
+    /// Largest relative error of a component of the gradient, |error|/max(|component|, |value|/width of the axis).
+    pub gradient_max: f64,
+    /// Root mean square.
+    pub gradient_rms: f64,
+    /// Bound of the relative error of the value, by subdivision.
+    pub bound: f64,
+    /// Largest |y| u^k: what small values are compared with.
+    pub scale: f64,
+}
+
+/// Little-endian numbers at a place; `None` beyond the end.
+pub(crate) fn u16_at(bytes: &[u8], at: usize) -> Option<u16> {
+    Some(u16::from_le_bytes(*bytes.get(at..)?.first_chunk()?))
+}
+
+pub(crate) fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
+    Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?))
+}
+
+pub(crate) fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
+    Some(u64::from_le_bytes(*bytes.get(at..)?.first_chunk()?))
+}
+
+pub(crate) fn f64_at(bytes: &[u8], at: usize) -> Option<f64> {
+    u64_at(bytes, at).map(f64::from_bits)
+}
+
+/// Text up to the first zero.
+fn text_at<'a>(
+    bytes: &'a [u8],
+    at: usize,
+    length: usize,
+    field: &'static str,
+) -> Result<&'a str, TableError> {
+    let malformed = TableError::Malformed { field };
+    let field = bytes.get(at..at + length).ok_or(malformed)?;
+    let end = field.iter().position(|byte| *byte == 0).unwrap_or(length);
+    str::from_utf8(&field[..end]).ok().filter(|text| !text.is_empty()).ok_or(malformed)
+}
+
+pub(crate) fn axis_at(bytes: &[u8], at: usize) -> Result<Axis<'_>, TableError> {
+    let number = |offset, field| {
+        let value = f64_at(bytes, at + 48 + offset);
+        value.filter(|value| !value.is_nan()).ok_or(TableError::Malformed { field })
+    };
+    let count =
+        |offset| u32_at(bytes, at + 80 + offset).and_then(|count| usize::try_from(count).ok()).unwrap_or(0);
+    let axis = Axis {
+        name: text_at(bytes, at, NAME, "name of an axis")?,
+        unit: text_at(bytes, at + NAME, UNIT, "unit of an axis")?,
+        low: number(0, "lower end of an axis")?,
+        high: number(8, "upper end of an axis")?,
+        pole: number(16, "pole of an axis")?,
+        scale: number(24, "scale of an axis")?,
+        nodes: count(0),
+        edge_nodes: count(4),
+    };
+    let is_right = axis.low.is_finite() && axis.high.is_finite() && axis.low < axis.high && axis.pole > 0.0;
+    if is_right { Ok(axis) } else { Err(TableError::Malformed { field: "range of an axis" }) }
+}
+
+pub(crate) fn output_at(bytes: &[u8], at: usize) -> Result<Output<'_>, TableError> {
+    let number = |i: usize| f64_at(bytes, at + 56 + 8 * i).unwrap_or(f64::NAN);
+    let flag = |offset: usize| match bytes.get(at + 48 + offset) {
+        Some(0) => Ok(false),
+        Some(1) => Ok(true),
+        _ => Err(TableError::Malformed { field: "factors of an output" }),
+    };
+    Ok(Output {
+        name: text_at(bytes, at, NAME, "name of an output")?,
+        unit: text_at(bytes, at + NAME, UNIT, "unit of an output")?,
+        is_singular: flag(0)?,
+        vanishes: flag(1)?,
+        certificate: Certificate {
+            value_max: number(0),
+            value_rms: number(1),
+            gradient_max: number(2),
+            gradient_rms: number(3),
+            bound: number(4),
+            scale: number(5),
+        },
+    })
+}

@@ -1,0 +1,335 @@
+//! A table in its bytes: checked once, then looked up.
+
+use core::str;
+
+use crate::TableError;
+use crate::chebyshev::MOST_ORDERS;
+use crate::coordinate::Fixed;
+use crate::crc64::crc64;
+use crate::format::{
+    AXIS, Axis, FITTED, Form, HEADER, MAGIC, MOST_AXES, MOST_OUTPUTS, OUTPUT, Output, ROOT, VERSION, axis_at,
+    f64_at, output_at, u16_at, u32_at, u64_at,
+};
+use crate::lookup::Lookup;
+
+/// Bytes of the checksum.
+const CHECKSUM: usize = 8;
+/// Most nodes along an axis.
+const MOST_NODES: usize = 1 << 20;
+
+/// A table in its bytes. Everything was checked when it was made from them.
+#[derive(Debug, Clone, Copy)]
+pub struct Table<'a> {
+    bytes: &'a [u8],
+    form: Form,
+    precision: usize,
+    axes: usize,
+    outputs: usize,
+    flags: u32,
+    edge: &'a [u8],
+    data: &'a [u8],
+    text: &'a str,
+}
+
+impl<'a> Table<'a> {
+    /// Checks the bytes and makes a table of them; nothing is copied.
+    ///
+    /// # Errors
+    /// [`TableError`]: truncated, damaged, of another version, or no table at all. Bytes after the table's end are an error as well.
+    pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, TableError> {
+        let truncated = |needed| TableError::Truncated { found: bytes.len(), needed };
+        if !bytes.starts_with(&MAGIC) {
+            return Err(if MAGIC.starts_with(bytes) { truncated(HEADER) } else { TableError::NoTable });
+        }
+        let short = truncated(HEADER + CHECKSUM);
+        let version = u16_at(bytes, 8).ok_or(short)?;
+        if version != VERSION {
+            return Err(TableError::Version { found: version });
+        }
+        let length = size_at(bytes, 16).ok_or(short)?;
+        if bytes.len() < HEADER + CHECKSUM {
+            return Err(short);
+        }
+        if bytes.len() < length {
+            return Err(truncated(length));
+        }
+        if bytes.len() > length || length < HEADER + CHECKSUM {
+            return Err(TableError::Malformed { field: "length" });
+        }
+        let (body, end) = bytes.split_at(length - CHECKSUM);
+        let (stored, computed) = (u64_at(end, 0).ok_or(short)?, crc64(body));
+        if stored != computed {
+            return Err(TableError::Checksum { stored, computed });
+        }
+        Self::checked(bytes, body)
+    }
+
+    /// A table whose checksum fits: from here on a mistake is that of whoever wrote it.
+    fn checked(bytes: &'a [u8], body: &'a [u8]) -> Result<Self, TableError> {
+        let malformed = |field| TableError::Malformed { field };
+        let number = |at| size_at(body, at).ok_or(malformed("header"));
+        let form = match bytes[10] {
+            1 => Form::Hermite,
+            2 => Form::Chebyshev,
+            _ => return Err(malformed("form")),
+        };
+        let [precision, axes, outputs] = [11, 12, 13].map(|at: usize| usize::from(bytes[at]));
+        if precision != 4 && precision != 8 {
+            return Err(malformed("number of bytes of a coefficient"));
+        }
+        if !(1..=MOST_AXES).contains(&axes) || !(1..=MOST_OUTPUTS).contains(&outputs) {
+            return Err(malformed("number of axes or outputs"));
+        }
+        let [data, edge, text, text_length] = [number(20)?, number(24)?, number(28)?, number(48)?];
+        let flags = u32_at(body, 52).ok_or(malformed("header"))?;
+        let records = HEADER + axes * AXIS + outputs * OUTPUT;
+        let is_ordered = records <= edge && edge <= data && data <= text && text <= body.len();
+        if !is_ordered || body.len() - text != text_length || flags & !(ROOT | FITTED) != 0 {
+            return Err(malformed("header"));
+        }
+        let table = Self {
+            bytes,
+            form,
+            precision,
+            axes,
+            outputs,
+            flags,
+            edge: &body[edge..data],
+            data: &body[data..text],
+            text: str::from_utf8(&body[text..]).map_err(|_| malformed("text"))?,
+        };
+        table.check_sizes()?;
+        Ok(table)
+    }
+
+    /// Whether edge and coefficients have the sizes that the records say, and all numbers are finite.
+    fn check_sizes(&self) -> Result<(), TableError> {
+        let malformed = |field| TableError::Malformed { field };
+        let product = |count: usize, by: usize| count.checked_mul(by).ok_or(malformed("number of nodes"));
+        let (nodes, each) = match self.form {
+            Form::Hermite => (2..=MOST_NODES, 2),
+            Form::Chebyshev => (1..=MOST_ORDERS, 1),
+        };
+        let mut count = self.outputs;
+        let mut edge = usize::from(self.is_fitted());
+        for i in 0..self.axes {
+            let axis = axis_at(self.bytes, HEADER + i * AXIS)?;
+            if !nodes.contains(&axis.nodes) {
+                return Err(malformed("number of nodes"));
+            }
+            count = product(count, axis.nodes * each)?;
+            let has_edge = i > 0 && self.is_fitted();
+            let edge_nodes = if has_edge { 2..=MOST_NODES } else { 0..=0 };
+            if !edge_nodes.contains(&axis.edge_nodes) {
+                return Err(malformed("number of nodes of the edge"));
+            }
+            if has_edge {
+                edge = product(edge, 2 * axis.edge_nodes)?;
+            }
+            if !(axis.scale > 0.0 && axis.scale.is_finite()) {
+                return Err(malformed("scale of an axis"));
+            }
+        }
+        for o in 0..self.outputs {
+            output_at(self.bytes, HEADER + self.axes * AXIS + o * OUTPUT)?;
+        }
+        if self.is_fitted() && self.axes == 1 {
+            return Err(malformed("fitted edge of a single axis"));
+        }
+        if product(count, self.precision)? != self.data.len() || product(edge, 8)? != self.edge.len() {
+            return Err(malformed("number of coefficients"));
+        }
+        let double = |chunk: &[u8]| f64_at(chunk, 0).is_some_and(f64::is_finite);
+        let single = |chunk: &[u8]| u32_at(chunk, 0).is_some_and(|bits| f32::from_bits(bits).is_finite());
+        let is_finite = if self.precision == 8 {
+            self.data.chunks_exact(8).all(double)
+        } else {
+            self.data.chunks_exact(4).all(single)
+        };
+        if is_finite && self.edge.chunks_exact(8).all(double) {
+            Ok(())
+        } else {
+            Err(malformed("coefficient (not finite)"))
+        }
+    }
+
+    /// Number of axes.
+    #[must_use]
+    pub const fn axes(&self) -> usize {
+        self.axes
+    }
+
+    /// Number of outputs.
+    #[must_use]
+    pub const fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// An axis; `None` beyond the last one.
+    #[must_use]
+    pub fn axis(&self, i: usize) -> Option<Axis<'a>> {
+        if i < self.axes { axis_at(self.bytes, HEADER + i * AXIS).ok() } else { None }
+    }
+
+    /// An output; `None` beyond the last one.
+    #[must_use]
+    pub fn output(&self, o: usize) -> Option<Output<'a>> {
+        let at = HEADER + self.axes * AXIS + o * OUTPUT;
+        if o < self.outputs { output_at(self.bytes, at).ok() } else { None }
+    }
+
+    /// How the outputs are stored.
+    #[must_use]
+    pub const fn form(&self) -> Form {
+        self.form
+    }
+
+    /// Bytes of a coefficient: 4 or 8.
+    #[must_use]
+    pub const fn precision(&self) -> usize {
+        self.precision
+    }
+
+    /// Whether the coordinate of axis 0 is the root of the distance from its lower end.
+    #[must_use]
+    pub const fn is_root(&self) -> bool {
+        self.flags & ROOT != 0
+    }
+
+    /// Whether the upper end of axis 0 depends on the other axes.
+    #[must_use]
+    pub const fn is_fitted(&self) -> bool {
+        self.flags & FITTED != 0
+    }
+
+    /// Number of points at which the errors were measured, and the seed they were drawn with.
+    #[must_use]
+    pub fn checks(&self) -> [u64; 2] {
+        [32, 40].map(|at| u64_at(self.bytes, at).unwrap_or(0))
+    }
+
+    /// Largest error of the fitted upper end of axis 0, in its unit; 0 without one.
+    #[must_use]
+    pub fn edge_error(&self) -> f64 {
+        f64_at(self.bytes, 56).unwrap_or(0.0)
+    }
+
+    /// Where the table comes from: JSON, as `bulge-sweep` writes it.
+    #[must_use]
+    pub const fn text(&self) -> &'a str {
+        self.text
+    }
+
+    /// The whole table.
+    #[must_use]
+    pub const fn bytes(&self) -> &'a [u8] {
+        self.bytes
+    }
+
+    /// The edge's and the outputs' coefficients, as stored.
+    #[must_use]
+    pub const fn coefficients(&self) -> [&'a [u8]; 2] {
+        [self.edge, self.data]
+    }
+
+    /// A lookup of all outputs.
+    ///
+    /// # Errors
+    /// [`TableError::Shape`] if the table has another number of axes or outputs.
+    pub fn lookup<const A: usize, const O: usize>(&self) -> Result<Lookup<'a, A, O>, TableError> {
+        if (A, O) != (self.axes, self.outputs) {
+            return Err(TableError::Shape { axes: self.axes, outputs: self.outputs });
+        }
+        let mut lookup = Lookup {
+            form: self.form,
+            is_single: self.precision == 4,
+            is_root: self.is_root(),
+            is_fitted: self.is_fitted(),
+            axes: [Fixed::default(); A],
+            nodes: [0; A],
+            edge_nodes: [0; A],
+            edge: self.edge,
+            data: self.data,
+            is_singular: [false; O],
+            any_singular: false,
+            vanishes: [false; O],
+        };
+        for i in 0..A {
+            let axis = axis_at(self.bytes, HEADER + i * AXIS)?;
+            lookup.axes[i] = Fixed { low: axis.low, high: axis.high, pole: axis.pole, scale: axis.scale };
+            (lookup.nodes[i], lookup.edge_nodes[i]) = (axis.nodes, axis.edge_nodes);
+        }
+        for o in 0..O {
+            let output = output_at(self.bytes, HEADER + A * AXIS + o * OUTPUT)?;
+            (lookup.is_singular[o], lookup.vanishes[o]) = (output.is_singular, output.vanishes);
+            lookup.any_singular |= output.is_singular;
+        }
+        Ok(lookup)
+    }
+
+    /// One output at a point with its gradient in `gradient`, for callers that learn the shape of the table at run time; slower than a
+    /// [`Lookup`]. `None` outside the domain, or where the numbers of coordinates don't fit.
+    #[must_use]
+    pub fn sample(&self, output: usize, point: &[f64], gradient: &mut [f64]) -> Option<f64> {
+        match self.axes {
+            1 => self.sample_of::<1>(output, point, gradient),
+            2 => self.sample_of::<2>(output, point, gradient),
+            3 => self.sample_of::<3>(output, point, gradient),
+            _ => self.sample_of::<4>(output, point, gradient),
+        }
+    }
+
+    fn sample_of<const A: usize>(&self, output: usize, point: &[f64], gradient: &mut [f64]) -> Option<f64> {
+        fn one<const A: usize, const O: usize>(
+            table: &Table<'_>,
+            output: usize,
+            point: [f64; A],
+            gradient: &mut [f64; A],
+        ) -> Option<f64> {
+            let found = *table.lookup::<A, O>().ok()?.at(point)?.get(output)?;
+            *gradient = found.gradient;
+            Some(found.value)
+        }
+        let point: [f64; A] = *point.first_chunk().filter(|_| point.len() == A)?;
+        let gradient = gradient.first_chunk_mut::<A>()?;
+        match self.outputs {
+            1 => one::<A, 1>(self, output, point, gradient),
+            2 => one::<A, 2>(self, output, point, gradient),
+            3 => one::<A, 3>(self, output, point, gradient),
+            4 => one::<A, 4>(self, output, point, gradient),
+            5 => one::<A, 5>(self, output, point, gradient),
+            6 => one::<A, 6>(self, output, point, gradient),
+            7 => one::<A, 7>(self, output, point, gradient),
+            _ => one::<A, 8>(self, output, point, gradient),
+        }
+    }
+
+    /// The upper end of axis 0 at the other axes' values (that of axis 0 in `point` is ignored); `None` outside, or where the number of
+    /// coordinates doesn't fit.
+    #[must_use]
+    pub fn upper_end(&self, point: &[f64]) -> Option<f64> {
+        fn of<const A: usize>(table: &Table<'_>, point: &[f64]) -> Option<f64> {
+            let point: [f64; A] = *point.first_chunk().filter(|_| point.len() == A)?;
+            match table.outputs {
+                1 => table.lookup::<A, 1>().ok()?.upper_end(point),
+                2 => table.lookup::<A, 2>().ok()?.upper_end(point),
+                3 => table.lookup::<A, 3>().ok()?.upper_end(point),
+                4 => table.lookup::<A, 4>().ok()?.upper_end(point),
+                5 => table.lookup::<A, 5>().ok()?.upper_end(point),
+                6 => table.lookup::<A, 6>().ok()?.upper_end(point),
+                7 => table.lookup::<A, 7>().ok()?.upper_end(point),
+                _ => table.lookup::<A, 8>().ok()?.upper_end(point),
+            }
+        }
+        match self.axes {
+            1 => of::<1>(self, point),
+            2 => of::<2>(self, point),
+            3 => of::<3>(self, point),
+            _ => of::<4>(self, point),
+        }
+    }
+}
+
+fn size_at(bytes: &[u8], at: usize) -> Option<usize> {
+    u32_at(bytes, at).and_then(|n| usize::try_from(n).ok())
+}
