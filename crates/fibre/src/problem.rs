@@ -101,6 +101,12 @@ impl Problem {
         &self.muscle
     }
 
+    /// The gauge pressure.
+    #[must_use]
+    pub fn pressure(&self) -> Pressure {
+        Pressure::pa(self.pressure)
+    }
+
     /// Value of a variable in SI; 0 for a parameter that the muscle doesn't have.
     pub(crate) fn value(&self, variable: Variable) -> f64 {
         match variable {

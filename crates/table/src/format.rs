@@ -13,7 +13,7 @@ pub const HEADER: usize = 64;
 /// Bytes of an axis.
 pub const AXIS: usize = 96;
 /// Bytes of an output.
-pub const OUTPUT: usize = 112;
+pub const OUTPUT: usize = 104;
 /// Bytes of a name.
 pub const NAME: usize = 32;
 /// Bytes of a unit.

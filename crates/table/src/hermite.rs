@@ -161,15 +161,18 @@ impl Spline<'_, 2> {
     }
 }
 
-impl Spline<'_, 1> {
-    /// Value and derivative per cell of one number on one axis, in double precision: what an edge is for two axes.
-    #[inline]
-    pub(crate) fn on_line(&self, cell: usize, basis: &Basis) -> Option<[f64; 2]> {
-        let both: &[u8; 32] = self.data.get(16 * cell..)?.first_chunk()?;
-        let number = |i: usize| Double::read(&both[8 * i..]);
+/// Two numbers along the axis 1 of two, in double precision: what an edge is there.
+#[inline]
+pub(crate) fn on_line<const A: usize>(data: &[u8], cell: usize, basis: &Basis) -> Option<Graded<A, 2>> {
+    let both: &[u8; 64] = data.get(32 * cell..)?.first_chunk()?;
+    let mut found = Graded::ZERO;
+    for o in 0..2 {
+        let number = |i: usize| Double::read(&both[16 * i + 8 * o..]);
         let knots = [number(0), number(1), number(2), number(3)];
-        Some([dot(basis.value, knots), dot(basis.slope, knots)])
+        found.value[o] = dot(basis.value, knots);
+        found.by[1][o] = dot(basis.slope, knots);
     }
+    Some(found)
 }
 
 #[inline]

@@ -20,7 +20,7 @@
 //!
 //! ```text
 //! axis i >= 1:   v_i = q/Q,  q = s/(s + c),  s = x - low,  Q = q(high)          (c infinite: linear)
-//! axis 0:        u = q K(v), s = x - low or sqrt(x - low),  K = 1/q(edge)       edge: fitted upper end, such as the contraction limit
+//! axis 0:        the same, s = x - low or sqrt(x - low); with a fitted upper end (the contraction limit, say) Q(v) and c(v) of the others
 //! output:        y = g(u, v) (1 - u)^j / u^k                                    j = 1: vanishes at the edge, k = 1: singular at low
 //! ```
 //!
@@ -34,9 +34,9 @@
 //! | 16..32 | length of the file u32; place of the coefficients u32; of the edge u32; of the text u32 |
 //! | 32..48 | number of checks u64; seed of the checks u64 (0: none) |
 //! | 48..64 | length of the text u32; flags u32 (bit 0: root on axis 0, bit 1: fitted edge on axis 0); largest error of the edge f64 |
-//! | then A x 96 | name \[u8; 32\]; unit \[u8; 16\]; low, high, c, scale f64 (scale: 1/Q, on axis 0 without fitted edge K); nodes u32; nodes of the edge u32; 8 bytes 0 |
-//! | then O x 112 | name \[u8; 32\]; unit \[u8; 16\]; k u8; j u8; 6 bytes 0; largest and RMS error of the value, of the gradient, bound, scale: 6 f64 |
-//! | edge | Hermite nodes of K over axes 1.. as f64, if it is fitted |
+//! | then A x 96 | name \[u8; 32\]; unit \[u8; 16\]; low, high, c, scale = 1/Q f64 (c and scale of a fitted axis 0: those in the middle); nodes u32; nodes of the edge u32; 8 bytes 0 |
+//! | then O x 104 | name \[u8; 32\]; unit \[u8; 16\]; k u8; j u8; 6 bytes 0; largest and RMS error of the value, of the gradient, bound, scale: 6 f64 |
+//! | edge | Hermite nodes of 1/Q and c over axes 1.. as f64, if the edge is fitted |
 //! | coefficients | see below |
 //! | text | UTF-8: where the table comes from |
 //! | last 8 | CRC-64/XZ of all bytes before |

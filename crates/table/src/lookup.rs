@@ -3,7 +3,7 @@
 use crate::chebyshev::Polynomial;
 use crate::coordinate::{Fixed, cell, rooted, stretched};
 use crate::format::Form;
-use crate::hermite::{Basis, Double, Graded, Number, Single, Spline};
+use crate::hermite::{Basis, Double, Graded, Number, Single, Spline, on_line};
 
 /// An output at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,11 +65,10 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         if !self.is_fitted {
             return Some(self.axes[0].high);
         }
-        let scale = self.edge(&place)?[0];
+        let edge = self.edge(&place)?;
         // q K = 1 with q = s/(s + c).
-        let (pole, low) = (self.axes[0].pole, self.axes[0].low);
-        let s = if pole == f64::INFINITY { 1.0 / scale } else { pole / (scale - 1.0) };
-        Some(low + if self.is_root { s * s } else { s })
+        let s = edge.value[1] / (edge.value[0] - 1.0);
+        Some(self.axes[0].low + if self.is_root { s * s } else { s })
     }
 
     #[inline]
@@ -86,50 +85,48 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
             return None;
         }
         let [s, s_by] = rooted(distance, self.is_root);
-        let [q, q_by] = stretched(s, first.pole);
-        let scale = if self.is_fitted {
+        let (u, by_s);
+        if self.is_fitted {
             let edge = self.edge(&place)?;
+            let [scale, pole] = edge.value;
+            let below = 1.0 / (s + pole);
+            let q = s * below;
             for i in 1..A {
-                place.shift[i] = q * edge[i];
+                place.shift[i] = q * (edge.by[i][0] - scale * below * edge.by[i][1]);
             }
-            edge[0]
+            (u, by_s) = (q * scale, scale * pole * below * below);
         } else {
-            first.scale
-        };
-        let u = q * scale;
+            let [q, by] = stretched(s, first.pole);
+            (u, by_s) = (q * first.scale, by * first.scale);
+        }
         if u > 1.0 + 4.0 * f64::EPSILON || u.is_nan() || (self.any_singular && u <= 0.0) {
             return None;
         }
         place.at[0] = u.min(1.0);
-        place.own[0] = scale * q_by * s_by;
+        place.own[0] = by_s * s_by;
         Some(place)
     }
 
-    /// K and its derivatives by v_1 ..; the place 0 holds K.
+    /// K and c with their derivatives by v_1 ..
     #[inline]
-    fn edge(&self, place: &Place<A>) -> Option<[f64; A]> {
-        let mut found = [0.0; A];
-        if A == 2 {
-            let (cell, t) = cell(place.at[1], self.edge_nodes[1]);
-            let line = Spline { data: self.edge, first: 0, nodes: [self.edge_nodes[1]] };
-            let [value, slope] = line.on_line(cell, &Basis::at(t))?;
-            found[0] = value;
-            found[1] = slope * (self.edge_nodes[1] - 1) as f64;
-            return Some(found);
-        }
+    fn edge(&self, place: &Place<A>) -> Option<Graded<A, 2>> {
         let mut cells = [0; A];
         let mut basis = [Basis::default(); A];
         for i in 1..A {
             let (cell, t) = cell(place.at[i], self.edge_nodes[i]);
             (cells[i], basis[i]) = (cell, Basis::at(t));
         }
-        let edge = Spline { data: self.edge, first: 1, nodes: self.edge_nodes };
-        let edge: Graded<A, 1> = edge.at::<Double, 1>(cells, &basis);
-        found[0] = edge.value[0];
-        for i in 1..A {
-            found[i] = edge.by[i][0] * (self.edge_nodes[i] - 1) as f64;
+        let mut edge = if A == 2 {
+            on_line(self.edge, cells[1], &basis[1])?
+        } else {
+            Spline { data: self.edge, first: 1, nodes: self.edge_nodes }.at::<Double, 2>(cells, &basis)
+        };
+        for (by, nodes) in edge.by.iter_mut().zip(self.edge_nodes).skip(1) {
+            for number in by {
+                *number *= (nodes - 1) as f64;
+            }
         }
-        Some(found)
+        Some(edge)
     }
 
     fn polynomial(&self) -> Polynomial<'_, A> {

@@ -111,7 +111,8 @@ impl<'a> Table<'a> {
             Form::Chebyshev => (1..=MOST_ORDERS, 1),
         };
         let mut count = self.outputs;
-        let mut edge = usize::from(self.is_fitted());
+        // K and c of a fitted edge.
+        let mut edge = if self.is_fitted() { 2 } else { 0 };
         for i in 0..self.axes {
             let axis = axis_at(self.bytes, HEADER + i * AXIS)?;
             if !nodes.contains(&axis.nodes) {

@@ -218,7 +218,7 @@ fn pressures(settings: &Settings<'_>) -> Result<Vec<f64>, FileError> {
     let refused =
         |value: Setting<'_>| settings.wrong_type("pressures", value, "a list of pressures with their units");
     let items = value.items().ok_or_else(|| refused(value))?;
-    let one = |item| {
+    let one = |item: Setting<'_>| {
         let text = item.number().ok_or_else(|| refused(item))?;
         let pressure = units::parse::<Pressure>(text);
         pressure.map(Quantity::si).map_err(|error| settings.unreadable("pressures", item, error))

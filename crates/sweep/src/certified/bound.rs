@@ -1,0 +1,109 @@
+//! A bound of a table's error by subdivision.
+//!
+//! Every cell is divided; at the middle of each part the error against the polynomial that stands for the solver is computed together with that of the
+//! neighbours at the part's faces. Between them a smooth error rises by at most an eighth of its second difference along each axis. To the largest
+//! of these the misfit of the polynomial at the solver is added. The bound is as sure as the error is smooth on a part of a cell: it is no proof.
+
+use bulge_table::Table;
+use rayon::prelude::*;
+
+use super::certificate::{FLOOR, golden};
+use super::domain::Domain;
+use super::field::NoValue;
+use super::polynomial::Polynomial;
+
+/// Most parts in all.
+const MOST_PARTS: usize = 24_000;
+/// Parts of a cell along an axis, at most.
+const PARTS: usize = 3;
+/// Points at which the polynomial is compared with the solver.
+const POINTS: u64 = 1000;
+
+/// Bound of the relative error of each output.
+pub(crate) fn bound(
+    domain: &Domain<'_>,
+    fit: &Polynomial,
+    table: &Table<'_>,
+    scales: &[f64],
+    nodes: &[usize],
+) -> Result<Vec<f64>, NoValue> {
+    let axes = nodes.len();
+    let mut parts: Vec<usize> = nodes.iter().map(|n| PARTS * (n - 1).max(1)).collect();
+    while parts.iter().product::<usize>() > MOST_PARTS {
+        for part in &mut parts {
+            *part = (*part * 9).div_ceil(10).max(2);
+        }
+        if parts.iter().all(|part| *part == 2) {
+            break;
+        }
+    }
+    let count: usize = parts.iter().product();
+    let outputs = scales.len();
+    let worst = (0..count)
+        .into_par_iter()
+        .map(|mut part| {
+            let mut middle = vec![0.0; axes];
+            for i in (0..axes).rev() {
+                middle[i] = ((part % parts[i]) as f64 + 0.5) / parts[i] as f64;
+                part /= parts[i];
+            }
+            let at = errors(domain, fit, table, scales, &middle)?;
+            let mut worst: Vec<f64> = at.iter().map(|error| error.abs()).collect();
+            for i in 0..axes {
+                let step = 0.5 / parts[i] as f64;
+                let beside = |by: f64| {
+                    let mut unit = middle.clone();
+                    unit[i] = (unit[i] + by).clamp(1e-6, 1.0 - 1e-6);
+                    errors(domain, fit, table, scales, &unit)
+                };
+                let (up, down) = (beside(step)?, beside(-step)?);
+                for o in 0..outputs {
+                    let rise = (up[o] - 2.0 * at[o] + down[o]).abs() / 8.0;
+                    worst[o] = worst[o].max(up[o].abs()).max(down[o].abs()) + rise;
+                }
+            }
+            Ok(worst)
+        })
+        .try_reduce(|| vec![0.0; outputs], |a, b| Ok(larger(&a, &b)))?;
+    let misfit = (0..POINTS)
+        .into_par_iter()
+        .map(|k| {
+            let unit = golden(k, axes);
+            let (mut exact, mut fitted) = (vec![0.0; outputs], vec![0.0; outputs]);
+            domain.reduced(&unit, &mut exact)?;
+            fit.at(&unit, &mut fitted, &mut vec![0.0; outputs * axes]);
+            let off = |o: usize| (exact[o] - fitted[o]).abs() / exact[o].abs().max(FLOOR * scales[o]);
+            Ok((0..outputs).map(off).collect())
+        })
+        .try_reduce(|| vec![0.0; outputs], |a, b| Ok(larger(&a, &b)))?;
+    Ok(worst.iter().zip(misfit).map(|(error, misfit)| error + misfit).collect())
+}
+
+fn larger(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a.max(*b)).collect()
+}
+
+/// Signed relative errors of a table against the polynomial.
+fn errors(
+    domain: &Domain<'_>,
+    fit: &Polynomial,
+    table: &Table<'_>,
+    scales: &[f64],
+    unit: &[f64],
+) -> Result<Vec<f64>, NoValue> {
+    let (axes, outputs) = (unit.len(), scales.len());
+    let point = domain.point(unit)?;
+    let (mut values, mut by) = (vec![0.0; outputs], vec![0.0; outputs * axes]);
+    fit.at(unit, &mut values, &mut by);
+    let mut gradient = vec![0.0; axes];
+    Ok((0..outputs)
+        .map(|o| {
+            let output = &domain.field.outputs()[o];
+            let over = if output.is_singular { 1.0 / unit[0] } else { 1.0 };
+            let factor = over * if output.vanishes { 1.0 - unit[0] } else { 1.0 };
+            let exact = values[o] * factor;
+            let found = table.sample(o, &point, &mut gradient).unwrap_or(exact);
+            (found - exact) / exact.abs().max(FLOOR * scales[o] * over)
+        })
+        .collect())
+}

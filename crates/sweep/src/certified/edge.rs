@@ -1,0 +1,160 @@
+//! The fitted upper end of axis 0: K = 1/q(edge), with the pole c, over the other axes as Hermite splines.
+
+use rayon::prelude::*;
+
+use super::certificate::golden;
+use super::coordinate::{Coordinate, Coordinates, hermite, point_of};
+use super::field::{Field, NoValue};
+use super::polynomial::Polynomial;
+
+/// Orders of the polynomial between solver and spline.
+const MOST_ORDERS: usize = 96;
+/// Points at which the spline is compared with the polynomial.
+const POINTS: u64 = 4000;
+/// Most nodes along an axis.
+const MOST_NODES: usize = 4096;
+/// The polynomial goes as far as the solver's root does.
+const WANTED: f64 = 1e-13;
+
+/// An edge, ready to be stored.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Edge {
+    /// Nodes on each axis; 0 on the first.
+    pub(crate) nodes: Vec<usize>,
+    pub(crate) numbers: Vec<f64>,
+    /// Largest relative error of K and c at the points compared.
+    pub(crate) error: f64,
+    /// Largest upper end at these points.
+    pub(crate) high: f64,
+    /// K and c as the solver says them, nearly.
+    fit: Polynomial,
+}
+
+impl Edge {
+    /// The edge of a field to a relative error of K below `wanted`, or as good as `most_bytes` allow.
+    pub(crate) fn fitted(
+        field: &dyn Field,
+        coordinates: &Coordinates,
+        wanted: f64,
+        most_bytes: usize,
+    ) -> Result<Self, NoValue> {
+        let others = &field.axes()[1..];
+        // The axes beyond the first have ends of their own.
+        let alone = Coordinates { axes: coordinates.axes[1..].to_vec(), tilt: Vec::new() };
+        let inverse = |unit: &[f64], values: &mut [f64]| {
+            let point = point_of(others, &alone, unit, &|_| Err(NoValue(String::new())))?;
+            let first = coordinates.first(unit);
+            values[0] = 1.0 / first.q(field.upper_end(&point)?);
+            values[1] = first.pole;
+            if values[0].is_finite() && values[0] > 0.0 {
+                Ok(())
+            } else {
+                Err(NoValue(format!(
+                    "at {point:?} axis `{}` has no room above its lower end",
+                    field.axes()[0].name
+                )))
+            }
+        };
+        let axes = others.len();
+        let fit = Polynomial::fitted(axes, 2, MOST_ORDERS, WANTED, &inverse)?;
+        let mut nodes = vec![9; axes];
+        loop {
+            let edge = Self::sampled(fit.clone(), &nodes, coordinates);
+            let larger: Vec<usize> = nodes.iter().map(|n| (n - 1) * 3 / 2 + 1).collect();
+            let bytes = 16 * larger.iter().map(|n| 2 * n).product::<usize>();
+            if edge.error <= wanted || bytes > most_bytes || larger[0] > MOST_NODES {
+                return Ok(edge);
+            }
+            nodes = larger;
+        }
+    }
+
+    fn sampled(fit: Polynomial, nodes: &[usize], coordinates: &Coordinates) -> Self {
+        let numbers = fit.hermite_nodes(nodes);
+        let exact = |unit: &[f64]| {
+            let (mut values, mut by) = ([0.0; 2], vec![0.0; 2 * nodes.len()]);
+            fit.at(unit, &mut values, &mut by);
+            values
+        };
+        let at = |k: u64| {
+            let unit = golden(k, nodes.len());
+            let exact = exact(&unit);
+            let off = |which: usize| (spline(&numbers, nodes, &unit, which) / exact[which] - 1.0).abs();
+            off(0).max(off(1))
+        };
+        let error = (0..POINTS).into_par_iter().map(at).reduce(|| 0.0, f64::max);
+        // The largest end, at points and in the corners.
+        let corners = (0..1_usize << nodes.len())
+            .map(|corner| (0..nodes.len()).map(|i| (corner >> i & 1) as f64).collect::<Vec<f64>>());
+        let high = (0..POINTS)
+            .map(|k| golden(k, nodes.len()))
+            .chain(corners)
+            .map(|unit| coordinates.first(&unit).of_q(1.0 / exact(&unit)[0]))
+            .fold(f64::NEG_INFINITY, f64::max);
+        Self { nodes: std::iter::once(0).chain(nodes.iter().copied()).collect(), numbers, error, high, fit }
+    }
+
+    /// The upper end of axis 0 as it is stored, at unit coordinates of the others.
+    pub(crate) fn stored(&self, coordinates: &Coordinates, unit: &[f64]) -> f64 {
+        let number = |which| spline(&self.numbers, &self.nodes[1..], unit, which);
+        let first = Coordinate { pole: number(1), ..coordinates.axes[0] };
+        first.of_q(1.0 / number(0))
+    }
+
+    /// The upper end of axis 0 at values of the others, to the accuracy of the polynomial.
+    pub(crate) fn upper_end(&self, coordinates: &Coordinates, highs: &[f64], others: &[f64]) -> f64 {
+        let unit = coordinates.units(highs, others);
+        let (mut values, mut by) = ([0.0; 2], vec![0.0; 2 * unit.len()]);
+        self.fit.at(&unit, &mut values, &mut by);
+        coordinates.first(&unit).of_q(1.0 / values[0])
+    }
+}
+
+/// One of the two numbers of a Hermite spline at unit coordinates: the reader's formula, axis by axis.
+fn spline(numbers: &[f64], nodes: &[usize], unit: &[f64], number: usize) -> f64 {
+    let axes = nodes.len();
+    let mut places = Vec::with_capacity(axes);
+    for (u, n) in unit.iter().zip(nodes) {
+        let along = u * (n - 1) as f64;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 0 and the nodes")]
+        let cell = (along as usize).min(n - 2);
+        places.push((cell, hermite(along - cell as f64)));
+    }
+    let mut sum = 0.0;
+    for choice in 0..4_usize.pow(u32::try_from(axes).unwrap_or(0)) {
+        let (mut node, mut kind, mut weight) = (0, 0, 1.0);
+        for (i, (cell, basis)) in places.iter().enumerate() {
+            let which = choice >> (2 * i) & 3;
+            node = node * nodes[i] + cell + which / 2;
+            kind = 2 * kind + which % 2;
+            weight *= basis[which];
+        }
+        sum += weight * numbers[2 * ((node << axes) + kind) + number];
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spline_of_a_cubic_is_the_cubic() {
+        // x^3 + x y^2 over 3 x 4 nodes, with exact derivatives per cell.
+        let (nodes, mut numbers) = ([3_usize, 4], Vec::new());
+        for i in 0..3_u8 {
+            for j in 0..4_u8 {
+                let (x, y) = (f64::from(i) / 2.0, f64::from(j) / 3.0);
+                let [hx, hy] = [0.5, 1.0 / 3.0];
+                let cubic =
+                    [x.powi(3) + x * y * y, 2.0 * x * y * hy, (3.0 * x * x + y * y) * hx, 2.0 * y * hx * hy];
+                numbers.extend(cubic.iter().flat_map(|number| [*number, -2.0 * number]));
+            }
+        }
+        for (x, y) in [(0.1, 0.9), (0.77, 0.31), (1.0, 1.0), (0.0, 0.5)] {
+            let exact: f64 = x * x * x + x * y * y;
+            assert!((spline(&numbers, &nodes, &[x, y], 0) - exact).abs() < 1e-14);
+            assert!((spline(&numbers, &nodes, &[x, y], 1) + 2.0 * exact).abs() < 1e-14);
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! Tensor products of Chebyshev polynomials of several outputs on the unit cube: fitted in Gauss points until the coefficients have fallen, then
+//! evaluated in place of the solver.
+
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+use super::field::NoValue;
+
+/// Orders of the first try.
+const FIRST_ORDERS: usize = 8;
+/// Coefficients at the end of each axis that must be small.
+const LAST: usize = 2;
+/// Two tries in a row that don't lessen the tail by this much have met the noise of the solver.
+const PROGRESS: f64 = 0.5;
+/// Most values of a fit.
+const MOST_VALUES: usize = 4_000_000;
+
+/// Polynomials of `outputs` outputs; the last axis varies fastest, then the outputs.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Polynomial {
+    pub(crate) orders: Vec<usize>,
+    pub(crate) outputs: usize,
+    pub(crate) coefficients: Vec<f64>,
+    /// What is left out along each axis, over the largest value, at most.
+    pub(crate) tails: Vec<f64>,
+}
+
+/// Chebyshev points of the first kind on \[0, 1\]: ends left out.
+pub(crate) fn gauss_points(count: usize) -> Vec<f64> {
+    let n = count as f64;
+    (0..count).map(|k| 0.5 - 0.5 * (PI * (k as f64 + 0.5) / n).cos()).collect()
+}
+
+/// The matrix that takes values in `count` Gauss points to the first `orders` coefficients, row by row.
+pub(crate) fn cosines(orders: usize, count: usize) -> Vec<f64> {
+    let n = count as f64;
+    (0..orders)
+        .flat_map(|i| {
+            (0..count).map(move |k| {
+                let factor = if i == 0 { 1.0 } else { 2.0 } / n;
+                // The points rise, their angles fall from pi.
+                factor * (i as f64 * PI * (1.0 - (k as f64 + 0.5) / n)).cos()
+            })
+        })
+        .collect()
+}
+
+/// Multiplies the axis `axis` of a tensor of the given shape by a matrix of `rows` rows; what follows the axes are `inner` numbers.
+pub(crate) fn along(
+    tensor: &[f64],
+    shape: &[usize],
+    axis: usize,
+    inner: usize,
+    matrix: &[f64],
+    rows: usize,
+) -> Vec<f64> {
+    let (before, length) = (shape[..axis].iter().product::<usize>(), shape[axis]);
+    let after = shape[axis + 1..].iter().product::<usize>() * inner;
+    let mut product = vec![0.0; before * rows * after];
+    for b in 0..before {
+        for row in 0..rows {
+            let into = &mut product[(b * rows + row) * after..][..after];
+            for k in 0..length {
+                let weight = matrix[row * length + k];
+                let from = &tensor[(b * length + k) * after..][..after];
+                for (sum, value) in into.iter_mut().zip(from) {
+                    *sum += weight * value;
+                }
+            }
+        }
+    }
+    product
+}
+
+/// T_i(2u - 1) and its derivative by u.
+pub(crate) fn basis(u: f64, orders: usize) -> [Vec<f64>; 2] {
+    let x = 2.0 * u - 1.0;
+    let (mut values, mut slopes) = (Vec::with_capacity(orders), Vec::with_capacity(orders));
+    let (mut before, mut now) = ([1.0, 0.0], [x, 2.0]);
+    for _ in 0..orders {
+        values.push(before[0]);
+        slopes.push(before[1]);
+        let next = [2.0 * x * now[0] - before[0], 2.0 * x * now[1] - before[1] + 4.0 * now[0]];
+        (before, now) = (now, next);
+    }
+    [values, slopes]
+}
+
+impl Polynomial {
+    /// Fits a function of unit coordinates until what is left out is below `wanted` of the largest value of each output, or no order helps
+    /// any more. Parallel; the same on any number of threads.
+    pub(crate) fn fitted(
+        axes: usize,
+        outputs: usize,
+        most_orders: usize,
+        wanted: f64,
+        function: &(dyn Fn(&[f64], &mut [f64]) -> Result<(), NoValue> + Sync),
+    ) -> Result<Self, NoValue> {
+        let mut orders = vec![FIRST_ORDERS.min(most_orders); axes];
+        let mut stalled = vec![0; axes];
+        let mut fit = Self::interpolated(&orders, outputs, function)?;
+        loop {
+            let mut next = orders.clone();
+            for i in 0..axes {
+                if fit.tails[i] > wanted && stalled[i] < 2 {
+                    next[i] = (orders[i] + (orders[i] / 2).max(2)).min(most_orders);
+                }
+            }
+            if next == orders || next.iter().product::<usize>() * outputs > MOST_VALUES {
+                return Ok(fit);
+            }
+            let finer = Self::interpolated(&next, outputs, function)?;
+            for i in 0..axes {
+                let grew = next[i] > orders[i];
+                stalled[i] = match (grew, finer.tails[i] > PROGRESS * fit.tails[i]) {
+                    (true, true) => stalled[i] + 1,
+                    (true, false) => 0,
+                    (false, _) => stalled[i],
+                };
+            }
+            (fit, orders) = (finer, next);
+        }
+    }
+
+    fn interpolated(
+        orders: &[usize],
+        outputs: usize,
+        function: &(dyn Fn(&[f64], &mut [f64]) -> Result<(), NoValue> + Sync),
+    ) -> Result<Self, NoValue> {
+        let points: Vec<Vec<f64>> = orders.iter().map(|n| gauss_points(*n)).collect();
+        let count: usize = orders.iter().product();
+        let mut tensor = vec![0.0; count * outputs];
+        tensor.par_chunks_mut(outputs).enumerate().try_for_each(|(mut index, values)| {
+            let mut unit = vec![0.0; orders.len()];
+            for i in (0..orders.len()).rev() {
+                unit[i] = points[i][index % orders[i]];
+                index /= orders[i];
+            }
+            function(&unit, values)
+        })?;
+        let mut sizes = vec![0.0_f64; outputs];
+        for values in tensor.chunks_exact(outputs) {
+            for (size, value) in sizes.iter_mut().zip(values) {
+                *size = size.max(value.abs());
+            }
+        }
+        for axis in 0..orders.len() {
+            let matrix = cosines(orders[axis], orders[axis]);
+            tensor = along(&tensor, orders, axis, outputs, &matrix, orders[axis]);
+        }
+        let mut fit = Self { orders: orders.to_vec(), outputs, coefficients: tensor, tails: Vec::new() };
+        fit.tails = (0..orders.len()).map(|axis| fit.tail(axis, &sizes)).collect();
+        Ok(fit)
+    }
+
+    /// Sum of the last coefficients along an axis, at the worst place across it: what is left out is about as large.
+    fn tail(&self, axis: usize, sizes: &[f64]) -> f64 {
+        let (length, outputs) = (self.orders[axis], self.outputs);
+        let across: usize = self.orders[axis + 1..].iter().product();
+        let mut worst = 0.0_f64;
+        for (o, size) in sizes.iter().enumerate() {
+            let mut sum = 0.0;
+            for (place, values) in self.coefficients.chunks_exact(outputs).enumerate() {
+                if place / across % length + LAST >= length {
+                    sum += values[o].abs();
+                }
+            }
+            worst = worst.max(sum / size.max(f64::MIN_POSITIVE));
+        }
+        worst
+    }
+
+    /// Values of all outputs and their derivatives by the coordinates at a point: `by[i * outputs + o]`.
+    pub(crate) fn at(&self, unit: &[f64], values: &mut [f64], by: &mut [f64]) {
+        let axes = self.orders.len();
+        let bases: Vec<[Vec<f64>; 2]> = unit.iter().zip(&self.orders).map(|(u, n)| basis(*u, *n)).collect();
+        // Contract the last axis first: one tensor for the values, and one for each derivative met so far.
+        let mut tensors: Vec<Vec<f64>> = Vec::new();
+        for axis in (0..axes).rev() {
+            let shape = &self.orders[..=axis];
+            let [value, slope] = &bases[axis];
+            let contracted = |tensor, by| along(tensor, shape, axis, self.outputs, by, 1);
+            let first = tensors.first().unwrap_or(&self.coefficients);
+            let mut next = vec![contracted(first, value), contracted(first, slope)];
+            next.extend(tensors.iter().skip(1).map(|tensor| contracted(tensor, value)));
+            tensors = next;
+        }
+        values.copy_from_slice(&tensors[0]);
+        for (into, tensor) in by.chunks_exact_mut(self.outputs).zip(&tensors[1..]) {
+            into.copy_from_slice(tensor);
+        }
+    }
+
+    /// The first orders along each axis.
+    pub(crate) fn truncated(&self, orders: &[usize]) -> Self {
+        let mut kept = Vec::with_capacity(orders.iter().product::<usize>() * self.outputs);
+        for (mut place, values) in self.coefficients.chunks_exact(self.outputs).enumerate() {
+            let mut inside = true;
+            for (all, kept) in self.orders.iter().zip(orders).rev() {
+                inside &= place % all < *kept;
+                place /= all;
+            }
+            if inside {
+                kept.extend_from_slice(values);
+            }
+        }
+        Self { orders: orders.to_vec(), outputs: self.outputs, coefficients: kept, tails: self.tails.clone() }
+    }
+
+    /// Values and mixed first derivatives, per cell, in the nodes of `nodes` equal points along each axis, in the layout of a Hermite table: for
+    /// each node, for each set of axes (the first axis is the highest bit), for each output.
+    pub(crate) fn hermite_nodes(&self, nodes: &[usize]) -> Vec<f64> {
+        let axes = self.orders.len();
+        let matrices: Vec<[Vec<f64>; 2]> = nodes
+            .iter()
+            .zip(&self.orders)
+            .map(|(count, orders)| {
+                let cells = (count - 1) as f64;
+                let rows = (0..*count).map(|k| basis(k as f64 / cells, *orders));
+                let (mut values, mut slopes) = (Vec::new(), Vec::new());
+                for [value, slope] in rows {
+                    values.extend(value);
+                    slopes.extend(slope.into_iter().map(|slope| slope / cells));
+                }
+                [values, slopes]
+            })
+            .collect();
+        let kinds = 1 << axes;
+        let count: usize = nodes.iter().product();
+        let mut all = vec![0.0; count * kinds * self.outputs];
+        for kind in 0..kinds {
+            let mut tensor = self.coefficients.clone();
+            let mut shape = self.orders.clone();
+            for axis in 0..axes {
+                let which = kind >> (axes - 1 - axis) & 1;
+                tensor = along(&tensor, &shape, axis, self.outputs, &matrices[axis][which], nodes[axis]);
+                shape[axis] = nodes[axis];
+            }
+            for (node, values) in tensor.chunks_exact(self.outputs).enumerate() {
+                let into = (node * kinds + kind) * self.outputs;
+                all[into..into + self.outputs].copy_from_slice(values);
+            }
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn waves(unit: &[f64], values: &mut [f64]) -> Result<(), NoValue> {
+        values[0] = (3.0 * unit[0] + unit[1] * unit[2]).sin();
+        values[1] = (unit[0] - 2.0 * unit[1]).exp() + unit[2];
+        Ok(())
+    }
+
+    #[test]
+    fn smooth_functions_are_met_with_their_derivatives() {
+        let fit = Polynomial::fitted(3, 2, 40, 1e-13, &waves).unwrap();
+        let (mut values, mut by) = ([0.0; 2], [0.0; 6]);
+        for unit in [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [0.3, 0.7, 0.1], [0.9, 0.2, 0.6]] {
+            fit.at(&unit, &mut values, &mut by);
+            let (wave, growth) = (3.0 * unit[0] + unit[1] * unit[2], (unit[0] - 2.0 * unit[1]).exp());
+            let exact =
+                [3.0 * wave.cos(), growth, unit[2] * wave.cos(), -2.0 * growth, unit[1] * wave.cos(), 1.0];
+            assert!((values[0] - wave.sin()).abs() < 1e-12 && (values[1] - growth - unit[2]).abs() < 1e-12);
+            for (found, exact) in by.iter().zip(exact) {
+                assert!((found - exact).abs() < 1e-10, "{unit:?}: {found} {exact}");
+            }
+        }
+        // A linear axis needs no more than what its tail is judged by.
+        assert!(fit.orders[2] < fit.orders[0] + 5);
+    }
+
+    #[test]
+    fn nodes_hold_values_and_mixed_derivatives_per_cell() {
+        let fit = Polynomial::fitted(3, 2, 40, 1e-13, &waves).unwrap();
+        let nodes = fit.hermite_nodes(&[3, 2, 5]);
+        assert_eq!(nodes.len(), 30 * 8 * 2);
+        // Node (1, 1, 3): u = (0.5, 1, 0.75).
+        let node = &nodes[((2 + 1) * 5 + 3) * 16..][..16];
+        let wave = 1.5 + 0.75_f64;
+        assert!((node[0] - wave.sin()).abs() < 1e-12);
+        // By the last axis, cells of 1/4: bit 0.
+        assert!((node[2] - wave.cos() / 4.0).abs() < 1e-11);
+        // By the first, cells of 1/2: bit 2; by first and last: bits 2 and 0.
+        assert!((node[8] - 3.0 * wave.cos() / 2.0).abs() < 1e-11);
+        assert!((node[10] - -3.0 * wave.sin() / 8.0).abs() < 1e-10);
+    }
+
+    #[test]
+    fn truncation_keeps_the_first_orders() {
+        let fit = Polynomial::fitted(3, 2, 40, 1e-13, &waves).unwrap();
+        let short = fit.truncated(&[2, 3, 1]);
+        assert_eq!(short.coefficients.len(), 12);
+        // Coefficient (1, 2, 0) of the output 1.
+        let (n, m) = (fit.orders[1], fit.orders[2]);
+        assert_eq!(short.coefficients[11].to_bits(), fit.coefficients[((n + 2) * m) * 2 + 1].to_bits());
+    }
+}

@@ -1,0 +1,383 @@
+//! The family of muscles that the axes of a plan span: the muscle at a point of the axes, and its outputs.
+
+use bulge_effects::{Catalogue, Known, known};
+use bulge_fibre::{Approach, FibreError, Given, Problem, Response, Variable};
+use bulge_model::{Extended, ExtendedError, ModelError};
+use bulge_muscles::{FileError, Muscle, MuscleError, Parameter, Pressure, Quantity as _};
+use std::f64::consts::TAU;
+
+use crate::output::Output;
+use crate::plan::{Plan, Quantity};
+
+/// Why a point has no equilibrium, or a plan no family.
+#[derive(Debug, thiserror::Error)]
+pub enum FamilyError {
+    /// No equilibrium.
+    #[error(transparent)]
+    Equilibrium(#[from] FibreError),
+    /// A value that the muscle can't have.
+    #[error(transparent)]
+    Muscle(#[from] MuscleError),
+    /// An effect that can't act.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// No equilibrium of the muscle with its effects.
+    #[error(transparent)]
+    Extended(#[from] ExtendedError),
+    /// An effect that the muscle file states in a wrong way.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// An elastic group for a muscle without a number of fibres.
+    #[error("the elastic group p sin(2 pi/n) R^2/EA needs a number of fibres n")]
+    NoFibreNumber,
+    /// A number of fibres that isn't whole.
+    #[error("the number of fibres is {found}: it must be a whole number")]
+    NotWhole {
+        /// The number.
+        found: f64,
+    },
+}
+
+/// A base muscle and what its axes vary.
+#[derive(Debug, Clone)]
+pub struct Family {
+    muscle: Muscle,
+    effects: Vec<Known>,
+    pressure: f64,
+    contraction: Option<f64>,
+    approach: Approach,
+    axes: Vec<Quantity>,
+}
+
+/// A muscle of a family at a pressure.
+#[derive(Debug, Clone)]
+pub struct Member {
+    problem: Problem,
+    /// Where effects add to the force of the equilibrium.
+    extended: Option<Extended>,
+    approach: Approach,
+    /// p l0^2 a and l0^3: what makes force and volume dimensionless.
+    scales: [f64; 2],
+}
+
+impl Family {
+    /// The family of a plan.
+    ///
+    /// # Errors
+    /// If the muscle file states an effect that doesn't exist or has other numbers.
+    pub fn new(plan: &Plan) -> Result<Self, FamilyError> {
+        Ok(Self {
+            effects: known(&plan.muscle, &Catalogue::builtin())?,
+            muscle: plan.muscle.clone(),
+            pressure: plan.pressure_pa,
+            contraction: plan.contraction,
+            approach: plan.approach,
+            axes: plan.axes.iter().map(|axis| axis.quantity.clone()).collect(),
+        })
+    }
+
+    /// Place of the contraction among the axes.
+    #[must_use]
+    pub fn contraction_axis(&self) -> Option<usize> {
+        self.axes.iter().position(|axis| *axis == Quantity::Contraction)
+    }
+
+    /// The contraction at a point of the axes.
+    #[must_use]
+    pub fn contraction(&self, point: &[f64]) -> f64 {
+        self.contraction_axis().and_then(|axis| point.get(axis).copied()).or(self.contraction).unwrap_or(0.0)
+    }
+
+    /// The muscle at a point of the axes, in SI; the contraction takes no part.
+    ///
+    /// # Errors
+    /// If a value is out of range.
+    pub fn member(&self, point: &[f64]) -> Result<Member, FamilyError> {
+        let (muscle, effects, pressure) = self.varied(point)?;
+        let (extended, muscle) = if effects.is_empty() {
+            (None, muscle)
+        } else {
+            let extended = Extended::new(&muscle, &effects)?;
+            let muscle = extended.muscle().clone();
+            (Some(extended), muscle)
+        };
+        let problem = Problem::new(&muscle, Pressure::pa(pressure))?;
+        let length = muscle.length().si();
+        let factor = match muscle.fibres().filter(|_| muscle.is_pleated()) {
+            Some(n) => f64::from(n) / TAU * (TAU / f64::from(n)).sin(),
+            None => 1.0,
+        };
+        Ok(Member {
+            problem,
+            extended,
+            approach: self.approach,
+            scales: [pressure * length * length * factor, length.powi(3)],
+        })
+    }
+
+    /// The muscle with the axes' values, its effects with theirs, and the pressure.
+    fn varied(&self, point: &[f64]) -> Result<(Muscle, Vec<Known>, f64), FamilyError> {
+        let (mut muscle, mut effects, mut pressure) =
+            (self.muscle.clone(), self.effects.clone(), self.pressure);
+        let (mut slenderness, mut group) = (None, None);
+        for (axis, value) in self.axes.iter().zip(point) {
+            match axis {
+                Quantity::Contraction => {}
+                Quantity::Pressure => pressure = *value,
+                Quantity::Slenderness => slenderness = Some(*value),
+                Quantity::ElasticGroup => group = Some(*value),
+                Quantity::Parameter(parameter) => {
+                    if *parameter == Parameter::Fibres && value.fract() != 0.0 {
+                        return Err(FamilyError::NotWhole { found: *value });
+                    }
+                    muscle = muscle.with(*parameter, *value)?;
+                }
+                Quantity::Effect { effect, key } => {
+                    for (known, numbers) in &mut effects {
+                        if known.card().name != effect {
+                            continue;
+                        }
+                        let cards = known.parameters();
+                        for (number, _) in numbers.iter_mut().zip(&cards).filter(|(_, card)| card.key == key)
+                        {
+                            *number = *value;
+                        }
+                    }
+                }
+            }
+        }
+        if let Some(slenderness) = slenderness {
+            muscle = muscle.with(Parameter::Radius, muscle.length().si() / slenderness)?;
+        }
+        if let Some(group) = group {
+            let n = f64::from(muscle.fibres().ok_or(FamilyError::NoFibreNumber)?);
+            let radius = muscle.end_radius().si();
+            let stiffness = pressure * (TAU / n).sin() * radius * radius / group;
+            muscle = muscle.with(Parameter::FibreStiffness, stiffness)?;
+        }
+        Ok((muscle, effects, pressure))
+    }
+
+    /// The numbers that the equilibrium depends on, at a point of the axes: pressure, then the parameters; 0 for those that the muscle
+    /// doesn't have.
+    fn variables(&self, point: &[f64]) -> Result<Vec<f64>, FamilyError> {
+        let (muscle, _, pressure) = self.varied(point)?;
+        let value = |variable| match variable {
+            Variable::Pressure => pressure,
+            Variable::Parameter(parameter) => muscle.get(parameter).unwrap_or(0.0),
+        };
+        Ok(Variable::all().map(value).collect())
+    }
+
+    /// Derivatives of outputs by the axes at a point: `gradients[o * axes + i]`. Exact for force and volume (dimensionless or not), by
+    /// differences of the outputs for the others and where effects add to the force.
+    ///
+    /// # Errors
+    /// If there is no equilibrium, or none beside it.
+    pub fn gradients(
+        &self,
+        point: &[f64],
+        outputs: &[Output],
+        gradients: &mut [f64],
+    ) -> Result<(), FamilyError> {
+        let is_exact = |output: &Output| {
+            matches!(output, Output::ForceF | Output::VolumeV | Output::Force | Output::Volume)
+        };
+        if !self.effects.is_empty() || !outputs.iter().all(is_exact) {
+            return self.differences(point, outputs, gradients);
+        }
+        let count = self.axes.len();
+        let member = self.member(point)?;
+        let contraction = self.contraction(point);
+        let exact = member.problem.gradient(contraction, self.approach)?;
+        let response = member.problem.follow(contraction, self.approach)?;
+        for axis in 0..count {
+            let mut along = [0.0; 2];
+            let mut by_scale = [0.0; 2];
+            if self.axes[axis] == Quantity::Contraction {
+                along = exact.by_contraction;
+            } else {
+                let step = 1e-5 * point[axis].abs().max(f64::MIN_POSITIVE);
+                let moved = |by: f64| {
+                    let mut moved = point.to_vec();
+                    moved[axis] += by;
+                    moved
+                };
+                let [up, down] = [self.variables(&moved(step))?, self.variables(&moved(-step))?];
+                for (variable, by) in &exact.by_variable {
+                    let Some(place) = Variable::all().position(|other| other == *variable) else { continue };
+                    let rate = (up[place] - down[place]) / (2.0 * step);
+                    along[0] += by[0] * rate;
+                    along[1] += by[1] * rate;
+                }
+                let scales = [self.member(&moved(step))?.scales, self.member(&moved(-step))?.scales];
+                by_scale = [0, 1].map(|i| (scales[0][i] - scales[1][i]) / (2.0 * step));
+            }
+            for (o, output) in outputs.iter().enumerate() {
+                let quotient = |i: usize, value: f64| {
+                    (along[i] - value * by_scale[i] / member.scales[i]) / member.scales[i]
+                };
+                gradients[o * count + axis] = match output {
+                    Output::ForceF => quotient(0, response.force_n),
+                    Output::VolumeV => quotient(1, response.volume_m3),
+                    Output::Force => along[0],
+                    _ => along[1],
+                };
+            }
+        }
+        Ok(())
+    }
+
+    /// The same by central differences of fourth order.
+    fn differences(
+        &self,
+        point: &[f64],
+        outputs: &[Output],
+        gradients: &mut [f64],
+    ) -> Result<(), FamilyError> {
+        let count = self.axes.len();
+        let mut around = vec![0.0; outputs.len()];
+        gradients.fill(0.0);
+        for axis in 0..count {
+            let step = 1e-4 * point[axis].abs().max(1e-6);
+            for (times, weight) in [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)] {
+                let mut moved = point.to_vec();
+                moved[axis] += times * step;
+                let member = self.member(&moved)?;
+                member.outputs(self.contraction(&moved), outputs, &mut around)?;
+                for (o, value) in around.iter().enumerate() {
+                    gradients[o * count + axis] += weight * value / (12.0 * step);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Member {
+    /// The problem that is solved.
+    #[must_use]
+    pub const fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    /// The contraction at which the force vanishes.
+    ///
+    /// # Errors
+    /// If it isn't found.
+    pub fn contraction_limit(&self) -> Result<f64, FamilyError> {
+        match &self.extended {
+            Some(extended) => Ok(extended.contraction_limit(self.problem.pressure(), self.approach)?),
+            None => Ok(self.problem.contraction_limit(self.approach)?),
+        }
+    }
+
+    /// Outputs at a contraction, followed beyond the limit.
+    ///
+    /// # Errors
+    /// If there is no equilibrium.
+    pub fn outputs(
+        &self,
+        contraction: f64,
+        outputs: &[Output],
+        values: &mut [f64],
+    ) -> Result<(), FamilyError> {
+        let response = self.response(contraction)?;
+        self.outputs_of(&response, outputs, values)
+    }
+
+    /// Outputs at a contraction at which the muscle pulls.
+    ///
+    /// # Errors
+    /// If there is no equilibrium, or the muscle would have to push: the limit is named.
+    pub fn pulling(
+        &self,
+        contraction: f64,
+        limit: Option<f64>,
+        outputs: &[Output],
+        values: &mut [f64],
+    ) -> Result<(), FamilyError> {
+        if let Some(limit) = limit
+            && contraction > limit
+        {
+            return Err(FibreError::BeyondLimit { contraction, limit }.into());
+        }
+        let response = self.response(contraction)?;
+        let scale = self.scales[0].abs();
+        if response.force_n < -1e-9 * scale {
+            let limit = self.contraction_limit()?;
+            return Err(if contraction > limit {
+                FibreError::BeyondLimit { contraction, limit }.into()
+            } else {
+                FibreError::WouldPush { contraction, force_n: response.force_n }.into()
+            });
+        }
+        self.outputs_of(&response, outputs, values)
+    }
+
+    fn response(&self, contraction: f64) -> Result<Response, FamilyError> {
+        let Some(extended) = &self.extended else {
+            return Ok(self.problem.follow(contraction, self.approach)?);
+        };
+        // The contraction is that from the stated length, which effects may have changed.
+        let own = match extended.given(Given::Contraction(contraction)) {
+            Given::Length(length) => 1.0 - length / self.problem.muscle().length().si(),
+            _ => contraction,
+        };
+        Ok(extended.complete(&self.problem.follow(own, self.approach)?)?)
+    }
+
+    fn outputs_of(
+        &self,
+        response: &Response,
+        outputs: &[Output],
+        values: &mut [f64],
+    ) -> Result<(), FamilyError> {
+        let [force_scale, volume_scale] = self.scales;
+        let needs = |output: &Output| matches!(output, Output::ForceBy(_) | Output::VolumeBy(_));
+        let gradient = if outputs.iter().any(needs) {
+            Some(self.problem.gradient(response.contraction, self.approach)?)
+        } else {
+            None
+        };
+        let by = |variable: Variable, which: usize| {
+            let of = gradient.as_ref().and_then(|g| g.by_variable.iter().find(|(v, _)| *v == variable));
+            of.map(|(_, by)| by[which]).ok_or(FibreError::NoVariable { name: name_of(variable) })
+        };
+        let length = response.length_m / (1.0 - response.contraction);
+        let radius = self.problem.muscle().end_radius().si();
+        // Circular volume over that of the sections that carry the pressure.
+        let circular = response.volume_m3 / response.volume_polygon_m3;
+        for (value, output) in values.iter_mut().zip(outputs) {
+            *value = match *output {
+                Output::ForceF => response.force_n / force_scale,
+                Output::VolumeV => response.volume_m3 / volume_scale,
+                Output::Force => response.force_n,
+                Output::Volume => response.volume_m3,
+                Output::VolumePolygon => response.volume_polygon_m3,
+                Output::MaxRadius => response.max_radius_m,
+                Output::RadiusRatio => response.max_radius_m / radius,
+                Output::FibreTension => response.fibre_tension_n,
+                Output::FibreStrain => response.fibre_strain,
+                Output::Stiffness => response.stiffness_n_per_m,
+                Output::StiffnessIsothermal => response.stiffness_isothermal_n_per_m,
+                Output::StiffnessAdiabatic => response.stiffness_adiabatic_n_per_m,
+                Output::EndSlope => response.end_slope_rad,
+                Output::ForceFByContraction => -response.stiffness_n_per_m * length / force_scale,
+                Output::ForceByContraction => -response.stiffness_n_per_m * length,
+                Output::VolumeVByContraction => -response.volume_slope_m2 * circular * length / volume_scale,
+                Output::VolumeByContraction => -response.volume_slope_m2 * circular * length,
+                Output::ForceBy(variable) => by(variable, 0)?,
+                Output::VolumeBy(variable) => by(variable, 1)?,
+            };
+        }
+        Ok(())
+    }
+}
+
+fn name_of(variable: Variable) -> &'static str {
+    match variable {
+        Variable::Pressure => "pressure",
+        Variable::Parameter(parameter) => parameter.name(),
+    }
+}
