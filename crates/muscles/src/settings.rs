@@ -443,7 +443,7 @@ mod tests {
         assert_eq!(steps.len(), 2);
         assert_eq!(steps[0].quantity("time", Dimension::TIME).unwrap(), Some(1.0));
         let oven = top.table("oven", "`[oven]`", KEYS).unwrap().unwrap();
-        assert_eq!(oven.size::<Length>("depth").unwrap(), 1.0);
+        assert_eq!(oven.size::<Length>("depth"), Ok(1.0));
         assert!(top.names().iter().zip(KEYS).all(|((name, _), (key, _))| name == key));
         let oven = top.get("oven").unwrap();
         assert_eq!((oven.type_name(), oven.entries().unwrap()[0].0), ("a table", "depth"));

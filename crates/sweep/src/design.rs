@@ -409,6 +409,7 @@ mod tests {
                 assert!(product.abs() < 4.0 / n.sqrt(), "{product}");
                 let inside = found.iter().map(|point| point[2].fract()).sum::<f64>() / n;
                 assert!((inside - 0.5).abs() < 4.0 * 0.289 / n.sqrt(), "{inside}");
+                assert!(found.iter().any(|p| p[2].fract() < 0.1) && found.iter().any(|p| p[2].fract() > 0.9));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The family of muscles that the axes of a plan span: the muscle at a point of the axes, and its outputs.
 
 use bulge_effects::{Catalogue, Known, known};
-use bulge_fibre::{Approach, FibreError, Given, Problem, Response, Variable};
+use bulge_fibre::{Approach, FibreError, Given, Gradient, Problem, Response, Variable};
 use bulge_model::{Extended, ExtendedError, ModelError};
 use bulge_muscles::{FileError, Muscle, MuscleError, Parameter, Pressure, Quantity as _};
 use std::f64::consts::TAU;
@@ -158,18 +158,7 @@ impl Family {
         Ok((muscle, effects, pressure))
     }
 
-    /// The numbers that the equilibrium depends on, at a point of the axes: pressure, then the parameters; 0 for those that the muscle
-    /// doesn't have.
-    fn variables(&self, point: &[f64]) -> Result<Vec<f64>, FamilyError> {
-        let (muscle, _, pressure) = self.varied(point)?;
-        let value = |variable| match variable {
-            Variable::Pressure => pressure,
-            Variable::Parameter(parameter) => muscle.get(parameter).unwrap_or(0.0),
-        };
-        Ok(Variable::all().map(value).collect())
-    }
-
-    /// Derivatives of outputs by the axes at a point: `gradients[o * axes + i]`. Exact for force and volume (dimensionless or not), by
+    /// Outputs and their derivatives by the axes at a point: `gradients[o * axes + i]`. Exact for force and volume (dimensionless or not), by
     /// differences of the outputs for the others and where effects add to the force.
     ///
     /// # Errors
@@ -178,45 +167,29 @@ impl Family {
         &self,
         point: &[f64],
         outputs: &[Output],
+        values: &mut [f64],
         gradients: &mut [f64],
     ) -> Result<(), FamilyError> {
         let is_exact = |output: &Output| {
             matches!(output, Output::ForceF | Output::VolumeV | Output::Force | Output::Volume)
         };
+        let member = self.member(point)?;
+        let contraction = self.contraction(point);
+        let response = member.response(contraction)?;
+        member.outputs_of(&response, outputs, values)?;
         if !self.effects.is_empty() || !outputs.iter().all(is_exact) {
             return self.differences(point, outputs, gradients);
         }
         let count = self.axes.len();
-        let member = self.member(point)?;
-        let contraction = self.contraction(point);
         let exact = member.problem.gradient(contraction, self.approach)?;
-        let response = member.problem.follow(contraction, self.approach)?;
         for axis in 0..count {
-            let mut along = [0.0; 2];
-            let mut by_scale = [0.0; 2];
-            if self.axes[axis] == Quantity::Contraction {
-                along = exact.by_contraction;
+            let (along, growth) = if self.axes[axis] == Quantity::Contraction {
+                (exact.by_contraction, [0.0; 2])
             } else {
-                let step = 1e-5 * point[axis].abs().max(f64::MIN_POSITIVE);
-                let moved = |by: f64| {
-                    let mut moved = point.to_vec();
-                    moved[axis] += by;
-                    moved
-                };
-                let [up, down] = [self.variables(&moved(step))?, self.variables(&moved(-step))?];
-                for (variable, by) in &exact.by_variable {
-                    let Some(place) = Variable::all().position(|other| other == *variable) else { continue };
-                    let rate = (up[place] - down[place]) / (2.0 * step);
-                    along[0] += by[0] * rate;
-                    along[1] += by[1] * rate;
-                }
-                let scales = [self.member(&moved(step))?.scales, self.member(&moved(-step))?.scales];
-                by_scale = [0, 1].map(|i| (scales[0][i] - scales[1][i]) / (2.0 * step));
-            }
+                self.along(axis, point[axis], &member, &exact)
+            };
             for (o, output) in outputs.iter().enumerate() {
-                let quotient = |i: usize, value: f64| {
-                    (along[i] - value * by_scale[i] / member.scales[i]) / member.scales[i]
-                };
+                let quotient = |i: usize, value: f64| (along[i] - value * growth[i]) / member.scales[i];
                 gradients[o * count + axis] = match output {
                     Output::ForceF => quotient(0, response.force_n),
                     Output::VolumeV => quotient(1, response.volume_m3),
@@ -226,6 +199,58 @@ impl Family {
             }
         }
         Ok(())
+    }
+
+    /// Derivatives of force and volume by an axis other than the contraction, and those of the logarithms of their scales.
+    fn along(&self, axis: usize, value: f64, member: &Member, exact: &Gradient) -> ([f64; 2], [f64; 2]) {
+        let muscle = member.problem.muscle();
+        let has = |quantity: &Quantity| self.axes.contains(quantity);
+        let (length, radius) = (muscle.length().si(), muscle.end_radius().si());
+        // d ln(n sin(2 pi/n))/dn and d ln(sin(2 pi/n))/dn.
+        let n = muscle.fibres().map_or(f64::INFINITY, f64::from);
+        let of_sine = -TAU / (n * n) / (TAU / n).tan();
+        let mut moved: Vec<(Variable, f64)> = Vec::with_capacity(3);
+        let mut growth = [0.0; 2];
+        match &self.axes[axis] {
+            Quantity::Contraction | Quantity::Effect { .. } | Quantity::ElasticGroup => {}
+            Quantity::Pressure => {
+                moved.push((Variable::Pressure, 1.0));
+                growth[0] = 1.0 / value;
+            }
+            Quantity::Slenderness => moved.push((Variable::Parameter(Parameter::Radius), -radius / value)),
+            Quantity::Parameter(parameter) => {
+                moved.push((Variable::Parameter(*parameter), 1.0));
+                match parameter {
+                    Parameter::Length => growth = [2.0 / value, 3.0 / value],
+                    Parameter::Fibres if muscle.is_pleated() => growth[0] = 1.0 / n + of_sine,
+                    _ => {}
+                }
+                if *parameter == Parameter::Length && has(&Quantity::Slenderness) {
+                    moved.push((Variable::Parameter(Parameter::Radius), radius / length));
+                }
+            }
+        }
+        if has(&Quantity::ElasticGroup) {
+            // EA = p sin(2 pi/n) R^2/group.
+            let one = |(variable, rate): &(Variable, f64)| match variable {
+                Variable::Pressure => rate / member.problem.pressure().si(),
+                Variable::Parameter(Parameter::Radius | Parameter::FittingRadius) => 2.0 * rate / radius,
+                Variable::Parameter(Parameter::Fibres) => rate * of_sine,
+                Variable::Parameter(_) => 0.0,
+            };
+            let group = if self.axes[axis] == Quantity::ElasticGroup { -1.0 / value } else { 0.0 };
+            let rate = group + moved.iter().map(one).sum::<f64>();
+            let stiffness = muscle.get(Parameter::FibreStiffness).unwrap_or(0.0);
+            moved.push((Variable::Parameter(Parameter::FibreStiffness), stiffness * rate));
+        }
+        let mut along = [0.0; 2];
+        for (variable, rate) in moved {
+            let by = exact.by_variable.iter().find(|(other, _)| *other == variable);
+            let by = by.map_or([0.0; 2], |(_, by)| *by);
+            along[0] += by[0] * rate;
+            along[1] += by[1] * rate;
+        }
+        (along, growth)
     }
 
     /// The same by central differences of fourth order.

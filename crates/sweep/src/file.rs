@@ -62,7 +62,7 @@ outputs = [\"force_f\", \"volume_v\"]
 tolerance = 1e-6                # largest relative error of the values
 gradient = 1e-4                 # and of their gradients
 max_size = \"64 KiB\"
-form = \"fastest\"                # or \"smallest\", \"hermite\", \"chebyshev\"
+form = \"fastest\"                # or \"smallest\", \"splines\", \"chebyshev\"
 checks = 131072                 # points off the grid that certify it
 ";
 

@@ -105,10 +105,10 @@ impl Field for MuscleField {
             .map_err(none("no equilibrium", &planned))
     }
 
-    fn gradients(&self, point: &[f64], gradients: &mut [f64]) -> Result<(), NoValue> {
+    fn gradients(&self, point: &[f64], values: &mut [f64], gradients: &mut [f64]) -> Result<(), NoValue> {
         let planned = self.planned(point);
         let mut found = vec![0.0; gradients.len()];
-        let asked = self.family.gradients(&planned, &self.kinds, &mut found);
+        let asked = self.family.gradients(&planned, &self.kinds, values, &mut found);
         asked.map_err(none("no derivatives", &planned))?;
         let axes = point.len();
         for o in 0..self.kinds.len() {

@@ -114,12 +114,12 @@ pub enum Design {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TableForm {
-    /// Hermite splines where they fit the size limit, else Chebyshev polynomials.
+    /// Cubic B-splines where they fit the size limit, else Chebyshev polynomials.
     Fastest,
     /// Whichever is smaller.
     Smallest,
-    /// Hermite splines.
-    Hermite,
+    /// Cubic B-splines.
+    Splines,
     /// Chebyshev polynomials.
     Chebyshev,
 }

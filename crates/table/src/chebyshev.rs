@@ -1,6 +1,6 @@
 //! Tensor products of Chebyshev polynomials over the whole domain.
 
-use crate::hermite::{Graded, Number};
+use crate::spline::{Graded, Number};
 
 /// Most orders along an axis: what fits on a small stack.
 pub const MOST_ORDERS: usize = 96;
@@ -54,17 +54,22 @@ impl<const A: usize> Polynomial<'_, A> {
         basis: &[Basis; A],
     ) -> Graded<A, O> {
         let mut sum = Graded::ZERO;
-        if axis == A {
-            let from = block * O * N::BYTES;
-            let bytes = self.data.get(from..from + O * N::BYTES).unwrap_or_default();
-            for (value, number) in sum.value.iter_mut().zip(bytes.chunks_exact(N::BYTES)) {
-                *value = N::read(number);
+        let orders = self.orders[axis];
+        if axis + 1 == A {
+            let each = O * N::BYTES;
+            let row = self.data.get(block * orders * each..(block + 1) * orders * each).unwrap_or_default();
+            let weights = basis[axis].value.iter().zip(&basis[axis].slope);
+            for (numbers, (weight, by)) in row.chunks_exact(each).zip(weights) {
+                for (o, number) in numbers.chunks_exact(N::BYTES).enumerate() {
+                    let coefficient = N::read(number);
+                    sum.value[o] += weight * coefficient;
+                    sum.by[axis][o] += by * coefficient;
+                }
             }
             return sum;
         }
-        for order in 0..self.orders[axis] {
-            let part: Graded<A, O> =
-                self.contracted::<N, O>(axis + 1, block * self.orders[axis] + order, basis);
+        for order in 0..orders {
+            let part: Graded<A, O> = self.contracted::<N, O>(axis + 1, block * orders + order, basis);
             let (weight, by) = (basis[axis].value[order], basis[axis].slope[order]);
             for o in 0..O {
                 sum.value[o] += weight * part.value[o];

@@ -46,11 +46,11 @@ pub(crate) fn rooted(distance: f64, is_root: bool) -> [f64; 2] {
     [distance * r, 0.5 * r]
 }
 
-/// Cell of a coordinate in \[0, 1\] on `nodes` >= 2 equal nodes, and the place in it from 0 to 1.
+/// Cell of a coordinate in \[0, 1\] of a spline with `nodes` >= 4 coefficients, and the place in it from 0 to 1.
 #[inline]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within 0 and 2^32")]
 pub(crate) fn cell(v: f64, nodes: usize) -> (usize, f64) {
-    let along = v * (nodes - 1) as f64;
-    let cell = (along as usize).min(nodes - 2);
+    let along = v * (nodes - 3) as f64;
+    let cell = (along as usize).min(nodes - 4);
     (cell, along - cell as f64)
 }

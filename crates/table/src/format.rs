@@ -30,8 +30,8 @@ pub const FITTED: u32 = 2;
 /// How the outputs are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// Cubic Hermite splines on equal cells of the coordinates: continuous values and gradients, fast.
-    Hermite,
+    /// Cubic B-splines on equal cells of the coordinates: value, gradient and curvature are continuous; fast.
+    Spline,
     /// One polynomial for the whole domain: small.
     Chebyshev,
 }
@@ -41,7 +41,7 @@ impl Form {
     #[must_use]
     pub const fn code(self) -> u8 {
         match self {
-            Self::Hermite => 1,
+            Self::Spline => 1,
             Self::Chebyshev => 2,
         }
     }
@@ -50,7 +50,7 @@ impl Form {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Hermite => "cubic Hermite splines",
+            Self::Spline => "cubic B-splines",
             Self::Chebyshev => "Chebyshev polynomials",
         }
     }
@@ -71,9 +71,9 @@ pub struct Axis<'a> {
     pub pole: f64,
     /// Factor that makes the coordinate 1 at the upper end.
     pub scale: f64,
-    /// Nodes (Hermite) or orders (Chebyshev).
+    /// Coefficients along this axis: cells + 3 of a spline, orders of a polynomial.
     pub nodes: usize,
-    /// Nodes of the edge along this axis; 0 on axis 0 or without a fitted edge.
+    /// Coefficients of the edge along this axis; 0 on axis 0 or without a fitted edge.
     pub edge_nodes: usize,
 }
 

@@ -29,21 +29,21 @@
 //! | bytes | content |
 //! |---|---|
 //! | 0..8 | `BulgeTab` |
-//! | 8..12 | version u16; form u8 (1 Hermite, 2 Chebyshev); bytes of a coefficient u8 (4 or 8) |
+//! | 8..12 | version u16; form u8 (1 splines, 2 Chebyshev); bytes of a coefficient u8 (4 or 8) |
 //! | 12..16 | axes A u8 (1..=4); outputs O u8 (1..=8); 0 u16 |
 //! | 16..32 | length of the file u32; place of the coefficients u32; of the edge u32; of the text u32 |
 //! | 32..48 | number of checks u64; seed of the checks u64 (0: none) |
 //! | 48..64 | length of the text u32; flags u32 (bit 0: root on axis 0, bit 1: fitted edge on axis 0); largest error of the edge f64 |
-//! | then A x 96 | name \[u8; 32\]; unit \[u8; 16\]; low, high, c, scale = 1/Q f64 (c and scale of a fitted axis 0: those in the middle); nodes u32; nodes of the edge u32; 8 bytes 0 |
+//! | then A x 96 | name \[u8; 32\]; unit \[u8; 16\]; low, high, c, scale = 1/Q f64 (c and scale of a fitted axis 0: those in the middle); coefficients u32; those of the edge u32; 8 bytes 0 |
 //! | then O x 104 | name \[u8; 32\]; unit \[u8; 16\]; k u8; j u8; 6 bytes 0; largest and RMS error of the value, of the gradient, bound, scale: 6 f64 |
-//! | edge | Hermite nodes of 1/Q and c over axes 1.. as f64, if the edge is fitted |
+//! | edge | B-splines of 1/Q and c over axes 1.. as f64, if the edge is fitted |
 //! | coefficients | see below |
 //! | text | UTF-8: where the table comes from |
 //! | last 8 | CRC-64/XZ of all bytes before |
 //!
-//! Hermite: for each node (axis 0 slowest, the last axis fastest), for each d of 2^A derivatives (bit A-1-i set: once by axis i), for each output:
-//! the derivative per cell width. Chebyshev: for each degree (i_0, .., i_{A-1}) in the same order, for each output: the coefficient of
-//! T_{i_0}(2u - 1) T_{i_1}(2v_1 - 1) ...
+//! Coefficients: for each place along the axes (axis 0 slowest, the last axis fastest), for each output one. Splines: of the cubic B-splines on equal
+//! cells of \[0, 1\], of which the places k to k + 3 are not zero in cell k. Chebyshev: of T_{i_0}(2u - 1) T_{i_1}(2v_1 - 1) ... An edge holds its two
+//! numbers like two outputs.
 //!
 //! Deliberately absent: std, an allocator, dependencies, `unsafe`, and building tables (`bulge-sweep` does that).
 #![no_std]
@@ -57,8 +57,8 @@ mod coordinate;
 mod crc64;
 mod error;
 pub mod format;
-mod hermite;
 mod lookup;
+mod spline;
 mod sqrt;
 mod table;
 

@@ -3,7 +3,7 @@
 use crate::chebyshev::Polynomial;
 use crate::coordinate::{Fixed, cell, rooted, stretched};
 use crate::format::Form;
-use crate::hermite::{Basis, Double, Graded, Number, Single, Spline, on_line};
+use crate::spline::{Basis, Double, Graded, Number, Single, Spline, on_line};
 
 /// An output at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,8 +47,8 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     pub fn at(&self, point: [f64; A]) -> Option<[Sample<A>; O]> {
         let place = self.place(point)?;
         let found = match (self.form, self.is_single) {
-            (Form::Hermite, true) => self.spline::<Single>(&place),
-            (Form::Hermite, false) => self.spline::<Double>(&place),
+            (Form::Spline, true) => self.spline::<Single>(&place),
+            (Form::Spline, false) => self.spline::<Double>(&place),
             (Form::Chebyshev, true) => Some(self.polynomial().at::<Single, O>(place.at)),
             (Form::Chebyshev, false) => Some(self.polynomial().at::<Double, O>(place.at)),
         }?;
@@ -123,7 +123,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         };
         for (by, nodes) in edge.by.iter_mut().zip(self.edge_nodes).skip(1) {
             for number in by {
-                *number *= (nodes - 1) as f64;
+                *number *= (nodes - 3) as f64;
             }
         }
         Some(edge)
@@ -153,7 +153,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         };
         for (by, nodes) in found.by.iter_mut().zip(self.nodes) {
             for number in by {
-                *number *= (nodes - 1) as f64;
+                *number *= (nodes - 3) as f64;
             }
         }
         Some(found)

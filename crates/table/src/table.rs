@@ -14,7 +14,9 @@ use crate::lookup::Lookup;
 
 /// Bytes of the checksum.
 const CHECKSUM: usize = 8;
-/// Most nodes along an axis.
+/// Coefficients of a spline of one cell.
+const LEAST_NODES: usize = 4;
+/// Most coefficients along an axis.
 const MOST_NODES: usize = 1 << 20;
 
 /// A table in its bytes. Everything was checked when it was made from them.
@@ -69,7 +71,7 @@ impl<'a> Table<'a> {
         let malformed = |field| TableError::Malformed { field };
         let number = |at| size_at(body, at).ok_or(malformed("header"));
         let form = match bytes[10] {
-            1 => Form::Hermite,
+            1 => Form::Spline,
             2 => Form::Chebyshev,
             _ => return Err(malformed("form")),
         };
@@ -106,9 +108,9 @@ impl<'a> Table<'a> {
     fn check_sizes(&self) -> Result<(), TableError> {
         let malformed = |field| TableError::Malformed { field };
         let product = |count: usize, by: usize| count.checked_mul(by).ok_or(malformed("number of nodes"));
-        let (nodes, each) = match self.form {
-            Form::Hermite => (2..=MOST_NODES, 2),
-            Form::Chebyshev => (1..=MOST_ORDERS, 1),
+        let nodes = match self.form {
+            Form::Spline => LEAST_NODES..=MOST_NODES,
+            Form::Chebyshev => 1..=MOST_ORDERS,
         };
         let mut count = self.outputs;
         // K and c of a fitted edge.
@@ -118,14 +120,14 @@ impl<'a> Table<'a> {
             if !nodes.contains(&axis.nodes) {
                 return Err(malformed("number of nodes"));
             }
-            count = product(count, axis.nodes * each)?;
+            count = product(count, axis.nodes)?;
             let has_edge = i > 0 && self.is_fitted();
-            let edge_nodes = if has_edge { 2..=MOST_NODES } else { 0..=0 };
+            let edge_nodes = if has_edge { LEAST_NODES..=MOST_NODES } else { 0..=0 };
             if !edge_nodes.contains(&axis.edge_nodes) {
                 return Err(malformed("number of nodes of the edge"));
             }
             if has_edge {
-                edge = product(edge, 2 * axis.edge_nodes)?;
+                edge = product(edge, axis.edge_nodes)?;
             }
             if !(axis.scale > 0.0 && axis.scale.is_finite()) {
                 return Err(malformed("scale of an axis"));
@@ -268,40 +270,52 @@ impl<'a> Table<'a> {
         Ok(lookup)
     }
 
-    /// One output at a point with its gradient in `gradient`, for callers that learn the shape of the table at run time; slower than a
-    /// [`Lookup`]. `None` outside the domain, or where the numbers of coordinates don't fit.
+    /// All outputs at a point into `values` and their derivatives into `gradients` (those of output o by axis i at `o * axes + i`), for callers
+    /// that learn the shape of the table at run time; slower than a [`Lookup`]. `None` outside the domain, or where a length doesn't fit.
     #[must_use]
-    pub fn sample(&self, output: usize, point: &[f64], gradient: &mut [f64]) -> Option<f64> {
+    pub fn sample(&self, point: &[f64], values: &mut [f64], gradients: &mut [f64]) -> Option<()> {
         match self.axes {
-            1 => self.sample_of::<1>(output, point, gradient),
-            2 => self.sample_of::<2>(output, point, gradient),
-            3 => self.sample_of::<3>(output, point, gradient),
-            _ => self.sample_of::<4>(output, point, gradient),
+            1 => self.sample_of::<1>(point, values, gradients),
+            2 => self.sample_of::<2>(point, values, gradients),
+            3 => self.sample_of::<3>(point, values, gradients),
+            _ => self.sample_of::<4>(point, values, gradients),
         }
     }
 
-    fn sample_of<const A: usize>(&self, output: usize, point: &[f64], gradient: &mut [f64]) -> Option<f64> {
-        fn one<const A: usize, const O: usize>(
+    fn sample_of<const A: usize>(
+        &self,
+        point: &[f64],
+        values: &mut [f64],
+        gradients: &mut [f64],
+    ) -> Option<()> {
+        fn all<const A: usize, const O: usize>(
             table: &Table<'_>,
-            output: usize,
             point: [f64; A],
-            gradient: &mut [f64; A],
-        ) -> Option<f64> {
-            let found = *table.lookup::<A, O>().ok()?.at(point)?.get(output)?;
-            *gradient = found.gradient;
-            Some(found.value)
+            values: &mut [f64],
+            gradients: &mut [f64],
+        ) -> Option<()> {
+            let found = table.lookup::<A, O>().ok()?.at(point)?;
+            for ((value, gradient), sample) in
+                values.iter_mut().zip(gradients.chunks_exact_mut(A)).zip(&found)
+            {
+                *value = sample.value;
+                gradient.copy_from_slice(&sample.gradient);
+            }
+            Some(())
         }
         let point: [f64; A] = *point.first_chunk().filter(|_| point.len() == A)?;
-        let gradient = gradient.first_chunk_mut::<A>()?;
+        if values.len() != self.outputs || gradients.len() != self.outputs * A {
+            return None;
+        }
         match self.outputs {
-            1 => one::<A, 1>(self, output, point, gradient),
-            2 => one::<A, 2>(self, output, point, gradient),
-            3 => one::<A, 3>(self, output, point, gradient),
-            4 => one::<A, 4>(self, output, point, gradient),
-            5 => one::<A, 5>(self, output, point, gradient),
-            6 => one::<A, 6>(self, output, point, gradient),
-            7 => one::<A, 7>(self, output, point, gradient),
-            _ => one::<A, 8>(self, output, point, gradient),
+            1 => all::<A, 1>(self, point, values, gradients),
+            2 => all::<A, 2>(self, point, values, gradients),
+            3 => all::<A, 3>(self, point, values, gradients),
+            4 => all::<A, 4>(self, point, values, gradients),
+            5 => all::<A, 5>(self, point, values, gradients),
+            6 => all::<A, 6>(self, point, values, gradients),
+            7 => all::<A, 7>(self, point, values, gradients),
+            _ => all::<A, 8>(self, point, values, gradients),
         }
     }
 

@@ -108,9 +108,9 @@ struct Builder<'a> {
 pub fn build(field: &dyn Field, wish: &Wish, told: &dyn Fn(&str)) -> Result<Built, BuildError> {
     let limit = wish.max_bytes;
     let forms: &[Form] = match wish.form {
-        TableForm::Hermite => &[Form::Hermite],
+        TableForm::Splines => &[Form::Spline],
         TableForm::Chebyshev => &[Form::Chebyshev],
-        TableForm::Fastest | TableForm::Smallest => &[Form::Hermite, Form::Chebyshev],
+        TableForm::Fastest | TableForm::Smallest => &[Form::Spline, Form::Chebyshev],
     };
     let mut best: Option<(f64, Candidate, Builder<'_>)> = None;
     let mut failure = None;
@@ -197,7 +197,7 @@ impl<'a> Builder<'a> {
     ) -> Result<Vec<u8>, EncodeError> {
         let fit = &self.fit;
         let coefficients = match candidate.form {
-            Form::Hermite => fit.hermite_nodes(&candidate.nodes),
+            Form::Spline => fit.splines(&candidate.nodes),
             Form::Chebyshev => fit.truncated(&candidate.nodes).coefficients,
         };
         let poles: Vec<f64> = self.domain.coordinates.axes.iter().map(|c| c.pole).collect();
@@ -225,14 +225,13 @@ impl<'a> Builder<'a> {
     fn size(&self, candidate: &Candidate) -> usize {
         let (axes, outputs) = (candidate.nodes.len(), self.fit.outputs);
         let each = if candidate.is_single { 4 } else { 8 };
-        let kinds = if candidate.form == Form::Hermite { 1 << axes } else { 1 };
         let edge = self.domain.edge.as_ref().map_or(0, |edge| 8 * edge.numbers.len());
         let records = bulge_table::format::HEADER
             + axes * bulge_table::format::AXIS
             + outputs * bulge_table::format::OUTPUT
             + 8;
         let nodes: usize = candidate.nodes.iter().product();
-        records + edge + self.wish.text.len() + each * outputs * kinds * nodes
+        records + edge + self.wish.text.len() + each * outputs * nodes
     }
 
     /// How far a candidate is from what is wished: 1 just meets it, measured at a few points.
@@ -253,13 +252,13 @@ impl<'a> Builder<'a> {
     /// The smallest table of a form that meets the wish, or the best that the size allows; and how far it is from the wish.
     fn best(&self, form: Form) -> Result<(f64, Candidate), BuildError> {
         match form {
-            Form::Hermite => self.hermite(),
+            Form::Spline => self.spline(),
             Form::Chebyshev => self.chebyshev(),
         }
     }
 
     /// Splines with as few nodes as meet the wish, or as many as the size allows; and how far they are from it.
-    fn hermite(&self) -> Result<(f64, Candidate), BuildError> {
+    fn spline(&self) -> Result<(f64, Candidate), BuildError> {
         let axes = self.fit.orders.len();
         let mut needed: Vec<f64> = (0..axes).map(|axis| self.cells_needed(axis)).collect();
         let mut best = self.splines(&needed)?;
@@ -282,10 +281,10 @@ impl<'a> Builder<'a> {
     fn splines(&self, cells: &[f64]) -> Result<(f64, Candidate), BuildError> {
         let is_single = self.wish.tolerance >= SINGLE;
         let at = |scale: f64, is_single: bool| Candidate {
-            form: Form::Hermite,
+            form: Form::Spline,
             is_single,
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-            nodes: cells.iter().map(|n| 1 + (n * scale).ceil().clamp(1.0, 65_536.0) as usize).collect(),
+            nodes: cells.iter().map(|n| 3 + (n * scale).ceil().clamp(1.0, 65_536.0) as usize).collect(),
         };
         self.fewest(is_single, 0.25, &at)
     }
@@ -447,7 +446,7 @@ impl<'a> Builder<'a> {
         let mut finer = candidate.clone();
         for (nodes, orders) in finer.nodes.iter_mut().zip(&self.fit.orders) {
             match candidate.form {
-                Form::Hermite => {
+                Form::Spline => {
                     let factor = ratio.powf(0.3).clamp(1.0, 2.0);
                     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
                     let more = (*nodes as f64 * factor).ceil() as usize;

@@ -8,8 +8,10 @@
 //! g^(d+1) = g + 1. Every second one is uniform in the axes themselves, the others in the coordinates of the table, where layers are as wide as the
 //! rest.
 
+use bulge_table::format::MOST_AXES;
 use bulge_table::{Certificate, Table};
 use rayon::prelude::*;
+use std::sync::LazyLock;
 
 use super::coordinate::{Coordinate, Coordinates, point_of};
 use super::domain::Domain;
@@ -42,19 +44,20 @@ impl Errors {
     }
 }
 
-/// The k-th point of the low-discrepancy sequence in `axes` dimensions.
-#[expect(clippy::cast_precision_loss, reason = "far fewer than 2^52 points")]
+/// What the sequence advances by in 1 to 4 dimensions.
+static STEPS: LazyLock<[Vec<f64>; MOST_AXES]> = LazyLock::new(|| {
+    std::array::from_fn(|i| {
+        let axes = i + 1;
+        // The fixed point of g = (1 + g)^(1/(d + 1)).
+        let g = (0..64).fold(1.5_f64, |g, _| (1.0 + g).powf(1.0 / (axes as f64 + 1.0)));
+        (1..=axes).map(|power| g.powf(-(power as f64))).collect()
+    })
+});
+
+/// The k-th point of the low-discrepancy sequence in 1 to 4 dimensions.
 pub(crate) fn golden(k: u64, axes: usize) -> Vec<f64> {
-    // The root of g^(d+1) = g + 1 above 1; the fixed point of g = (1 + g)^(1/(d+1)).
-    let exponent = 1.0 / (axes as f64 + 1.0);
-    let g = (0..64).fold(1.5_f64, |g, _| (1.0 + g).powf(exponent));
-    (1..=axes)
-        .map(|i| {
-            let power = i32::try_from(i).unwrap_or(i32::MAX);
-            let fraction = (0.5 + k as f64 * g.powi(-power)).fract();
-            INSIDE + (1.0 - 2.0 * INSIDE) * fraction
-        })
-        .collect()
+    let inside = |step: &f64| INSIDE + (1.0 - 2.0 * INSIDE) * (0.5 + k as f64 * step).fract();
+    STEPS[axes.clamp(1, MOST_AXES) - 1].iter().map(inside).collect()
 }
 
 /// The k-th check point of a domain.
@@ -117,30 +120,29 @@ fn errors_at(
     let (axes, outputs) = (point.len(), scales.len());
     let mut values = vec![0.0; outputs];
     let mut gradients = vec![0.0; outputs * axes];
-    field.values(point, &mut values)?;
-    field.gradients(point, &mut gradients)?;
+    field.gradients(point, &mut values, &mut gradients)?;
     let high = domain.upper_end(&point[1..]);
     let width = |i: usize| {
         let axis = &field.axes()[i];
         axis.high.unwrap_or(high) - axis.low
     };
-    let mut found = vec![0.0; axes];
+    let (mut found, mut slopes) = (vec![0.0; outputs], vec![0.0; outputs * axes]);
+    if table.sample(point, &mut found, &mut slopes).is_none() {
+        // Within the error of the edge a point may lie outside the table.
+        let at_edge = (high - point[0]).abs() <= 1e-6 * width(0);
+        let outside = NoValue(format!("the table has no value at {point:?}"));
+        return if at_edge { Ok(vec![Errors::default(); outputs]) } else { Err(outside) };
+    }
     (0..outputs)
         .map(|o| {
-            // Within the error of the edge a point may lie outside the table.
-            let Some(value) = table.sample(o, point, &mut found) else {
-                let at_edge = (high - point[0]).abs() <= 1e-6 * width(0);
-                let outside = NoValue(format!("the table has no value at {point:?}"));
-                return if at_edge { Ok(Errors::default()) } else { Err(outside) };
-            };
             let part = ((point[0] - field.axes()[0].low) / width(0)).max(f64::MIN_POSITIVE);
             let floor = FLOOR * scales[o] / if field.outputs()[o].is_singular { part.sqrt() } else { 1.0 };
-            let error = (value - values[o]).abs() / values[o].abs().max(floor);
+            let error = (found[o] - values[o]).abs() / values[o].abs().max(floor);
             let exact = &gradients[o * axes..(o + 1) * axes];
             let steep = (0..axes)
                 .map(|i| {
                     let size = exact[i].abs().max(values[o].abs().max(floor) / width(i));
-                    (found[i] - exact[i]).abs() / size
+                    (slopes[o * axes + i] - exact[i]).abs() / size
                 })
                 .fold(0.0, f64::max);
             if error.is_nan() || steep.is_nan() {

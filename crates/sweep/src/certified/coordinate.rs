@@ -103,12 +103,7 @@ pub(crate) fn coordinates(field: &dyn Field, form: Form) -> Result<Coordinates, 
 }
 
 /// Pole and tilt of axis 0: a layer at its lower end may be thinner where another axis is longer.
-fn first_axis(
-    field: &dyn Field,
-    chosen: &mut Coordinates,
-    ends: &[f64],
-    form: Form,
-) -> Result<(), NoValue> {
+fn first_axis(field: &dyn Field, chosen: &mut Coordinates, ends: &[f64], form: Form) -> Result<(), NoValue> {
     let count = chosen.axes.len();
     let others = count - 1;
     chosen.tilt = vec![0.0; others];
@@ -218,7 +213,7 @@ fn worst_error(
             let coefficients: Vec<f64> = cosines.chunks_exact(POINTS).map(row).collect();
             worst = worst.max(match form {
                 Form::Chebyshev => tail(&coefficients, &sample),
-                Form::Hermite => spline_error(&coefficients, &sample),
+                Form::Spline => spline_error(&coefficients, &sample),
             });
         }
     }
@@ -303,4 +298,15 @@ pub(crate) fn reduced(
         }
     }
     Ok(())
+}
+
+/// The four cubic B-splines of a cell at t in \[0, 1\] of it.
+pub(crate) fn b_splines(t: f64) -> [f64; 4] {
+    let r = 1.0 - t;
+    [
+        r * r * r / 6.0,
+        2.0 / 3.0 - t * t * (1.0 - 0.5 * t),
+        2.0 / 3.0 - r * r * (1.0 - 0.5 * r),
+        t * t * t / 6.0,
+    ]
 }

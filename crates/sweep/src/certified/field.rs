@@ -51,9 +51,9 @@ pub trait Field: Sync {
     /// If there is no value.
     fn values(&self, point: &[f64], values: &mut [f64]) -> Result<(), NoValue>;
 
-    /// Their derivatives by the axes: `gradients[o * axes + i]`.
+    /// All outputs and their derivatives by the axes: `gradients[o * axes + i]`.
     ///
     /// # Errors
     /// If there is no value, or none beside it.
-    fn gradients(&self, point: &[f64], gradients: &mut [f64]) -> Result<(), NoValue>;
+    fn gradients(&self, point: &[f64], values: &mut [f64], gradients: &mut [f64]) -> Result<(), NoValue>;
 }

@@ -72,6 +72,19 @@ pub(crate) fn along(
     product
 }
 
+/// The sum over the last axis of a tensor with weights.
+fn contracted(tensor: &[f64], outputs: usize, weights: &[f64]) -> Vec<f64> {
+    let mut sums = vec![0.0; tensor.len() / weights.len()];
+    for (sums, block) in sums.chunks_exact_mut(outputs).zip(tensor.chunks_exact(outputs * weights.len())) {
+        for (values, weight) in block.chunks_exact(outputs).zip(weights) {
+            for (sum, value) in sums.iter_mut().zip(values) {
+                *sum += weight * value;
+            }
+        }
+    }
+    sums
+}
+
 /// T_i(2u - 1) and its derivative by u.
 pub(crate) fn basis(u: f64, orders: usize) -> [Vec<f64>; 2] {
     let x = 2.0 * u - 1.0;
@@ -173,16 +186,15 @@ impl Polynomial {
     /// Values of all outputs and their derivatives by the coordinates at a point: `by[i * outputs + o]`.
     pub(crate) fn at(&self, unit: &[f64], values: &mut [f64], by: &mut [f64]) {
         let axes = self.orders.len();
-        let bases: Vec<[Vec<f64>; 2]> = unit.iter().zip(&self.orders).map(|(u, n)| basis(*u, *n)).collect();
         // Contract the last axis first: one tensor for the values, and one for each derivative met so far.
         let mut tensors: Vec<Vec<f64>> = Vec::new();
         for axis in (0..axes).rev() {
-            let shape = &self.orders[..=axis];
-            let [value, slope] = &bases[axis];
-            let contracted = |tensor, by| along(tensor, shape, axis, self.outputs, by, 1);
+            let [value, slope] = basis(unit[axis], self.orders[axis]);
             let first = tensors.first().unwrap_or(&self.coefficients);
-            let mut next = vec![contracted(first, value), contracted(first, slope)];
-            next.extend(tensors.iter().skip(1).map(|tensor| contracted(tensor, value)));
+            let mut next = Vec::with_capacity(axes + 1);
+            next.push(contracted(first, self.outputs, &value));
+            next.push(contracted(first, self.outputs, &slope));
+            next.extend(tensors.iter().skip(1).map(|tensor| contracted(tensor, self.outputs, &value)));
             tensors = next;
         }
         values.copy_from_slice(&tensors[0]);
@@ -207,46 +219,80 @@ impl Polynomial {
         Self { orders: orders.to_vec(), outputs: self.outputs, coefficients: kept, tails: self.tails.clone() }
     }
 
-    /// Values and mixed first derivatives, per cell, in the nodes of `nodes` equal points along each axis, in the layout of a Hermite table: for
-    /// each node, for each set of axes (the first axis is the highest bit), for each output.
-    pub(crate) fn hermite_nodes(&self, nodes: &[usize]) -> Vec<f64> {
-        let axes = self.orders.len();
-        let matrices: Vec<[Vec<f64>; 2]> = nodes
-            .iter()
-            .zip(&self.orders)
-            .map(|(count, orders)| {
-                let cells = (count - 1) as f64;
-                let rows = (0..*count).map(|k| basis(k as f64 / cells, *orders));
-                let (mut values, mut slopes) = (Vec::new(), Vec::new());
-                for [value, slope] in rows {
-                    values.extend(value);
-                    slopes.extend(slope.into_iter().map(|slope| slope / cells));
-                }
-                [values, slopes]
-            })
-            .collect();
-        let kinds = 1 << axes;
-        let count: usize = nodes.iter().product();
-        let mut all = vec![0.0; count * kinds * self.outputs];
-        for kind in 0..kinds {
-            let mut tensor = self.coefficients.clone();
-            let mut shape = self.orders.clone();
-            for axis in 0..axes {
-                let which = kind >> (axes - 1 - axis) & 1;
-                tensor = along(&tensor, &shape, axis, self.outputs, &matrices[axis][which], nodes[axis]);
-                shape[axis] = nodes[axis];
-            }
-            for (node, values) in tensor.chunks_exact(self.outputs).enumerate() {
-                let into = (node * kinds + kind) * self.outputs;
-                all[into..into + self.outputs].copy_from_slice(values);
-            }
+    /// Coefficients of the cubic B-splines with `nodes` of them along each axis that interpolate the polynomials in the ends of all cells, with
+    /// their slopes at the ends of the axes.
+    pub(crate) fn splines(&self, nodes: &[usize]) -> Vec<f64> {
+        let mut tensor = self.coefficients.clone();
+        let mut shape = self.orders.clone();
+        for (axis, count) in nodes.iter().enumerate() {
+            let matrix = interpolation(*count, shape[axis]);
+            tensor = along(&tensor, &shape, axis, self.outputs, &matrix, *count);
+            shape[axis] = *count;
         }
-        all
+        tensor
     }
+}
+
+/// The matrix from Chebyshev coefficients to those of the interpolating B-spline with `count` >= 4, row by row: for each order
+///
+/// ```text
+/// (c_{k-1} + 4 c_k + c_{k+1})/6 = T(k - 1),  k = 1 .. n - 2,     (c_2 - c_0)/2 = h T'(0),     (c_{n-1} - c_{n-3})/2 = h T'(1)
+/// ```
+fn interpolation(count: usize, orders: usize) -> Vec<f64> {
+    let cells = (count - 3) as f64;
+    let inner = count - 2;
+    let nodes: Vec<[Vec<f64>; 2]> = (0..inner).map(|k| basis(k as f64 / cells, orders)).collect();
+    let mut matrix = vec![0.0; count * orders];
+    // Thomas' elimination of (1 4 1) rows whose first and last are (4 2) and (2 4) after the end conditions.
+    let mut upper = vec![0.0; inner];
+    for k in 0..inner {
+        let below = if k == 0 {
+            0.0
+        } else if k == inner - 1 {
+            2.0
+        } else {
+            1.0
+        };
+        let above = if k == 0 { 2.0 } else { 1.0 };
+        let pivot = 4.0 - below * if k == 0 { 0.0 } else { upper[k - 1] };
+        upper[k] = above / pivot;
+    }
+    for order in 0..orders {
+        let slopes = [nodes[0][1][order] / cells, nodes[inner - 1][1][order] / cells];
+        let mut right = vec![0.0; inner];
+        for k in 0..inner {
+            let below = if k == 0 {
+                0.0
+            } else if k == inner - 1 {
+                2.0
+            } else {
+                1.0
+            };
+            let mut sum = 6.0 * nodes[k][0][order];
+            if k == 0 {
+                sum += 2.0 * slopes[0];
+            } else if k == inner - 1 {
+                sum -= 2.0 * slopes[1];
+            }
+            let (before, pivot) =
+                if k == 0 { (0.0, 4.0) } else { (right[k - 1], 4.0 - below * upper[k - 1]) };
+            right[k] = (sum - below * before) / pivot;
+        }
+        for k in (0..inner - 1).rev() {
+            right[k] -= upper[k] * right[k + 1];
+        }
+        for (k, value) in right.iter().enumerate() {
+            matrix[(k + 1) * orders + order] = *value;
+        }
+        matrix[order] = right[1] - 2.0 * slopes[0];
+        matrix[(count - 1) * orders + order] = right[inner - 2] + 2.0 * slopes[1];
+    }
+    matrix
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::coordinate::b_splines;
     use super::*;
 
     fn waves(unit: &[f64], values: &mut [f64]) -> Result<(), NoValue> {
@@ -273,20 +319,61 @@ mod tests {
         assert!(fit.orders[2] < fit.orders[0] + 5);
     }
 
+    /// Value and derivative of a spline at 0 <= u <= 1 along one axis.
+    fn spline(coefficients: &[f64], u: f64) -> [f64; 2] {
+        let cells = (coefficients.len() - 3) as f64;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
+        let cell = ((u * cells) as usize).min(coefficients.len() - 4);
+        let weights = b_splines(u * cells - cell as f64);
+        let moved = b_splines(u * cells - cell as f64 + 1e-6);
+        let sum = |w: [f64; 4]| (0..4).map(|k| w[k] * coefficients[cell + k]).sum::<f64>();
+        [sum(weights), (sum(moved) - sum(weights)) / 1e-6 * cells]
+    }
+
     #[test]
-    fn nodes_hold_values_and_mixed_derivatives_per_cell() {
-        let fit = Polynomial::fitted(3, 2, 40, 1e-13, &waves).unwrap();
-        let nodes = fit.hermite_nodes(&[3, 2, 5]);
-        assert_eq!(nodes.len(), 30 * 8 * 2);
-        // Node (1, 1, 3): u = (0.5, 1, 0.75).
-        let node = &nodes[((2 + 1) * 5 + 3) * 16..][..16];
-        let wave = 1.5 + 0.75_f64;
-        assert!((node[0] - wave.sin()).abs() < 1e-12);
-        // By the last axis, cells of 1/4: bit 0.
-        assert!((node[2] - wave.cos() / 4.0).abs() < 1e-11);
-        // By the first, cells of 1/2: bit 2; by first and last: bits 2 and 0.
-        assert!((node[8] - 3.0 * wave.cos() / 2.0).abs() < 1e-11);
-        assert!((node[10] - -3.0 * wave.sin() / 8.0).abs() < 1e-10);
+    fn splines_interpolate_with_end_slopes_and_fourth_order() {
+        let function = |u: f64| (4.0 * u).sin() + u;
+        let exact = |unit: &[f64], values: &mut [f64]| {
+            values[0] = function(unit[0]);
+            Ok(())
+        };
+        let fit = Polynomial::fitted(1, 1, 40, 1e-14, &exact).unwrap();
+        for count in [4, 5, 9] {
+            let coefficients = fit.splines(&[count]);
+            for k in 0..count - 2 {
+                let u = k as f64 / (count - 3) as f64;
+                assert!((spline(&coefficients, u)[0] - function(u)).abs() < 1e-13);
+            }
+            assert!((spline(&coefficients, 0.0)[1] - 5.0).abs() < 1e-4);
+        }
+        let error = |count: usize| {
+            let coefficients = fit.splines(&[count]);
+            (0..1000)
+                .map(|k| f64::from(k) / 999.0)
+                .fold(0.0_f64, |worst, u| worst.max((spline(&coefficients, u)[0] - function(u)).abs()))
+        };
+        let order = (error(43) / error(83)).log2();
+        assert!((order - 4.0).abs() < 0.1, "{order}");
+    }
+
+    #[test]
+    fn a_spline_over_two_axes_is_the_product() {
+        let product = |unit: &[f64], values: &mut [f64]| {
+            values[0] = unit[0].powi(3) * (1.0 + unit[1]);
+            values[1] = unit[1].powi(2) - unit[0];
+            Ok(())
+        };
+        let fit = Polynomial::fitted(2, 2, 12, 1e-14, &product).unwrap();
+        let coefficients = fit.splines(&[5, 6]);
+        for (u, v) in [(0.2, 0.9), (0.71, 0.33), (1.0, 0.0)] {
+            let across = |j: usize, o: usize| {
+                let line: Vec<f64> = (0..5).map(|i| coefficients[(i * 6 + j) * 2 + o]).collect();
+                spline(&line, u)[0]
+            };
+            let at = |o: usize| spline(&(0..6).map(|j| across(j, o)).collect::<Vec<_>>(), v)[0];
+            // Cubics are met exactly.
+            assert!((at(0) - u * u * u * (1.0 + v)).abs() < 1e-12 && (at(1) - v * v + u).abs() < 1e-12);
+        }
     }
 
     #[test]

@@ -153,21 +153,22 @@ impl Family<'_, '_> {
         let misalignment = Quantity::Parameter(Parameter::Misalignment);
         let axis = self.axes.iter().find(|placed| placed.axis.quantity == misalignment);
         let is_straight = match axis.map(|placed| &placed.axis.range) {
+            // None in a braid.
             None => self.muscle.get(Parameter::Misalignment) == Some(0.0),
             Some(Range::List(values)) => values.contains(&0.0),
             Some(Range::Between { from, to, .. }) => {
                 *from <= 0.0 && matches!(to, End::Value(to) if *to >= 0.0)
             }
         };
-        self.muscle.is_pleated() && !stretches && is_straight
+        is_straight && !stretches
     }
 
-    /// Whether any muscle of the family needs the integration of its meridian, where the method may choose.
+    /// Whether any of these muscles needs the integration of its meridian, where the method may choose.
     pub(super) fn shoots(&self, muscles: &[Muscle]) -> bool {
         let shoots = |muscle: &Muscle| {
             Problem::new(muscle, Pressure::pa(self.pressure)).is_ok_and(|problem| problem.shoots())
         };
-        muscles.iter().chain(std::iter::once(self.muscle)).any(shoots)
+        muscles.iter().any(shoots)
     }
 
     /// Why the method is not possible.

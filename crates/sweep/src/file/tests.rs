@@ -9,6 +9,8 @@ const BRAID: &str = "muscle = \"dmsp-20-250\"\n[axes.contraction]\nrange = \"0 %
 const TABLE: &str =
     "muscle = \"ppam-2-r16\"\n[axes.contraction]\nrange = \"0 %..20 %\"\n[table]\ntolerance = 1e-5\n";
 
+const STRETCHY: &str = "name = \"x\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\nfibre.stiffness = \"10 kN\"\n";
+
 fn from(text: &str) -> Result<Plan, FileError> {
     Plan::from_toml(text, "s.toml", None)
 }
@@ -114,6 +116,9 @@ fn axes_by_name_by_key_and_of_effects() {
     assert!(of("friction.force", "friction.forse").contains("did you mean `coulomb-friction.force`?"));
     assert!(of("1..20 N", "-5..20 N").contains("s.toml:6:9: `force` = -5 N is out of the bounds"));
     assert!(of("1..20 N", "1..20 mm").contains("range = \"14 N..28 N\""));
+    let long = text.replace("\"coulomb", "\"effects.coulomb");
+    let long = Plan::from_toml(&long, "s.toml", Some(folder.path())).unwrap();
+    assert_eq!((&long.axes[1].name, &long.axes[1].quantity), (&plan.axes[1].name, &plan.axes[1].quantity));
     // The same by another name.
     assert!(of("coulomb-friction.force", "fibre.stiffness").contains("duplicate"));
     let twice = of(
@@ -163,6 +168,12 @@ fn braids_and_members_that_need_each_other() {
     refused(&format!("{zero}[axes.misalignment]\nrange = \"-5..5 deg\"\npoints = 2"), &["infinite at 0"]);
     read(&format!("{zero}[axes.misalignment]\nrange = \"1..5 deg\"\npoints = 2"));
     read(&BRAID.replace("0 %", "-2 %"));
+    let folder = folder(&[("m.toml", STRETCHY)]);
+    let stretchy = zero.replace("ppam-2-r16", "m.toml");
+    assert!(Plan::from_toml(&stretchy, "s.toml", Some(folder.path())).is_ok());
+    // The braid and its fittings have a radius each.
+    let radii = "[axes.radius]\nlist = [\"10 mm\"]\n[axes.fitting_radius]\nlist = [\"9 mm\"]\n";
+    assert_eq!(read(&format!("{BRAID}{radii}")).axes.len(), 3);
     // Numbers of fibres from a range.
     let fibres = |points: &str| format!("{SHORT}[axes.fibres]\nrange = \"20..60\"\npoints = {points}");
     assert_eq!(read(&fibres("41")).points(), 1640);
@@ -288,6 +299,11 @@ fn mistakes_in_axes() {
 #[test]
 fn mistakes_in_points_and_lists() {
     all_refused(&[
+        (
+            more("[axes.length]\nrange = \"1e-300..1e300 m\"\nspacing = \"log\""),
+            ["s.toml:9:11", "not possible", "linear"],
+        ),
+        (more("[axes.length]\nrange = \"-1e308..1e308 m\""), ["s.toml:8:9", "a finite length", "10 mm"]),
         (
             line("points = 20", "spacing = \"cubic\""),
             ["s.toml:4:11", "linear, log, chebyshev", "write `spacing ="],
@@ -463,7 +479,7 @@ fn mistakes_in_tables() {
         ),
         (
             TABLE.replace("tolerance = 1e-5", "form = \"fast\""),
-            ["s.toml:5:8", "hermite, chebyshev", "write `form = \"fastest\"`"],
+            ["s.toml:5:8", "splines, chebyshev", "write `form = \"fastest\"`"],
         ),
         (
             TABLE.replace("tolerance", "tolerence"),
@@ -473,7 +489,9 @@ fn mistakes_in_tables() {
 }
 
 #[test]
-fn numbers_of_axes_are_limited() {
+fn axes_are_known_and_not_too_many() {
+    let unknown = format!("{BRAID}[axes.voltage]\nlist = [1]");
+    refused(&unknown, &["s.toml:5:7", "fitting_radius, braid_angle, fibres", "gas_wall"]);
     let names = ["length", "radius", "pressure", "pleat_depth"];
     let ranges = ["1..2 m", "10..20 mm", "1..2 bar", "1..2 mm"];
     let axes: Vec<String> = names
@@ -484,6 +502,10 @@ fn numbers_of_axes_are_limited() {
     let five = TABLE.replace("[table]", &format!("{}[table]", axes.concat()));
     refused(&five, &["s.toml:12:", "5 axes", "at most 4"]);
     assert_eq!(read(&five.replace("[axes.pleat_depth]\nrange = \"1..2 mm\"\n", "")).axes.len(), 4);
+    // 65536^4 = 2^64 points would wrap to none.
+    let grid = axes.concat().replace("\"\n", "\"\npoints = 65536\n");
+    let grid = format!("muscle = \"ppam-2-r16\"\ncontraction = 0.1\n{grid}");
+    refused(&grid, &["more than 281474976710656 points", "fewer"]);
     let many: Vec<String> = (0..17).map(|i| format!("[axes.a{i}]\nlist = [1]\n")).collect();
     refused(&format!("muscle = \"ppam-1\"\n{}", many.concat()), &["s.toml:34:7", "17 axes", "at most 16"]);
 }

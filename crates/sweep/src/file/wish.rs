@@ -50,7 +50,7 @@ pub(super) fn wish(
     let forms = [
         ("fastest", TableForm::Fastest),
         ("smallest", TableForm::Smallest),
-        ("hermite", TableForm::Hermite),
+        ("splines", TableForm::Splines),
         ("chebyshev", TableForm::Chebyshev),
     ];
     Ok(Some(TableWish {
