@@ -13,6 +13,7 @@ fn main() {
         let b = build(&field, &Wish { tolerance: w.tolerance, gradient: w.gradient, max_bytes: 65536, form, checks: w.checks, text: "{}".into() }, &|s| eprintln!("{s} {:?}", t.elapsed())).unwrap();
         let tab = bulge_table::Table::from_bytes(&b.bytes).unwrap();
         println!("{:?} {} bytes {} met {} {:?} edge {:e}", tab.form(), tab.precision(), b.bytes.len(), b.is_met, t.elapsed(), tab.edge_error());
+        std::fs::write(format!("/tmp/ppam-{}.table", tab.form().code()), &b.bytes).unwrap(); let lk=tab.lookup::<2,2>().unwrap(); let pts: Vec<[f64;2]>=(0..4096u32).map(|i| { let l=2.0+98.0*(f64::from(i)*0.618_033_988_7).fract(); [ ((f64::from(i)*0.754_877_666).fract()*0.95+0.01)*lk.upper_end([0.0,l]).unwrap(), l] }).collect(); let t=std::time::Instant::now(); let mut sum=0.0; for _ in 0..200 { for p in &pts { let [f,v]=lk.at(std::hint::black_box(*p)).unwrap(); sum+=f.value+v.gradient[1]+f.gradient[0]+f.gradient[1]+v.value+v.gradient[0]; } } println!("lookup {:?} {sum}", t.elapsed()/(200*4096));
         for i in 0..2 { println!("{:?}", tab.axis(i)); println!("{:?}", b.certificates[i]); }
     }
 }

@@ -1,19 +1,25 @@
 //! Parallel, resumable parameter sweeps of pneumatic muscles, and certified tables from them.
 
 mod certified;
+mod chunk;
 mod design;
 mod family;
 mod file;
+mod folder;
 mod muscle_field;
 mod output;
 mod permutation;
 pub mod plan;
+mod run;
 mod sobol;
 
 pub use certified::{BuildError, Built, EncodeError, Field, FieldAxis, FieldOutput, NoValue, Wish, build};
+pub use chunk::{Chunk, Column, Computer};
 pub use design::{Coordinate, Layout};
 pub use family::{Family, FamilyError, Member};
 pub use file::SWEEP_EXAMPLE;
+pub use folder::{Promise, write_durably};
 pub use muscle_field::MuscleField;
 pub use output::Output;
 pub use plan::Plan;
+pub use run::{Progress, RunOptions, Summary, SweepError, run};

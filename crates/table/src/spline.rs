@@ -137,16 +137,22 @@ impl Spline<'_, 2> {
         let each = O * N::BYTES;
         let row = each * self.nodes[1];
         let mut found = Graded::<2, O>::ZERO;
+        let mut start = cells[0] * row + cells[1] * each;
         for i in 0..4 {
-            let start = (cells[0] + i) * row + cells[1] * each;
             let knots = self.data.get(start..start + 4 * each)?;
+            start += row;
+            let (mut value, mut by) = ([0.0; O], [0.0; O]);
+            for (k, numbers) in knots.chunks_exact(each).enumerate().take(4) {
+                for (o, number) in numbers.chunks_exact(N::BYTES).enumerate().take(O) {
+                    let coefficient = N::read(number);
+                    value[o] += along.value[k] * coefficient;
+                    by[o] += along.slope[k] * coefficient;
+                }
+            }
             for o in 0..O {
-                let number = |k: usize| N::read(&knots[k * each + o * N::BYTES..]);
-                let four = [number(0), number(1), number(2), number(3)];
-                let (value, by) = (dot(along.value, four), dot(along.slope, four));
-                found.value[o] += across.value[i] * value;
-                found.by[0][o] += across.slope[i] * value;
-                found.by[1][o] += across.value[i] * by;
+                found.value[o] += across.value[i] * value[o];
+                found.by[0][o] += across.slope[i] * value[o];
+                found.by[1][o] += across.value[i] * by[o];
             }
         }
         Some(found)
@@ -158,16 +164,12 @@ impl Spline<'_, 2> {
 pub(crate) fn on_line<const A: usize>(data: &[u8], cell: usize, basis: &Basis) -> Option<Graded<A, 2>> {
     let knots: &[u8; 64] = data.get(16 * cell..)?.first_chunk()?;
     let mut found = Graded::ZERO;
-    for o in 0..2 {
-        let number = |i: usize| Double::read(&knots[16 * i + 8 * o..]);
-        let four = [number(0), number(1), number(2), number(3)];
-        found.value[o] = dot(basis.value, four);
-        found.by[1][o] = dot(basis.slope, four);
+    for k in 0..4 {
+        for o in 0..2 {
+            let coefficient = Double::read(&knots[16 * k + 8 * o..]);
+            found.value[o] += basis.value[k] * coefficient;
+            found.by[1][o] += basis.slope[k] * coefficient;
+        }
     }
     Some(found)
-}
-
-#[inline]
-fn dot(a: [f64; 4], b: [f64; 4]) -> f64 {
-    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
 }

@@ -1,0 +1,265 @@
+//! One chunk of a sweep: its points computed, and as the bytes of a Parquet file or of CSV. A pure function of the plan and the chunk's number.
+
+use bulge_fibre::FibreError;
+use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::{ColumnPath, Type};
+use serde::Serialize;
+use std::fmt::Write;
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::design::{Coordinate, Layout};
+use crate::family::{Family, FamilyError, Member};
+use crate::output::Output;
+use crate::plan::Plan;
+
+/// The points of a chunk, column by column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chunk {
+    /// Number of the first point.
+    pub first: u64,
+    /// Values of the axes in SI, in the order of the plan. Of a contraction that follows the limit of a muscle which has none, the part of it.
+    pub axes: Vec<Vec<f64>>,
+    /// Values of the outputs in SI, in the order of the plan; meaningless where [`Chunk::infeasible`] gives a reason.
+    pub outputs: Vec<Vec<f64>>,
+    /// Why a point has no equilibrium, by its place in the chunk, in rising order.
+    pub infeasible: Vec<(usize, String)>,
+}
+
+/// A column of the data set.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// Its unit; "1" for a pure number, empty for text and numbers of points.
+    pub unit: String,
+}
+
+/// A family laid out as points: what chunks are computed from.
+#[derive(Debug)]
+pub struct Computer<'a> {
+    plan: &'a Plan,
+    layout: &'a Layout,
+    family: Family,
+}
+
+/// The muscle of the last point, which its neighbours share.
+struct Last {
+    number: u64,
+    member: Result<(Member, Option<f64>), String>,
+}
+
+impl<'a> Computer<'a> {
+    /// For a plan with a design.
+    ///
+    /// # Errors
+    /// If the muscle file states an effect that doesn't exist.
+    pub fn new(plan: &'a Plan, layout: &'a Layout) -> Result<Self, FamilyError> {
+        Ok(Self { plan, layout, family: Family::new(plan)? })
+    }
+
+    /// The points of a range of numbers.
+    #[must_use]
+    pub fn chunk(&self, points: Range<u64>) -> Chunk {
+        let count = usize::try_from(points.end - points.start).unwrap_or(0);
+        let (axes, outputs) = (self.plan.axes.len(), self.plan.outputs.len());
+        let mut chunk = Chunk {
+            first: points.start,
+            axes: vec![Vec::with_capacity(count); axes],
+            outputs: vec![Vec::with_capacity(count); outputs],
+            infeasible: Vec::new(),
+        };
+        let mut place = vec![Coordinate::Value(0.0); axes];
+        let (mut point, mut values) = (vec![0.0; axes], vec![0.0; outputs]);
+        let mut last: Option<Last> = None;
+        for (row, number) in points.enumerate() {
+            self.layout.place(number, &mut place);
+            let follows = place.iter().any(|at| matches!(at, Coordinate::OfLimit { .. }));
+            let member = self.layout.member(number);
+            // The limit is needed to know the contraction; the muscle doesn't depend on it.
+            for (x, at) in point.iter_mut().zip(&place) {
+                *x = at.value(1.0);
+            }
+            let now = match last.take() {
+                Some(same) if same.number == member => same,
+                _ => Last { number: member, member: self.member(&point, follows) },
+            };
+            let found = now.member.as_ref().map_err(Clone::clone).and_then(|(member, limit)| {
+                for (x, at) in point.iter_mut().zip(&place) {
+                    *x = at.value(limit.unwrap_or(1.0));
+                }
+                let contraction = self.family.contraction(&point);
+                self.feasible(&place, *limit)?;
+                member
+                    .pulling(contraction, *limit, &self.plan.outputs, &mut values)
+                    .map_err(|error| error.to_string())?;
+                let finite = |(value, output): (&f64, &Output)| {
+                    if value.is_finite() { Ok(()) } else { Err(format!("`{}` is {value}", output.name())) }
+                };
+                values.iter().zip(&self.plan.outputs).try_for_each(finite)
+            });
+            last = Some(now);
+            for (column, x) in chunk.axes.iter_mut().zip(&point) {
+                column.push(*x);
+            }
+            for (column, value) in chunk.outputs.iter_mut().zip(&values) {
+                column.push(*value);
+            }
+            if let Err(reason) = found {
+                chunk.infeasible.push((row, reason));
+            }
+        }
+        chunk
+    }
+
+    fn member(&self, point: &[f64], follows: bool) -> Result<(Member, Option<f64>), String> {
+        let of = |member: Member| {
+            let limit = if follows { Some(member.contraction_limit()?) } else { None };
+            Ok((member, limit))
+        };
+        self.family.member(point).and_then(of).map_err(|error: FamilyError| error.to_string())
+    }
+
+    /// An axis that follows the limit must begin below it.
+    fn feasible(&self, place: &[Coordinate], limit: Option<f64>) -> Result<(), String> {
+        for at in place {
+            if let (Coordinate::OfLimit { from, .. }, Some(limit)) = (at, limit)
+                && *from >= limit
+            {
+                return Err(FibreError::BeyondLimit { contraction: *from, limit }.to_string());
+            }
+        }
+        Ok(())
+    }
+
+    /// The columns of the data set, in order: number of the point, axes, outputs, reason.
+    #[must_use]
+    pub fn columns(&self) -> Vec<Column> {
+        let column = |name: String, unit: String| Column { name, unit };
+        let mut columns = vec![column("index".to_owned(), String::new())];
+        columns.extend(self.plan.axes.iter().map(|axis| column(axis.name.clone(), axis.unit.clone())));
+        columns.extend(self.plan.outputs.iter().map(|output| column(output.name(), output.unit())));
+        columns.push(column("infeasible".to_owned(), String::new()));
+        columns
+    }
+
+    /// A chunk as a Parquet file: `index` int64, the axes as required doubles, the outputs as optional doubles, `infeasible` as optional text.
+    /// Metadata: `bulge.columns` (names and units), `bulge.sweep` (`about`).
+    ///
+    /// # Errors
+    /// What the Parquet library says.
+    pub fn parquet(&self, chunk: &Chunk, about: &str) -> Result<Vec<u8>, ParquetError> {
+        let columns = self.columns();
+        let (axes, outputs) = (chunk.axes.len(), chunk.outputs.len());
+        let field = |(i, column): (usize, &Column)| {
+            let (physical, repetition, logical) = if i == 0 {
+                (Physical::INT64, Repetition::REQUIRED, None)
+            } else if i <= axes {
+                (Physical::DOUBLE, Repetition::REQUIRED, None)
+            } else if i <= axes + outputs {
+                (Physical::DOUBLE, Repetition::OPTIONAL, None)
+            } else {
+                (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String))
+            };
+            let builder = Type::primitive_type_builder(&column.name, physical);
+            builder.with_repetition(repetition).with_logical_type(logical).build().map(Arc::new)
+        };
+        let fields = columns.iter().enumerate().map(field).collect::<Result<Vec<_>, _>>()?;
+        let schema = Arc::new(Type::group_type_builder("points").with_fields(fields).build()?);
+        let described = serde_json::to_string(&columns)
+            .map_err(|error| ParquetError::General(format!("the names of the columns: {error}")))?;
+        let metadata = vec![
+            KeyValue::new("bulge.columns".to_owned(), described),
+            KeyValue::new("bulge.sweep".to_owned(), about.to_owned()),
+        ];
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            // Numbers hardly repeat; the number of a point is the last one plus 1.
+            .set_dictionary_enabled(false)
+            .set_column_encoding(ColumnPath::from("index"), Encoding::DELTA_BINARY_PACKED)
+            .set_column_dictionary_enabled(ColumnPath::from("infeasible"), true)
+            .set_key_value_metadata(Some(metadata))
+            .build();
+        let mut bytes = Vec::new();
+        let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties))?;
+        let mut group = writer.next_row_group()?;
+        let rows = chunk.rows();
+        let mut levels = vec![1_i16; rows];
+        for (row, _) in &chunk.infeasible {
+            levels[*row] = 0;
+        }
+        let missing = || ParquetError::General("a column is missing".to_owned());
+        let numbers: Vec<i64> =
+            (chunk.first..).take(rows).map(|n| i64::try_from(n).unwrap_or(i64::MAX)).collect();
+        let mut column = group.next_column()?.ok_or_else(missing)?;
+        column.typed::<Int64Type>().write_batch(&numbers, None, None)?;
+        column.close()?;
+        for values in &chunk.axes {
+            let mut column = group.next_column()?.ok_or_else(missing)?;
+            column.typed::<DoubleType>().write_batch(values, None, None)?;
+            column.close()?;
+        }
+        for values in &chunk.outputs {
+            let mut column = group.next_column()?.ok_or_else(missing)?;
+            let present = chunk.present(values);
+            column.typed::<DoubleType>().write_batch(&present, Some(&levels), None)?;
+            column.close()?;
+        }
+        let reasons: Vec<ByteArray> =
+            chunk.infeasible.iter().map(|(_, reason)| ByteArray::from(reason.as_str())).collect();
+        let with_reason: Vec<i16> = levels.iter().map(|level| 1 - level).collect();
+        let mut column = group.next_column()?.ok_or_else(missing)?;
+        column.typed::<ByteArrayType>().write_batch(&reasons, Some(&with_reason), None)?;
+        column.close()?;
+        group.close()?;
+        writer.close()?;
+        Ok(bytes)
+    }
+
+    /// A chunk as CSV with a heading, `name [unit]`; empty cells where there is no equilibrium.
+    #[must_use]
+    pub fn csv(&self, chunk: &Chunk) -> String {
+        let heading = |column: &Column| match column.unit.as_str() {
+            "" | "1" => column.name.clone(),
+            unit => format!("{} [{unit}]", column.name),
+        };
+        let mut text = self.columns().iter().map(heading).collect::<Vec<_>>().join(",") + "\n";
+        let mut reasons = chunk.infeasible.iter().peekable();
+        for row in 0..chunk.rows() {
+            let reason = reasons.next_if(|(place, _)| *place == row).map(|(_, reason)| reason);
+            let _ = write!(text, "{}", chunk.first + row as u64);
+            for column in &chunk.axes {
+                let _ = write!(text, ",{}", column[row]);
+            }
+            for column in &chunk.outputs {
+                let _ = match reason {
+                    None => write!(text, ",{}", column[row]),
+                    Some(_) => write!(text, ","),
+                };
+            }
+            let quoted = reason.map_or_else(String::new, |r| format!("\"{}\"", r.replace('"', "\"\"")));
+            let _ = writeln!(text, ",{quoted}");
+        }
+        text
+    }
+}
+
+impl Chunk {
+    /// Number of points.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.axes.first().map_or(0, Vec::len)
+    }
+
+    /// Values of the points that have an equilibrium.
+    fn present(&self, values: &[f64]) -> Vec<f64> {
+        let mut skip = self.infeasible.iter().map(|(row, _)| *row).peekable();
+        let keep = |(row, _): &(usize, &f64)| skip.next_if_eq(row).is_none();
+        values.iter().enumerate().filter(keep).map(|(_, value)| *value).collect()
+    }
+}

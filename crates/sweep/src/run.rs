@@ -1,0 +1,361 @@
+//! Running a sweep: chunks in parallel, each written whole, and only those that aren't there yet.
+
+use parquet::errors::ParquetError;
+use rayon::prelude::*;
+use serde::Serialize;
+use serde_json::json;
+use std::fs;
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::chunk::Computer;
+use crate::design::Layout;
+use crate::family::FamilyError;
+use crate::folder::{Folder, Promise, Standing, hash, write_durably};
+use crate::plan::Plan;
+
+/// Format of the folder.
+const SCHEMA: &str = "bulge.sweep/1";
+/// Most lines of a difference that are shown.
+const MOST_SHOWN: usize = 12;
+
+/// How a sweep is run.
+#[derive(Debug, Clone, Default)]
+pub struct RunOptions {
+    /// These chunks only; all if none. Several processes may run chunks of one sweep in one folder.
+    pub chunks: Option<Range<u64>>,
+    /// Goes on with what is in the folder.
+    pub resume: bool,
+    /// Writes each chunk as CSV as well.
+    pub csv: bool,
+    /// Folders of the same sweep, whose chunks are taken over first.
+    pub merge: Vec<PathBuf>,
+}
+
+/// How far a run is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress {
+    /// Points that are done.
+    pub done: u64,
+    /// Points of this run.
+    pub all: u64,
+}
+
+/// What a run did.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Summary {
+    /// Points of the chunks of this run.
+    pub points: u64,
+    /// Of these without equilibrium.
+    pub infeasible: u64,
+    /// Chunks of this run.
+    pub chunks: u64,
+    /// Of these computed now; the others were there.
+    pub computed: u64,
+    /// What was damaged, and is computed again.
+    pub damaged: Vec<String>,
+    /// Whether all chunks of the sweep are there: the manifest is written.
+    pub is_complete: bool,
+}
+
+/// Why a sweep stops. What is written stays, and `resume` goes on from there.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    /// A file that can't be read or written.
+    #[error("{}: {source}; nothing that is finished is lost: make room or mend it, and go on with `--resume`", path.display())]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The folder holds another sweep.
+    #[error("{} holds another sweep; the plans differ in\n{difference}\ntake another folder, or undo the change", path.display())]
+    Changed {
+        /// The folder.
+        path: PathBuf,
+        /// Lines that differ: `-` in the folder, `+` now.
+        difference: String,
+    },
+    /// The folder holds this sweep already.
+    #[error("{} holds this sweep already: add `--resume` to go on with it, or take another folder", path.display())]
+    AlreadyThere {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A folder to be merged holds no such sweep.
+    #[error("{} holds no sweep: it has no plan.json", path.display())]
+    NoSweep {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Chunks beyond the last one.
+    #[error("chunks {}..{} are asked for: this sweep has the chunks 0..{all}", asked.start, asked.end)]
+    NoSuchChunks {
+        /// Asked for.
+        asked: Range<u64>,
+        /// How many there are.
+        all: u64,
+    },
+    /// The plan has no points.
+    #[error("this sweep has no points: give every axis such as `points = 101`")]
+    NoPoints,
+    /// The family of the plan.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
+    /// The Parquet library.
+    #[error("a chunk can't be written as Parquet: {0}")]
+    Parquet(#[from] ParquetError),
+    /// The plan as JSON.
+    #[error("the plan can't be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+impl Plan {
+    /// Everything that decides the numbers of the points, as JSON: what is hashed, and compared when a sweep goes on.
+    ///
+    /// # Errors
+    /// If a number of the plan has no JSON.
+    pub fn canonical(&self) -> Result<String, serde_json::Error> {
+        let document = json!({
+            "schema": SCHEMA,
+            "version": env!("CARGO_PKG_VERSION"),
+            "muscle": bulge_muscles::to_toml(&self.muscle).lines().collect::<Vec<_>>(),
+            "pressure_pa": self.pressure_pa,
+            "contraction": self.contraction,
+            "method": format!("{:?}", self.approach),
+            "design": self.design,
+            "axes": self.axes,
+            "outputs": self.outputs,
+            "chunk": self.chunk,
+        });
+        Ok(serde_json::to_string_pretty(&document)? + "\n")
+    }
+}
+
+/// Runs a sweep into a folder. `told` hears how far it is, from several threads.
+///
+/// # Errors
+/// [`SweepError`].
+pub fn run(
+    plan: &Plan,
+    path: &Path,
+    options: &RunOptions,
+    told: &(dyn Fn(Progress) + Sync),
+) -> Result<Summary, SweepError> {
+    let layout = Layout::new(plan).ok_or(SweepError::NoPoints)?;
+    let all = plan.chunks();
+    let chunks = options.chunks.clone().unwrap_or(0..all);
+    if chunks.is_empty() || chunks.end > all {
+        return Err(SweepError::NoSuchChunks { asked: chunks, all });
+    }
+    let canonical = plan.canonical()?;
+    let key = hash(canonical.as_bytes());
+    let folder = Folder::new(path);
+    open(&folder, path, &canonical, options)?;
+    for from in &options.merge {
+        merge(&folder, from, &canonical, &key, all)?;
+    }
+    let run = Run {
+        plan,
+        computer: Computer::new(plan, &layout)?,
+        folder,
+        key,
+        csv: options.csv,
+        done: AtomicU64::new(0),
+        all: points_of(plan, &chunks),
+        damaged: Mutex::new(Vec::new()),
+        told,
+    };
+    run.tell(0);
+    let count = usize::try_from(chunks.end - chunks.start).unwrap_or(usize::MAX);
+    let promises: Vec<(Promise, bool)> = (0..count)
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|i| run.chunk(chunks.start + i as u64))
+        .collect::<Result<_, _>>()?;
+    let mut summary = Summary {
+        points: promises.iter().map(|(promise, _)| promise.points).sum(),
+        infeasible: promises.iter().map(|(promise, _)| promise.infeasible).sum(),
+        chunks: chunks.end - chunks.start,
+        computed: promises.iter().filter(|(_, is_new)| *is_new).count() as u64,
+        damaged: run.damaged.into_inner().unwrap_or_default(),
+        is_complete: false,
+    };
+    summary.damaged.sort();
+    if chunks == (0..all) {
+        let promises: Vec<&Promise> = promises.iter().map(|(promise, _)| promise).collect();
+        let manifest = json!({
+            "schema": SCHEMA,
+            "plan": run.key,
+            "points": summary.points,
+            "infeasible": summary.infeasible,
+            "chunks": promises,
+        });
+        let text = serde_json::to_string_pretty(&manifest)? + "\n";
+        write(&run.folder.manifest(), text.as_bytes())?;
+        summary.is_complete = true;
+    }
+    Ok(summary)
+}
+
+/// Everything that the chunks of a run share.
+struct Run<'a> {
+    plan: &'a Plan,
+    computer: Computer<'a>,
+    folder: Folder,
+    key: String,
+    csv: bool,
+    done: AtomicU64,
+    all: u64,
+    damaged: Mutex<Vec<String>>,
+    told: &'a (dyn Fn(Progress) + Sync),
+}
+
+impl Run<'_> {
+    fn tell(&self, more: u64) {
+        let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
+        (self.told)(Progress { done, all: self.all });
+    }
+
+    /// A chunk that is there, or is computed now.
+    fn chunk(&self, number: u64) -> Result<(Promise, bool), SweepError> {
+        let path = self.folder.promise(number);
+        match self.folder.standing(number, &self.key, self.csv).map_err(at(&path))? {
+            Standing::Done(promise) => {
+                self.tell(promise.points);
+                return Ok((promise, false));
+            }
+            Standing::Absent => {}
+            Standing::Damaged(what) => {
+                if let Ok(mut damaged) = self.damaged.lock() {
+                    damaged.push(what);
+                }
+            }
+        }
+        let points = points_of_chunk(self.plan, number);
+        let chunk = self.computer.chunk(points.clone());
+        let about = json!({ "name": self.plan.name, "plan": self.key, "chunk": number, "first": points.start });
+        let bytes = self.computer.parquet(&chunk, &about.to_string())?;
+        write(&self.folder.parquet(number), &bytes)?;
+        let csv_sha256 = if self.csv {
+            let text = self.computer.csv(&chunk);
+            write(&self.folder.csv(number), text.as_bytes())?;
+            Some(hash(text.as_bytes()))
+        } else {
+            None
+        };
+        let promise = Promise {
+            chunk: number,
+            first: points.start,
+            points: points.end - points.start,
+            infeasible: chunk.infeasible.len() as u64,
+            sha256: hash(&bytes),
+            csv_sha256,
+            plan: self.key.clone(),
+        };
+        write(&path, (serde_json::to_string(&promise)? + "\n").as_bytes())?;
+        self.tell(promise.points);
+        Ok((promise, true))
+    }
+}
+
+/// Numbers of the points of a chunk.
+fn points_of_chunk(plan: &Plan, number: u64) -> Range<u64> {
+    let all = u64::try_from(plan.points()).unwrap_or(u64::MAX);
+    let first = number.saturating_mul(plan.chunk);
+    first..first.saturating_add(plan.chunk).min(all)
+}
+
+fn points_of(plan: &Plan, chunks: &Range<u64>) -> u64 {
+    let last = points_of_chunk(plan, chunks.end.saturating_sub(1));
+    last.end - points_of_chunk(plan, chunks.start).start
+}
+
+fn at(path: &Path) -> impl Fn(io::Error) -> SweepError {
+    let path = path.to_owned();
+    move |source| SweepError::File { path: path.clone(), source }
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
+    write_durably(path, bytes).map_err(at(path))
+}
+
+/// Makes the folder ready, or says why it can't be this sweep's.
+fn open(folder: &Folder, path: &Path, canonical: &str, options: &RunOptions) -> Result<(), SweepError> {
+    folder.create(options.csv).map_err(at(path))?;
+    let plan = folder.plan();
+    match fs::read_to_string(&plan) {
+        Ok(before) if before == canonical => {
+            if !options.resume && options.chunks.is_none() && options.merge.is_empty() {
+                return Err(SweepError::AlreadyThere { path: path.to_owned() });
+            }
+            // Other processes may be at work on other chunks.
+            if options.chunks.is_none() {
+                folder.sweep_up().map_err(at(path))?;
+            }
+            Ok(())
+        }
+        Ok(before) => {
+            Err(SweepError::Changed { path: path.to_owned(), difference: difference(&before, canonical) })
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => write(&plan, canonical.as_bytes()),
+        Err(error) => Err(at(&plan)(error)),
+    }
+}
+
+/// Takes over the chunks of another folder of the same sweep that are done and whole.
+fn merge(folder: &Folder, from: &Path, canonical: &str, key: &str, all: u64) -> Result<(), SweepError> {
+    let other = Folder::new(from);
+    let plan = match fs::read_to_string(other.plan()) {
+        Ok(plan) => plan,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            return Err(SweepError::NoSweep { path: from.to_owned() });
+        }
+        Err(error) => return Err(at(&other.plan())(error)),
+    };
+    if plan != canonical {
+        let difference = difference(&plan, canonical);
+        return Err(SweepError::Changed { path: from.to_owned(), difference });
+    }
+    for chunk in 0..all {
+        let standing = |folder: &Folder| folder.standing(chunk, key, false).map_err(at(&folder.promise(chunk)));
+        if matches!(standing(folder)?, Standing::Done(_)) {
+            continue;
+        }
+        let Standing::Done(promise) = standing(&other)? else { continue };
+        let mut files = vec![(other.parquet(chunk), folder.parquet(chunk))];
+        if promise.csv_sha256.is_some() {
+            fs::create_dir_all(folder.csv(chunk).with_file_name("")).map_err(at(&folder.csv(chunk)))?;
+            files.push((other.csv(chunk), folder.csv(chunk)));
+        }
+        // The promise last: it makes the chunk count.
+        files.push((other.promise(chunk), folder.promise(chunk)));
+        for (source, target) in files {
+            let bytes = fs::read(&source).map_err(at(&source))?;
+            write(&target, &bytes)?;
+        }
+    }
+    Ok(())
+}
+
+/// Lines of two texts that differ, with their keys in sight.
+fn difference(before: &str, now: &str) -> String {
+    let (old, new): (Vec<&str>, Vec<&str>) = (before.lines().collect(), now.lines().collect());
+    let same = old.iter().zip(&new).take_while(|(a, b)| a == b).count();
+    let rest = old.len().min(new.len()) - same;
+    let tail = old.iter().rev().zip(new.iter().rev()).take(rest).take_while(|(a, b)| a == b).count();
+    let part = |lines: &[&str], sign: char| {
+        let lines = &lines[same..lines.len() - tail];
+        let mut shown: Vec<String> =
+            lines.iter().take(MOST_SHOWN).map(|line| format!("  {sign} {}", line.trim())).collect();
+        if lines.len() > MOST_SHOWN {
+            shown.push(format!("  {sign} ... and {} lines more", lines.len() - MOST_SHOWN));
+        }
+        shown
+    };
+    [part(&old, '-'), part(&new, '+')].concat().join("\n")
+}
