@@ -8,6 +8,8 @@ use bulge_measurements::MeasurementError;
 use bulge_model::{ExtendedError, ModelError};
 use bulge_muscles::{FileError, PresetError, UnitError};
 use bulge_report::PlotError;
+use bulge_sweep::{BuildError, SweepError, TabulateError};
+use bulge_table::TableError;
 use bulge_vtk::VtkError;
 use std::path::PathBuf;
 
@@ -44,6 +46,16 @@ pub(crate) enum Failure {
     Extended(Box<ExtendedError>),
     #[error("{0}")]
     NotConverged(String),
+    #[error("{0}")]
+    Sweep(Box<SweepError>),
+    #[error("{0}")]
+    Tabulate(Box<TabulateError>),
+    #[error("{} {what}", path.display())]
+    TableFile { path: PathBuf, what: String },
+    #[error("{0}")]
+    Table(#[from] TableError),
+    #[error("{0}")]
+    Outside(String),
     #[error("the result cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
     #[error("{failed} of {all} checks failed:\n{table}")]
@@ -70,7 +82,11 @@ impl Failure {
                 _ => 1,
             },
             Self::Model(error) => model_status(error),
-            Self::Extended(_) => 3,
+            Self::Extended(_) | Self::Outside(_) => 3,
+            Self::Tabulate(error) => match error.as_ref() {
+                TabulateError::Build(BuildError::NoValue(_)) => 3,
+                _ => 1,
+            },
             Self::NotConverged(_) => 4,
             _ => 1,
         }
@@ -106,5 +122,7 @@ boxed!(
     EffectFile(EffectFileError),
     Measurement(MeasurementError),
     Inference(InferenceError),
-    Model(ModelError)
+    Model(ModelError),
+    Sweep(SweepError),
+    Tabulate(TabulateError)
 );

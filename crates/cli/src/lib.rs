@@ -8,6 +8,8 @@
 //! - [`effects`] what acts; the catalogue of physical effects and force laws,
 //! - [`model`] what it predicts along a measured history,
 //! - [`inference`] whether that matches; fits and the ladder of errors,
+//! - [`sweep`] runs families of muscles over their parameters, and makes certified tables of them,
+//! - [`table`] looks such tables up, without std,
 //! - [`vtk`] what it looks like in ParaView,
 //! - [`report`] draws plots,
 //! - [`numerics`] has the integrator, elliptic integrals, dual numbers.
@@ -33,4 +35,6 @@ pub use bulge_model as model;
 pub use bulge_muscles as muscles;
 pub use bulge_numerics as numerics;
 pub use bulge_report as report;
+pub use bulge_sweep as sweep;
+pub use bulge_table as table;
 pub use bulge_vtk as vtk;

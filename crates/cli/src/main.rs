@@ -16,6 +16,8 @@ mod plan;
 mod shape;
 mod simulate;
 mod sketch;
+mod sweep;
+mod table;
 mod text;
 mod validate;
 
@@ -46,6 +48,10 @@ enum Command {
     Shape(shape::ShapeCommand),
     /// Isobaric characteristics: force and volume over the contraction
     Curve(curve::CurveCommand),
+    /// A parallel, resumable sweep of a family of muscles, into Parquet files and a certified table
+    Sweep(sweep::SweepCommand),
+    /// Look into a table: values, gradients, certified errors
+    Table(table::TableCommand),
     /// Model against measurement: where it fails, and how the error falls as effects are added
     Compare(compare::CompareCommand),
     /// Which physical effect is missing, and how sure that is
@@ -84,6 +90,8 @@ fn main() -> ExitCode {
         Command::Demo(command) => command.run(),
         Command::Shape(command) => command.run(),
         Command::Curve(command) => command.run(),
+        Command::Sweep(command) => command.run(),
+        Command::Table(command) => command.run(),
         Command::Compare(command) => command.run(),
         Command::Diagnose(command) => command.run(),
         Command::Fit(command) => command.run(),

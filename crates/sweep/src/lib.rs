@@ -12,6 +12,7 @@ mod permutation;
 pub mod plan;
 mod run;
 mod sobol;
+mod tabulate;
 
 pub use certified::{BuildError, Built, EncodeError, Field, FieldAxis, FieldOutput, NoValue, Wish, build};
 pub use chunk::{Chunk, Column, Computer};
@@ -23,3 +24,4 @@ pub use muscle_field::MuscleField;
 pub use output::Output;
 pub use plan::Plan;
 pub use run::{Progress, RunOptions, Summary, SweepError, run};
+pub use tabulate::{AxisDescription, OutputDescription, TableDescription, TabulateError, table_text, tabulate};

@@ -1,0 +1,80 @@
+//! A table as CSV: values and derivatives on a regular grid that follows the fitted edge.
+
+use bulge_table::Table;
+use std::fmt::Write as _;
+
+use super::{ExportError, MOST_ROWS, axes, outputs};
+
+/// Part of the width of axis 0 that the grid keeps away from a fitted edge and from a singular lower end, where the lookup has no value.
+const INSIDE: f64 = 1e-9;
+
+/// Rows of `points_per_axis` equal steps on each axis, the last one fastest: coordinates, outputs, and the outputs' derivatives by each axis. A
+/// fitted axis 0 goes to its edge at the other coordinates. Numbers have as many digits as reading them back needs.
+///
+/// # Errors
+/// [`ExportError::TooFewPoints`] or [`ExportError::TooManyRows`].
+pub fn csv(table: &Table<'_>, points_per_axis: usize) -> Result<String, ExportError> {
+    let (axes, outputs) = (axes(table), outputs(table));
+    if points_per_axis < 2 {
+        return Err(ExportError::TooFewPoints { points: points_per_axis });
+    }
+    let too_many = ExportError::TooManyRows { points: points_per_axis, axes: axes.len() };
+    let count = u32::try_from(axes.len()).ok().and_then(|n| points_per_axis.checked_pow(n));
+    let Some(count) = count.filter(|count| *count <= MOST_ROWS) else { return Err(too_many) };
+
+    let mut header: Vec<String> =
+        axes.iter().map(|axis| quoted(&format!("{} [{}]", axis.name, axis.unit))).collect();
+    header.extend(outputs.iter().map(|output| quoted(&format!("{} [{}]", output.name, output.unit))));
+    for output in &outputs {
+        for axis in &axes {
+            let unit = if axis.unit == "1" {
+                output.unit.to_owned()
+            } else {
+                format!("{}/({})", output.unit, axis.unit)
+            };
+            header.push(quoted(&format!("d({})/d({}) [{unit}]", output.name, axis.name)));
+        }
+    }
+    let mut text = header.join(",");
+    text.push('\n');
+
+    let is_singular = outputs.iter().any(|output| output.is_singular) || table.is_root();
+    let (mut point, mut values) = (vec![0.0; axes.len()], vec![0.0; outputs.len()]);
+    let mut gradients = vec![0.0; outputs.len() * axes.len()];
+    for row in 0..count {
+        let mut rest = row;
+        for i in (0..axes.len()).rev() {
+            let part = (rest % points_per_axis) as f64 / (points_per_axis - 1) as f64;
+            rest /= points_per_axis;
+            let (low, mut high) = (axes[i].low, axes[i].high);
+            let mut part = part;
+            if i == 0 {
+                high = table.upper_end(&point).unwrap_or(high);
+                let least = if is_singular { INSIDE } else { 0.0 };
+                let most = if table.is_fitted() { 1.0 - INSIDE } else { 1.0 };
+                part = part.clamp(least, most);
+            }
+            // Exact at both ends.
+            point[i] = if part >= 1.0 { high } else { low + part * (high - low) };
+        }
+        if table.sample(&point, &mut values, &mut gradients).is_none() {
+            values.fill(f64::NAN);
+            gradients.fill(f64::NAN);
+        }
+        for (i, number) in point.iter().chain(&values).chain(&gradients).enumerate() {
+            let comma = if i == 0 { "" } else { "," };
+            let _ = write!(text, "{comma}{number:?}");
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+/// A field of the header; names and units may hold anything.
+fn quoted(field: &str) -> String {
+    if field.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_owned()
+    }
+}
