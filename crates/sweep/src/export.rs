@@ -15,7 +15,7 @@ pub use polynomial::{FitError, PapersPolynomial, S1Tables, papers_polynomial, s1
 pub use rust_source::rust_source;
 
 use bulge_fibre::FibreError;
-use bulge_muscles::PresetError;
+use bulge_muscles::{MuscleError, PresetError};
 use bulge_table::{Axis, Output, Table};
 
 /// Why a table can't be exported.
@@ -70,6 +70,9 @@ pub enum ExportError {
     /// A muscle that isn't shipped.
     #[error(transparent)]
     Muscle(#[from] PresetError),
+    /// A value that the muscle can't have.
+    #[error(transparent)]
+    Value(#[from] MuscleError),
     /// No equilibrium.
     #[error(transparent)]
     Fibre(#[from] FibreError),

@@ -3,10 +3,10 @@
 mod axes;
 mod check;
 mod outputs;
-mod scale;
+pub(crate) mod scale;
 #[cfg(test)]
 mod tests;
-mod wish;
+pub(crate) mod wish;
 
 use bulge_fibre::Approach;
 use bulge_muscles::settings::{Document, FileKind, Keys, Settings};
@@ -123,7 +123,7 @@ impl Plan {
 
 fn plan(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Plan, FileError> {
     settings.check_keys()?;
-    let muscle = muscle(settings, folder)?;
+    let muscle = muscle(settings, "muscle", folder)?;
     let axes = axes::axes(settings, &muscle)?;
     let pressure_pa = pressure(settings, &axes)?;
     let family = Family { muscle: &muscle, pressure: pressure_pa, axes: &axes };
@@ -163,9 +163,9 @@ fn name(settings: &Settings<'_>, muscle: &Muscle) -> Result<String, FileError> {
     Ok(name.to_owned())
 }
 
-/// A muscle file, or a shipped muscle where no file of that name exists.
-fn muscle(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Muscle, FileError> {
-    let name = settings.text("muscle")?.ok_or_else(|| settings.missing("muscle"))?;
+/// The muscle that a key names: a muscle file, or a shipped muscle where no file of that name exists.
+pub(crate) fn muscle(settings: &Settings<'_>, key: &str, folder: Option<&Path>) -> Result<Muscle, FileError> {
+    let name = settings.text(key)?.ok_or_else(|| settings.missing(key))?;
     let path = folder.map_or_else(|| name.into(), |folder| folder.join(name));
     let shipped = PRESETS.iter().any(|preset| preset.name == name);
     let looks_like_a_name = !name.contains(['/', '.', '\\']);
@@ -176,7 +176,7 @@ fn muscle(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Muscle, File
         PresetError::File(error) => error,
         PresetError::Unknown { name, instead } => {
             let what = format!("`{name}` is neither a muscle file nor a shipped muscle");
-            settings.error(settings.value_span("muscle"), what, instead)
+            settings.error(settings.value_span(key), what, instead)
         }
     })
 }

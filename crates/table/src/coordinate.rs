@@ -20,20 +20,20 @@ impl Fixed {
         if !(x >= self.low && x <= self.high) {
             return None;
         }
-        let [q, by_x] = stretched(x - self.low, self.pole);
+        let (v, by_x) = self.coordinate(x - self.low);
         // Rounding may pass 1 at the upper end.
-        Some([(self.scale * q).min(1.0), self.scale * by_x])
+        Some([v.min(1.0), by_x])
     }
-}
 
-/// q = s/(s + c) and dq/ds; s itself where c is infinite.
-#[inline]
-pub(crate) fn stretched(s: f64, pole: f64) -> [f64; 2] {
-    if pole == f64::INFINITY {
-        return [s, 1.0];
+    /// The coordinate and its derivative at a distance s from the lower end.
+    #[inline]
+    pub(crate) fn coordinate(&self, s: f64) -> (f64, f64) {
+        if self.pole == f64::INFINITY {
+            return (self.scale * s, self.scale);
+        }
+        let below = 1.0 / (s + self.pole);
+        (self.scale * (s * below), self.scale * (self.pole * below * below))
     }
-    let below = 1.0 / (s + pole);
-    [s * below, pole * below * below]
 }
 
 /// s and ds/dx of a distance from the lower end > 0: the distance or its root.

@@ -156,6 +156,9 @@ pub(crate) fn axis_at(bytes: &[u8], at: usize) -> Result<Axis<'_>, TableError> {
         nodes: count(0),
         edge_nodes: count(4),
     };
+    if u64_at(bytes, at + 88) != Some(0) {
+        return Err(TableError::Malformed { field: "reserved bytes" });
+    }
     let is_right = axis.low.is_finite() && axis.high.is_finite() && axis.low < axis.high && axis.pole > 0.0;
     if is_right { Ok(axis) } else { Err(TableError::Malformed { field: "range of an axis" }) }
 }
@@ -167,11 +170,19 @@ pub(crate) fn output_at(bytes: &[u8], at: usize) -> Result<Output<'_>, TableErro
         Some(1) => Ok(true),
         _ => Err(TableError::Malformed { field: "factors of an output" }),
     };
+    let (is_singular, vanishes) = (flag(0)?, flag(1)?);
+    if bytes.get(at + 50..at + 56).is_none_or(|rest| rest.iter().any(|byte| *byte != 0)) {
+        return Err(TableError::Malformed { field: "reserved bytes" });
+    }
+    // Refuses NaN: it would pass for a small error.
+    if !(0..6).all(|i| number(i) >= 0.0) {
+        return Err(TableError::Malformed { field: "errors of an output" });
+    }
     Ok(Output {
         name: text_at(bytes, at, NAME, "name of an output")?,
         unit: text_at(bytes, at + NAME, UNIT, "unit of an output")?,
-        is_singular: flag(0)?,
-        vanishes: flag(1)?,
+        is_singular,
+        vanishes,
         certificate: Certificate {
             value_max: number(0),
             value_rms: number(1),

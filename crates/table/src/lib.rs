@@ -58,6 +58,7 @@ mod crc64;
 mod error;
 pub mod format;
 mod lookup;
+mod plane;
 mod spline;
 mod sqrt;
 mod table;

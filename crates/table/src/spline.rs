@@ -1,5 +1,7 @@
 //! Cubic B-splines on equal cells: value and gradient per cell width from the 4^A coefficients about a cell.
 
+use core::array;
+
 /// The four basis functions that are not zero in a cell, at t in \[0, 1\] of it, and their derivatives.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Basis {
@@ -63,6 +65,16 @@ pub(crate) struct Graded<const A: usize, const O: usize> {
 
 impl<const A: usize, const O: usize> Graded<A, O> {
     pub(crate) const ZERO: Self = Self { value: [0.0; O], by: [[0.0; O]; A] };
+
+    /// From derivatives per cell to those per unit of the coordinates.
+    pub(crate) fn per_unit(mut self, cells: [f64; A]) -> Self {
+        for (by, cells) in self.by.iter_mut().zip(cells) {
+            for number in by {
+                *number *= cells;
+            }
+        }
+        self
+    }
 }
 
 /// A spline over `A` axes.
@@ -126,50 +138,16 @@ impl<const A: usize> Spline<'_, A> {
     }
 }
 
-impl Spline<'_, 2> {
-    /// The same for two axes, unrolled: four rows of four coefficients.
-    #[inline]
-    pub(crate) fn in_plane<N: Number, const O: usize>(
-        &self,
-        cells: [usize; 2],
-        [across, along]: &[Basis; 2],
-    ) -> Option<Graded<2, O>> {
-        let each = O * N::BYTES;
-        let row = each * self.nodes[1];
-        let mut found = Graded::<2, O>::ZERO;
-        let mut start = cells[0] * row + cells[1] * each;
-        for i in 0..4 {
-            let knots = self.data.get(start..start + 4 * each)?;
-            start += row;
-            let (mut value, mut by) = ([0.0; O], [0.0; O]);
-            for (k, numbers) in knots.chunks_exact(each).enumerate().take(4) {
-                for (o, number) in numbers.chunks_exact(N::BYTES).enumerate().take(O) {
-                    let coefficient = N::read(number);
-                    value[o] += along.value[k] * coefficient;
-                    by[o] += along.slope[k] * coefficient;
-                }
-            }
-            for o in 0..O {
-                found.value[o] += across.value[i] * value[o];
-                found.by[0][o] += across.slope[i] * value[o];
-                found.by[1][o] += across.value[i] * by[o];
-            }
-        }
-        Some(found)
-    }
+/// Two numbers along a single axis, in double precision, and their derivatives per cell: what an edge is for two axes.
+#[inline]
+pub(crate) fn on_line(data: &[u8], cell: usize, basis: &Basis) -> Option<([f64; 2], [f64; 2])> {
+    let knots: &[u8; 64] = data.get(16 * cell..)?.first_chunk()?;
+    let four: [[f64; 2]; 4] = array::from_fn(|k| array::from_fn(|o| Double::read(&knots[16 * k + 8 * o..])));
+    Some((weighted(basis.value, &four), weighted(basis.slope, &four)))
 }
 
-/// Two numbers along the axis 1 of two, in double precision: what an edge is there.
+/// The sum of four coefficients of each output with weights.
 #[inline]
-pub(crate) fn on_line<const A: usize>(data: &[u8], cell: usize, basis: &Basis) -> Option<Graded<A, 2>> {
-    let knots: &[u8; 64] = data.get(16 * cell..)?.first_chunk()?;
-    let mut found = Graded::ZERO;
-    for k in 0..4 {
-        for o in 0..2 {
-            let coefficient = Double::read(&knots[16 * k + 8 * o..]);
-            found.value[o] += basis.value[k] * coefficient;
-            found.by[1][o] += basis.slope[k] * coefficient;
-        }
-    }
-    Some(found)
+pub(crate) fn weighted<const O: usize>(w: [f64; 4], four: &[[f64; O]; 4]) -> [f64; O] {
+    array::from_fn(|o| (w[0] * four[0][o] + w[1] * four[1][o]) + (w[2] * four[2][o] + w[3] * four[3][o]))
 }

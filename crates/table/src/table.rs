@@ -11,9 +11,12 @@ use crate::format::{
     f64_at, output_at, u16_at, u32_at, u64_at,
 };
 use crate::lookup::Lookup;
+use crate::sqrt::reciprocal_root;
 
 /// Bytes of the checksum.
 const CHECKSUM: usize = 8;
+/// Smallest coordinate at which a singular output is looked up: its gradient has 1/u^2, which must not overflow.
+const LEAST_SINGULAR: f64 = 1e-90;
 /// Coefficients of a spline of one cell.
 const LEAST_NODES: usize = 4;
 /// Most coefficients along an axis.
@@ -89,6 +92,12 @@ impl<'a> Table<'a> {
         if !is_ordered || body.len() - text != text_length || flags & !(ROOT | FITTED) != 0 {
             return Err(malformed("header"));
         }
+        if u16_at(body, 14) != Some(0) {
+            return Err(malformed("reserved bytes"));
+        }
+        if !f64_at(body, 56).is_some_and(|error| error >= 0.0) {
+            return Err(malformed("error of the edge"));
+        }
         let table = Self {
             bytes,
             form,
@@ -129,7 +138,9 @@ impl<'a> Table<'a> {
             if has_edge {
                 edge = product(edge, axis.edge_nodes)?;
             }
-            if !(axis.scale > 0.0 && axis.scale.is_finite()) {
+            // The c and scale of a fitted axis aren't used.
+            let has_scale = (i == 0 && self.is_fitted()) || fits_scale(&axis, i == 0 && self.is_root());
+            if !(axis.scale > 0.0 && axis.scale.is_finite() && has_scale) {
                 return Err(malformed("scale of an axis"));
             }
         }
@@ -253,19 +264,28 @@ impl<'a> Table<'a> {
             edge_nodes: [0; A],
             edge: self.edge,
             data: self.data,
-            is_singular: [false; O],
-            any_singular: false,
-            vanishes: [false; O],
+            cells: [0.0; A],
+            edge_cells: [0.0; A],
+            // At the lower end itself a root has no derivative, and its bits must be those of a normal number.
+            least: if self.is_root() { f64::MIN_POSITIVE } else { 0.0 },
+            least_u: 0.0,
+            singular: [0.0; O],
+            vanishing: [0.0; O],
         };
         for i in 0..A {
             let axis = axis_at(self.bytes, HEADER + i * AXIS)?;
             lookup.axes[i] = Fixed { low: axis.low, high: axis.high, pole: axis.pole, scale: axis.scale };
             (lookup.nodes[i], lookup.edge_nodes[i]) = (axis.nodes, axis.edge_nodes);
+            lookup.cells[i] = axis.nodes.saturating_sub(3) as f64;
+            lookup.edge_cells[i] = axis.edge_nodes.saturating_sub(3) as f64;
         }
         for o in 0..O {
             let output = output_at(self.bytes, HEADER + A * AXIS + o * OUTPUT)?;
-            (lookup.is_singular[o], lookup.vanishes[o]) = (output.is_singular, output.vanishes);
-            lookup.any_singular |= output.is_singular;
+            lookup.singular[o] = f64::from(u8::from(output.is_singular));
+            lookup.vanishing[o] = f64::from(u8::from(output.vanishes));
+            if output.is_singular {
+                lookup.least_u = LEAST_SINGULAR;
+            }
         }
         Ok(lookup)
     }
@@ -343,6 +363,14 @@ impl<'a> Table<'a> {
             _ => of::<4>(self, point),
         }
     }
+}
+
+/// Whether the scale is 1/Q: otherwise the coordinate would end before its axis, or after it.
+fn fits_scale(axis: &Axis<'_>, is_root: bool) -> bool {
+    let width = axis.high - axis.low;
+    let s = if is_root { width * reciprocal_root(width) } else { width };
+    let q = if axis.pole == f64::INFINITY { s } else { s / (s + axis.pole) };
+    (axis.scale * q - 1.0).abs() < 1e-9
 }
 
 fn size_at(bytes: &[u8], at: usize) -> Option<usize> {

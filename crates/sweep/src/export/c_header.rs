@@ -18,8 +18,8 @@ const WIDTH: usize = 110;
 /// ```text
 /// static inline int NAME_at(const double x[A], double y[O], double dy[O][A]);
 /// ```
-/// which returns 1 and writes the outputs with their derivatives by the axes, or returns 0 outside the domain and for a NaN and writes nothing. The
-/// operations are those of `bulge_table`, in the same order; compilers that fuse multiplications and additions differ by rounding.
+/// which returns 1 and writes the outputs with their derivatives by the axes, or returns 0 outside the domain and for a NaN and writes nothing. It is
+/// the lookup of `bulge_table`, to rounding.
 ///
 /// # Errors
 /// [`ExportError::Name`] if the name isn't of letters, digits and underscores.
@@ -36,7 +36,8 @@ pub fn c_header(table: &Table<'_>, name: &str) -> Result<String, ExportError> {
     for line in described(table, &plain) {
         let _ = if line.is_empty() { writeln!(text, " *") } else { writeln!(text, " * {line}") };
     }
-    let _ = writeln!(text, " */\n#ifndef {guard}\n#define {guard}\n\n#include <math.h>\n#include <stddef.h>\n");
+    let _ =
+        writeln!(text, " */\n#ifndef {guard}\n#define {guard}\n\n#include <math.h>\n#include <stddef.h>\n");
     let [edge, data] = coefficients(table);
     if table.is_fitted() {
         array(&mut text, "double", &format!("{name}_edge"), edge.iter().copied().map(double));

@@ -31,7 +31,11 @@ pub fn rust_source(table: &Table<'_>, name: &str) -> Result<String, ExportError>
         text,
         "\n/// The lookup of the table; the bytes are checked first.\n///\n/// # Errors\n/// If they were changed.\npub fn lookup() -> Result<bulge_table::Lookup<'static, {a}, {o}>, bulge_table::TableError> {{\n    bulge_table::Table::from_bytes(&{name})?.lookup()\n}}\n"
     );
-    let _ = writeln!(text, "/// The table's bytes.\n#[rustfmt::skip]\npub static {name}: [u8; {}] = [", bytes.len());
+    let _ = writeln!(
+        text,
+        "/// The table's bytes.\n#[rustfmt::skip]\npub static {name}: [u8; {}] = [",
+        bytes.len()
+    );
     for line in bytes.chunks(ON_A_LINE) {
         let numbers: Vec<String> = line.iter().map(u8::to_string).collect();
         let _ = writeln!(text, "    {},", numbers.join(", "));

@@ -46,21 +46,26 @@ pub(super) fn wish(
         let instead = "write such as `outputs = [\"force_f\", \"volume_v\"]` in `[table]`";
         return Err(table.error(table.value_span("outputs"), what, instead));
     }
-    let bytes = max_size(&table)?;
+    Ok(Some(TableWish { outputs, ..limits(&table)? }))
+}
+
+/// What a table must reach, without its outputs.
+pub(crate) fn limits(table: &Settings<'_>) -> Result<TableWish, FileError> {
+    let bytes = max_size(table)?;
     let forms = [
         ("fastest", TableForm::Fastest),
         ("smallest", TableForm::Smallest),
         ("splines", TableForm::Splines),
         ("chebyshev", TableForm::Chebyshev),
     ];
-    Ok(Some(TableWish {
-        outputs,
-        tolerance: bounded(&table, "tolerance", 1e-6, TOLERANCE)?,
-        gradient: bounded(&table, "gradient", 1e-4, GRADIENT)?,
+    Ok(TableWish {
+        outputs: vec![],
+        tolerance: bounded(table, "tolerance", 1e-6, TOLERANCE)?,
+        gradient: bounded(table, "gradient", 1e-4, GRADIENT)?,
         max_bytes: bytes.unwrap_or(64 << 10),
         form: table.word("form", &forms)?.unwrap_or(TableForm::Fastest),
-        checks: checks(&table)?,
-    }))
+        checks: checks(table)?,
+    })
 }
 
 fn check_axes(table: &Settings<'_>, axes: &[Placed<'_>], settings: &Settings<'_>) -> Result<(), FileError> {

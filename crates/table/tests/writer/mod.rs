@@ -6,40 +6,40 @@ use std::array;
 use std::ops::{Add, Mul, Sub};
 
 /// Bytes of the header, of an axis and of an output.
-pub const RECORDS: [usize; 3] = [64, 96, 104];
+pub(crate) const RECORDS: [usize; 3] = [64, 96, 104];
 
 /// One axis; linear where its pole is infinite.
 #[derive(Debug, Clone, Copy)]
-pub struct Axis {
-    pub low: f64,
-    pub high: f64,
-    pub pole: f64,
-    pub nodes: usize,
-    pub edge_nodes: usize,
+pub(crate) struct Axis {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    pub(crate) pole: f64,
+    pub(crate) nodes: usize,
+    pub(crate) edge_nodes: usize,
 }
 
 /// A table before it becomes bytes.
 #[derive(Debug, Clone)]
-pub struct Draft {
-    pub is_spline: bool,
-    pub is_single: bool,
-    pub is_root: bool,
-    pub axes: Vec<Axis>,
+pub(crate) struct Draft {
+    pub(crate) is_spline: bool,
+    pub(crate) is_single: bool,
+    pub(crate) is_root: bool,
+    pub(crate) axes: Vec<Axis>,
     /// k and j of each output.
-    pub factors: Vec<[bool; 2]>,
+    pub(crate) factors: Vec<[bool; 2]>,
     /// 1/Q and c of a fitted edge at each of its places; empty without.
-    pub edge: Vec<f64>,
-    pub coefficients: Vec<f64>,
-    pub text: &'static str,
+    pub(crate) edge: Vec<f64>,
+    pub(crate) coefficients: Vec<f64>,
+    pub(crate) text: &'static str,
 }
 
 impl Draft {
-    pub fn is_fitted(&self) -> bool {
+    pub(crate) fn is_fitted(&self) -> bool {
         !self.edge.is_empty()
     }
 
     /// 1/Q of an axis.
-    pub fn scale(&self, i: usize) -> f64 {
+    pub(crate) fn scale(&self, i: usize) -> f64 {
         let axis = self.axes[i];
         let width = axis.high - axis.low;
         let s = if i == 0 && self.is_root { width.sqrt() } else { width };
@@ -47,13 +47,13 @@ impl Draft {
     }
 
     /// Places of the edge, the coefficients and the text.
-    pub fn places(&self) -> [usize; 3] {
+    pub(crate) fn places(&self) -> [usize; 3] {
         let edge = RECORDS[0] + RECORDS[1] * self.axes.len() + RECORDS[2] * self.factors.len();
         let data = edge + 8 * self.edge.len();
         [edge, data, data + if self.is_single { 4 } else { 8 } * self.coefficients.len()]
     }
 
-    pub fn bytes(&self) -> Vec<u8> {
+    pub(crate) fn bytes(&self) -> Vec<u8> {
         let [edge, data, text] = self.places();
         let word = |n: usize| u32::try_from(n).unwrap().to_le_bytes();
         let byte = |n: usize| u8::try_from(n).unwrap();
@@ -100,7 +100,7 @@ impl Draft {
     }
 
     /// Fills in the coefficients of polynomials of the coordinates, of at most third degree in each: those of the outputs, and 1/Q and c.
-    pub fn fill(&mut self, outputs: &[Polynomial], edge: &[Polynomial]) {
+    pub(crate) fn fill(&mut self, outputs: &[Polynomial], edge: &[Polynomial]) {
         let nodes: Vec<usize> = self.axes.iter().map(|axis| axis.nodes).collect();
         self.coefficients = tensor(self.is_spline, &nodes, 0, outputs);
         let nodes: Vec<usize> = self.axes.iter().map(|axis| axis.edge_nodes).collect();
@@ -108,7 +108,7 @@ impl Draft {
     }
 
     /// Values and gradients at a point, straight from the polynomials.
-    pub fn expected(&self, outputs: &[Polynomial], edge: &[Polynomial], point: &[f64]) -> Vec<Dual> {
+    pub(crate) fn expected(&self, outputs: &[Polynomial], edge: &[Polynomial], point: &[f64]) -> Vec<Dual> {
         let mut at = [Dual::ZERO; 4];
         for i in (0..self.axes.len()).rev() {
             let s = Dual::variable(point[i] - self.axes[i].low, i);
@@ -137,7 +137,7 @@ impl Draft {
 
 /// As it is stored in single precision.
 #[expect(clippy::cast_possible_truncation, reason = "what single precision means")]
-pub fn single(number: f64) -> f32 {
+pub(crate) fn single(number: f64) -> f32 {
     number as f32
 }
 
@@ -149,7 +149,7 @@ fn named(bytes: &mut Vec<u8>, name: &str) {
 }
 
 /// Puts the checksum right: CRC-64/XZ bit by bit, as its definition says.
-pub fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+pub(crate) fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     let body = bytes.len() - 8;
     let mut rest = u64::MAX;
     for byte in &bytes[..body] {
@@ -197,17 +197,23 @@ fn of_spline(nodes: usize, j: usize, p: usize) -> f64 {
 
 /// Coefficient of `T_j(2 u - 1)` in u^p.
 fn of_chebyshev(j: usize, p: usize) -> f64 {
-    let rows = [[32.0, 0.0, 0.0, 0.0], [16.0, 16.0, 0.0, 0.0], [12.0, 16.0, 4.0, 0.0], [10.0, 15.0, 6.0, 1.0]];
+    let rows =
+        [[32.0, 0.0, 0.0, 0.0], [16.0, 16.0, 0.0, 0.0], [12.0, 16.0, 4.0, 0.0], [10.0, 15.0, 6.0, 1.0]];
     rows[p].get(j).map_or(0.0, |number| number / 32.0)
 }
 
 /// A polynomial of the coordinates: factors with their powers.
 #[derive(Debug, Clone)]
-pub struct Polynomial(pub Vec<(f64, [usize; 4])>);
+pub(crate) struct Polynomial(pub(crate) Vec<(f64, [usize; 4])>);
 
 impl Polynomial {
     /// `terms` terms with powers of the coordinates `first..axes`, and a constant.
-    pub fn random(random: &mut Random, constant: f64, terms: usize, [first, axes]: [usize; 2]) -> Self {
+    pub(crate) fn random(
+        random: &mut Random,
+        constant: f64,
+        terms: usize,
+        [first, axes]: [usize; 2],
+    ) -> Self {
         let mut term = |_| {
             let mut powers = [0; 4];
             powers[first..axes].fill_with(|| random.below(4));
@@ -218,7 +224,7 @@ impl Polynomial {
         Self(all)
     }
 
-    pub fn at(&self, coordinates: &[Dual; 4]) -> Dual {
+    pub(crate) fn at(&self, coordinates: &[Dual; 4]) -> Dual {
         let part = |(factor, powers): &(f64, [usize; 4])| {
             let all = powers.iter().zip(coordinates).flat_map(|(power, v)| std::iter::repeat_n(*v, *power));
             all.fold(Dual::number(*factor), Mul::mul)
@@ -229,15 +235,15 @@ impl Polynomial {
 
 /// A number with its derivatives by the axes.
 #[derive(Debug, Clone, Copy)]
-pub struct Dual {
-    pub value: f64,
-    pub by: [f64; 4],
+pub(crate) struct Dual {
+    pub(crate) value: f64,
+    pub(crate) by: [f64; 4],
 }
 
 impl Dual {
-    pub const ZERO: Self = Self::number(0.0);
+    pub(crate) const ZERO: Self = Self::number(0.0);
 
-    pub const fn number(value: f64) -> Self {
+    pub(crate) const fn number(value: f64) -> Self {
         Self { value, by: [0.0; 4] }
     }
 
@@ -277,56 +283,57 @@ impl Sub for Dual {
 impl Mul for Dual {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        let by = array::from_fn(|i| self.by[i] * other.value + self.value * other.by[i]);
-        Self { value: self.value * other.value, by }
+        let [first, second] = [self.mapped(0.0, other.value), other.mapped(0.0, self.value)];
+        Self { value: self.value * other.value, ..first + second }
     }
 }
 
 /// SplitMix64: the same numbers every time.
 #[derive(Debug)]
-pub struct Random(pub u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    pub fn bits(&mut self) -> u64 {
+    pub(crate) fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
         z ^ z >> 31
     }
 
-    pub fn below(&mut self, end: usize) -> usize {
+    pub(crate) fn below(&mut self, end: usize) -> usize {
         usize::try_from(self.bits() % end as u64).unwrap()
     }
 
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
 
 /// A table of a kind with what is in it.
 #[derive(Debug)]
-pub struct Known {
-    pub draft: Draft,
-    pub outputs: Vec<Polynomial>,
-    pub edge: Vec<Polynomial>,
+pub(crate) struct Known {
+    pub(crate) draft: Draft,
+    pub(crate) outputs: Vec<Polynomial>,
+    pub(crate) edge: Vec<Polynomial>,
 }
 
 /// What a table is like. A fitted edge needs two axes.
 #[derive(Debug, Clone, Copy)]
-pub struct Kind {
-    pub axes: usize,
-    pub outputs: usize,
-    pub is_spline: bool,
-    pub is_single: bool,
-    pub is_root: bool,
-    pub is_fitted: bool,
+#[expect(clippy::struct_excessive_bools, reason = "all combinations are tested")]
+pub(crate) struct Kind {
+    pub(crate) axes: usize,
+    pub(crate) outputs: usize,
+    pub(crate) is_spline: bool,
+    pub(crate) is_single: bool,
+    pub(crate) is_root: bool,
+    pub(crate) is_fitted: bool,
     /// Whether the first outputs have factors.
-    pub has_factors: bool,
+    pub(crate) has_factors: bool,
 }
 
 impl Kind {
     /// All kinds with at most so many axes and outputs.
-    pub fn all(axes: usize, outputs: usize) -> Vec<Self> {
+    pub(crate) fn all(axes: usize, outputs: usize) -> Vec<Self> {
         let mut kinds = Vec::new();
         for axes in 1..=axes {
             for outputs in 1..=outputs {
@@ -351,10 +358,11 @@ impl Kind {
     }
 
     /// A table of this kind: known polynomials over random axes.
-    pub fn table(self, random: &mut Random) -> Known {
+    pub(crate) fn table(self, random: &mut Random) -> Known {
         let linear = random.below(self.axes + 1);
         let axis = |i| {
-            let low = random.between(-2.0, 2.0);
+            // Next to zero alone are there numbers at tiny distances.
+            let low = if random.below(2) == 0 { 0.0 } else { random.between(-2.0, 2.0) };
             Axis {
                 low,
                 high: low + random.between(0.3, 5.0),

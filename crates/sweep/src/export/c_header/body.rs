@@ -99,12 +99,12 @@ fn first_axis(text: &mut String, table: &Table<'_>, name: &str, axes: &[Axis<'_>
         writeln!(text, "        u = q * {scale};\n        own[0] = by * {scale}{by};\n    }}")?;
     }
     let is_singular = outputs(table).iter().any(|output| output.is_singular);
-    let positive = if is_singular { "u > 0.0" } else { "u == u" };
-    // One and four roundings.
+    // Rounding may pass the ends; this refuses NaN as well.
+    let least = if is_singular { double(f64::MIN_POSITIVE) } else { "0.0".to_owned() };
     let most = double(1.0 + 4.0 * f64::EPSILON);
     writeln!(
         text,
-        "    if (!({positive} && u <= {most})) {{\n        return 0;\n    }}\n    at[0] = u < 1.0 ? u : 1.0;"
+        "    if (!(u >= {least} && u <= {most})) {{\n        return 0;\n    }}\n    at[0] = u < 1.0 ? u : 1.0;"
     )
 }
 
@@ -160,7 +160,10 @@ impl Sum<'_> {
         names: [&'static str; 3],
     ) -> fmt::Result {
         let (prefix, outputs, axes) = (self.prefix, self.outputs, self.nodes.len());
-        writeln!(text, "    double {prefix}[{outputs}] = {{0.0}}, {prefix}_by[{axes}][{outputs}] = {{{{0.0}}}};")?;
+        writeln!(
+            text,
+            "    double {prefix}[{outputs}] = {{0.0}}, {prefix}_by[{axes}][{outputs}] = {{{{0.0}}}};"
+        )?;
         self.level(text, self.first, count, names)
     }
 
@@ -174,7 +177,8 @@ impl Sum<'_> {
     ) -> fmt::Result {
         let [cell, value, slope] = names;
         let (prefix, outputs, axes) = (self.prefix, self.outputs, self.nodes.len());
-        let own = |axis: usize| if axis == self.first { prefix.to_owned() } else { format!("{prefix}{axis}") };
+        let own =
+            |axis: usize| if axis == self.first { prefix.to_owned() } else { format!("{prefix}{axis}") };
         let (sum, part) = (own(axis), own(axis + 1));
         let depth = axis - self.first + 1;
         let pad = "    ".repeat(depth);
@@ -183,12 +187,18 @@ impl Sum<'_> {
             let mut place = String::new();
             for i in self.first..axes {
                 let index = format!("{cell}[{i}] + k{i}");
-                place = if place.is_empty() { index } else { format!("({place}) * {} + {index}", self.nodes[i]) };
+                place =
+                    if place.is_empty() { index } else { format!("({place}) * {} + {index}", self.nodes[i]) };
             }
             writeln!(text, "{pad}    const size_t place = ({place}) * {outputs};")?;
             let from = format!("{}[place + o]", self.numbers);
             each(text, outputs, depth + 1, &format!("{sum}[o] += {value}[{axis}][k{axis}] * {from};"))?;
-            each(text, outputs, depth + 1, &format!("{sum}_by[{axis}][o] += {slope}[{axis}][k{axis}] * {from};"))?;
+            each(
+                text,
+                outputs,
+                depth + 1,
+                &format!("{sum}_by[{axis}][o] += {slope}[{axis}][k{axis}] * {from};"),
+            )?;
         } else {
             writeln!(
                 text,
@@ -196,9 +206,15 @@ impl Sum<'_> {
             )?;
             self.level(text, axis + 1, count, names)?;
             each(text, outputs, depth + 1, &format!("{sum}[o] += {value}[{axis}][k{axis}] * {part}[o];"))?;
-            each(text, outputs, depth + 1, &format!("{sum}_by[{axis}][o] += {slope}[{axis}][k{axis}] * {part}[o];"))?;
+            each(
+                text,
+                outputs,
+                depth + 1,
+                &format!("{sum}_by[{axis}][o] += {slope}[{axis}][k{axis}] * {part}[o];"),
+            )?;
             for later in axis + 1..axes {
-                let line = format!("{sum}_by[{later}][o] += {value}[{axis}][k{axis}] * {part}_by[{later}][o];");
+                let line =
+                    format!("{sum}_by[{later}][o] += {value}[{axis}][k{axis}] * {part}_by[{later}][o];");
                 each(text, outputs, depth + 1, &line)?;
             }
         }

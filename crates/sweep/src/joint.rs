@@ -1,0 +1,283 @@
+//! Two antagonistic muscles on a joint: torque and stiffness over angle and both pressures.
+//!
+//! ```text
+//! torque     M = F1 (-dl1/dtheta) - F2 dl2/dtheta          [N m]; a positive angle shortens the agonist 1
+//! stiffness  K = -dM/dtheta at constant pressures          [N m/rad]
+//! ```
+//! As S1 section 4.1 says, the difference of the pressures sets the angle, and their sum the stiffness.
+
+mod field;
+mod file;
+mod geometry;
+#[cfg(test)]
+mod tests;
+
+pub use field::{JointField, JointOutput};
+pub use file::JOINT_EXAMPLE;
+pub use geometry::{Linkage, Side};
+
+use bulge_fibre::Approach;
+use bulge_muscles::{Muscle, Quantity as _};
+use bulge_numerics::root::{RootError, illinois, newton_bracketed};
+use serde::Serialize;
+
+use crate::family::{Family, FamilyError};
+use crate::output::Output;
+use crate::plan::{Axis, End, Plan, Quantity, Range, Spacing, TableWish};
+
+/// Tolerance of an angle without load \[rad\]: a Newton step of this size ends far closer.
+const ANGLE_TOLERANCE: f64 = 1e-9;
+
+/// Why a joint has no torque, or no angle.
+#[derive(Debug, thiserror::Error)]
+pub enum JointError {
+    /// No equilibrium of a muscle.
+    #[error("the {} at the angle {:.4} deg and {pressure_pa} Pa: {error}", side.name(), angle.to_degrees())]
+    Muscle {
+        /// Which muscle.
+        side: Side,
+        /// Angle \[rad\].
+        angle: f64,
+        /// Its pressure \[Pa\].
+        pressure_pa: f64,
+        /// What is wrong.
+        error: FamilyError,
+    },
+    /// An angle that isn't in the joint's range.
+    #[error(
+        "the angle {:.4} deg is outside the range of the joint, {:.4} deg to {:.4} deg",
+        angle.to_degrees(), range[0].to_degrees(), range[1].to_degrees()
+    )]
+    Outside {
+        /// Asked angle \[rad\].
+        angle: f64,
+        /// The range \[rad\].
+        range: [f64; 2],
+    },
+    /// The muscles turn the joint beyond an end of its range.
+    #[error(
+        "no angle without load at {} Pa and {} Pa: the torque is {:.4} N m at {:.4} deg and {:.4} N m at {:.4} deg; choose pressures closer to each other, or a wider range",
+        pressures[0], pressures[1], torques[0], range[0].to_degrees(), torques[1], range[1].to_degrees()
+    )]
+    NoRest {
+        /// Pressures of agonist and antagonist \[Pa\].
+        pressures: [f64; 2],
+        /// Torques at the ends of the range \[N m\].
+        torques: [f64; 2],
+        /// The range \[rad\].
+        range: [f64; 2],
+    },
+}
+
+/// A muscle on its side of a joint.
+#[derive(Debug, Clone, Serialize)]
+pub struct JointMuscle {
+    side: Side,
+    muscle: Muscle,
+    /// Contraction at the angle 0.
+    contraction: f64,
+    #[serde(skip)]
+    family: Family,
+    /// Whether the force is infinite at the contraction 0.
+    #[serde(skip)]
+    is_singular: bool,
+}
+
+/// A joint with two muscles.
+#[derive(Debug, Clone, Serialize)]
+pub struct Joint {
+    /// Its name.
+    pub name: String,
+    linkage: Linkage,
+    muscles: [JointMuscle; 2],
+    /// Range of the angle \[rad\].
+    angle: [f64; 2],
+    /// Range of both pressures \[Pa\].
+    pressure: [f64; 2],
+    outputs: Vec<JointOutput>,
+    table: Option<TableWish>,
+}
+
+/// What a muscle contributes to the torque, with derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Pull {
+    torque: f64,
+    by_angle: f64,
+    contraction: f64,
+}
+
+impl JointMuscle {
+    fn new(side: Side, muscle: Muscle, contraction: f64) -> Result<Self, FamilyError> {
+        let axis = |quantity, name: &str, unit: &str| Axis {
+            quantity,
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            range: Range::Between { from: 0.0, to: End::Limit, points: None, spacing: Spacing::Linear },
+        };
+        // The family over contraction and pressure; ranges take no part in it.
+        let plan = Plan {
+            name: muscle.name().to_owned(),
+            muscle,
+            pressure_pa: 1e5,
+            contraction: None,
+            approach: Approach::Auto,
+            axes: vec![
+                axis(Quantity::Contraction, "contraction", "1"),
+                axis(Quantity::Pressure, "pressure", "Pa"),
+            ],
+            design: None,
+            outputs: vec![Output::Force],
+            chunk: 1,
+            table: None,
+        };
+        let family = Family::new(&plan)?;
+        let is_singular = family.member(&[contraction, 1e5])?.problem().is_singular();
+        Ok(Self { side, muscle: plan.muscle, contraction, family, is_singular })
+    }
+
+    /// Which muscle of the joint.
+    #[must_use]
+    pub const fn side(&self) -> Side {
+        self.side
+    }
+
+    /// The muscle.
+    #[must_use]
+    pub const fn muscle(&self) -> &Muscle {
+        &self.muscle
+    }
+
+    fn contraction(&self, linkage: &Linkage, angle: f64) -> f64 {
+        self.contraction + linkage.at(self.side, angle).shortening / self.muscle.length().si()
+    }
+
+    /// The angle in a range at which the muscle has a contraction, where it has.
+    fn angle_at(&self, linkage: &Linkage, contraction: f64, [low, high]: [f64; 2]) -> f64 {
+        illinois(|angle| self.contraction(linkage, angle) - contraction, low, high, 1e-12)
+    }
+
+    /// ```text
+    /// M_i = F m,   m = -dl/dtheta,   dk/dtheta = m/l0,   dM_i/dtheta = dF/dk m^2/l0 + F dm/dtheta
+    /// ```
+    fn pull(&self, linkage: &Linkage, angle: f64, pressure: f64) -> Result<Pull, JointError> {
+        let reach = linkage.at(self.side, angle);
+        let contraction = self.contraction(linkage, angle);
+        let mut values = [0.0; 2];
+        let member = self.family.member(&[contraction, pressure]);
+        member
+            .and_then(|member| {
+                member.outputs(contraction, &[Output::Force, Output::ForceByContraction], &mut values)
+            })
+            .map_err(|error| self.failed(angle, pressure, error))?;
+        let [force, by_contraction] = values;
+        Ok(Pull {
+            torque: force * reach.arm,
+            by_angle: by_contraction * reach.arm * reach.arm / self.muscle.length().si()
+                + force * reach.arm_by_angle,
+            contraction,
+        })
+    }
+
+    /// Derivative of the torque by the pressure \[N m/Pa\].
+    fn by_pressure(&self, linkage: &Linkage, angle: f64, pressure: f64) -> Result<f64, JointError> {
+        let (mut force, mut by) = ([0.0], [0.0; 2]);
+        let point = [self.contraction(linkage, angle), pressure];
+        self.family
+            .gradients(&point, &[Output::Force], &mut force, &mut by)
+            .map_err(|error| self.failed(angle, pressure, error))?;
+        Ok(by[1] * linkage.at(self.side, angle).arm)
+    }
+
+    fn failed(&self, angle: f64, pressure_pa: f64, error: FamilyError) -> JointError {
+        JointError::Muscle { side: self.side, angle, pressure_pa, error }
+    }
+}
+
+impl Joint {
+    /// What turns pull into torque.
+    #[must_use]
+    pub const fn linkage(&self) -> Linkage {
+        self.linkage
+    }
+
+    /// Agonist and antagonist.
+    #[must_use]
+    pub const fn muscles(&self) -> &[JointMuscle; 2] {
+        &self.muscles
+    }
+
+    /// Range of the angle \[rad\].
+    #[must_use]
+    pub const fn angles(&self) -> [f64; 2] {
+        self.angle
+    }
+
+    /// Range of both pressures \[Pa\].
+    #[must_use]
+    pub const fn pressures(&self) -> [f64; 2] {
+        self.pressure
+    }
+
+    /// What is tabulated.
+    #[must_use]
+    pub fn outputs(&self) -> &[JointOutput] {
+        &self.outputs
+    }
+
+    /// What its table must reach, if one is wanted; the outputs are those of the joint, not of the wish, which has none.
+    #[must_use]
+    pub const fn table(&self) -> Option<&TableWish> {
+        self.table.as_ref()
+    }
+
+    /// Torque of both muscles \[N m\] at an angle \[rad\] and the pressures of agonist and antagonist \[Pa\], > 0.
+    ///
+    /// # Errors
+    /// [`JointError::Outside`] its range of angles, or [`JointError::Muscle`] without equilibrium.
+    pub fn torque(&self, angle: f64, agonist_pa: f64, antagonist_pa: f64) -> Result<f64, JointError> {
+        self.inside(angle)?;
+        Ok(self.pulls(angle, [agonist_pa, antagonist_pa])?.map(|pull| pull.torque).iter().sum())
+    }
+
+    /// Stiffness -dM/dtheta at constant pressures \[N m/rad\].
+    ///
+    /// # Errors
+    /// As [`Joint::torque`].
+    pub fn stiffness(&self, angle: f64, agonist_pa: f64, antagonist_pa: f64) -> Result<f64, JointError> {
+        self.inside(angle)?;
+        Ok(-self.pulls(angle, [agonist_pa, antagonist_pa])?.map(|pull| pull.by_angle).iter().sum::<f64>())
+    }
+
+    /// Angle without load \[rad\] at the pressures of agonist and antagonist \[Pa\]: where the torque vanishes and falls with the angle.
+    ///
+    /// # Errors
+    /// [`JointError::NoRest`] if it isn't in the range of angles, or [`JointError::Muscle`].
+    pub fn angle(&self, agonist_pa: f64, antagonist_pa: f64) -> Result<f64, JointError> {
+        let pressures = [agonist_pa, antagonist_pa];
+        let value = |angle: f64| {
+            let [one, other] = self.pulls(angle, pressures)?;
+            Ok::<_, JointError>((one.torque + other.torque, one.by_angle + other.by_angle))
+        };
+        let [low, high] = self.angle;
+        let torques = [value(low)?.0, value(high)?.0];
+        let none = JointError::NoRest { pressures, torques, range: self.angle };
+        if !(torques[0] >= 0.0 && torques[1] <= 0.0) {
+            return Err(none);
+        }
+        match newton_bracketed(value, low, high, 0.5 * (low + high), [ANGLE_TOLERANCE, 0.0]) {
+            Ok(angle) => Ok(angle),
+            Err(RootError::Function(error)) => Err(error),
+            Err(RootError::Budget { .. }) => Err(none),
+        }
+    }
+
+    fn inside(&self, angle: f64) -> Result<(), JointError> {
+        let range @ [low, high] = self.angle;
+        if angle >= low && angle <= high { Ok(()) } else { Err(JointError::Outside { angle, range }) }
+    }
+
+    fn pulls(&self, angle: f64, pressures: [f64; 2]) -> Result<[Pull; 2], JointError> {
+        let [one, other] = &self.muscles;
+        Ok([one.pull(&self.linkage, angle, pressures[0])?, other.pull(&self.linkage, angle, pressures[1])?])
+    }
+}

@@ -1,0 +1,326 @@
+//! Joint files: TOML into a joint, with the place and the cure for everything that is wrong.
+
+use bulge_muscles::settings::{Document, FileKind, Keys, Settings, nearest, shortened};
+use bulge_muscles::{Angle, Dimension, FileError, Length, Parameter, Quantity as _};
+use std::f64::consts::PI;
+use std::path::Path;
+
+use super::{Joint, JointMuscle, JointOutput, Linkage, Side};
+use crate::file::scale::Scale;
+use crate::file::{muscle, wish};
+
+/// What messages call the file.
+const KIND: FileKind = FileKind { name: "joint", file: "joint.toml", line: "radius = \"40 mm\"" };
+
+/// A joint file with every key.
+pub const JOINT_EXAMPLE: &str = "\
+name = \"knee\"
+muscle = \"ppam-2-r16\"           # both: a muscle file, beside this one, or a shipped muscle
+# agonist = \"ppam-2-r16\"        # or each
+# antagonist = \"ppam-2-r11\"
+kind = \"pulley\"                 # or \"lever\"
+radius = \"40 mm\"                # of the pulley
+# arm = \"40 mm\"                 # of a lever: from the joint's axis to the attachment on the moving link,
+# base = \"150 mm\"               # to the attachment on the base,
+# lever_angle = \"90 deg\"        # and the angle between both at the joint's angle 0; mirrored for the antagonist
+contraction = \"20 %\"            # of both muscles at the angle 0
+# agonist_contraction = \"20 %\"  # or of each
+# antagonist_contraction = \"18 %\"
+angle = \"-25 deg..25 deg\"       # a positive angle shortens the agonist
+pressure = \"0.5 bar..3 bar\"     # of both muscles
+outputs = [\"torque\", \"stiffness\"] # also torque_agonist, torque_antagonist, contraction_agonist, contraction_antagonist
+
+[table]                         # the binary table, if one is wanted
+tolerance = 1e-4                # largest relative error of the values
+gradient = 1e-2                 # and of their gradients
+max_size = \"1 MiB\"
+form = \"fastest\"                # or \"smallest\", \"splines\", \"chebyshev\"
+checks = 131072                 # points off the grid that certify it
+";
+
+/// Keys of the file, with an example of each.
+const TOP: Keys = &[
+    ("name", "name = \"knee\""),
+    ("muscle", "muscle = \"ppam-2-r16\""),
+    ("agonist", "agonist = \"ppam-2-r16\""),
+    ("antagonist", "antagonist = \"ppam-2-r16\""),
+    ("kind", "kind = \"pulley\""),
+    ("radius", "radius = \"40 mm\""),
+    ("arm", "arm = \"40 mm\""),
+    ("base", "base = \"150 mm\""),
+    ("lever_angle", "lever_angle = \"90 deg\""),
+    ("contraction", "contraction = \"15 %\""),
+    ("agonist_contraction", "agonist_contraction = \"15 %\""),
+    ("antagonist_contraction", "antagonist_contraction = \"15 %\""),
+    ("angle", "angle = \"-25 deg..25 deg\""),
+    ("pressure", "pressure = \"0.5 bar..3 bar\""),
+    ("outputs", "outputs = [\"torque\", \"stiffness\"]"),
+    ("table", "[table]"),
+];
+/// Keys of its table: the outputs are those of the joint.
+const TABLE: Keys = &[
+    ("tolerance", "tolerance = 1e-4"),
+    ("gradient", "gradient = 1e-2"),
+    ("max_size", "max_size = \"1 MiB\""),
+    ("form", "form = \"fastest\""),
+    ("checks", "checks = 131072"),
+];
+
+impl Joint {
+    /// Reads a joint file; [`JOINT_EXAMPLE`] has every key. The muscle files that it names stand beside it.
+    ///
+    /// # Errors
+    /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid joint, or if a muscle can't be read. The message is complete.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, FileError> {
+        let path = path.as_ref();
+        let (text, origin) = (KIND.read(path)?, path.display().to_string());
+        Self::from_toml(&text, &origin, path.parent())
+    }
+
+    /// Reads a joint from TOML text; `origin` is what messages call the text, usually a file name, and `folder` is where the muscle files lie, if
+    /// not in the current one.
+    ///
+    /// ```
+    /// use bulge_sweep::{JOINT_EXAMPLE, Joint};
+    /// let joint = Joint::from_toml(JOINT_EXAMPLE, "joint.toml", None)?;
+    /// // More pressure in the agonist: a positive angle.
+    /// assert!(joint.angle(1.2e5, 1e5)? > 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// With the place and the cure, if the text is no valid joint, a muscle can't be read, or the angles leave the domain of a muscle.
+    pub fn from_toml(text: &str, origin: &str, folder: Option<&Path>) -> Result<Self, FileError> {
+        let document = Document::parse(KIND, text, origin)?;
+        let settings = document.settings("the joint", TOP);
+        settings.check_keys()?;
+        let muscles = muscles(&settings, folder)?;
+        let linkage = linkage(&settings)?;
+        let table = settings.table("table", "`[table]`", TABLE)?;
+        let table = table.map(|table| table.check_keys().and_then(|()| wish::limits(&table))).transpose()?;
+        let joint = Self {
+            name: settings.text("name")?.unwrap_or("joint").to_owned(),
+            linkage,
+            muscles,
+            angle: range(&settings, "angle", &Scale::parameter(Parameter::BraidAngle))?,
+            pressure: range(&settings, "pressure", &Scale::pressure())?,
+            outputs: outputs(&settings)?,
+            table,
+        };
+        check(&settings, &joint)?;
+        Ok(joint)
+    }
+}
+
+fn muscles(settings: &Settings<'_>, folder: Option<&Path>) -> Result<[JointMuscle; 2], FileError> {
+    let [agonist, antagonist] = each(settings, "muscle", ["agonist", "antagonist"])?;
+    let contractions = each(settings, "contraction", ["agonist_contraction", "antagonist_contraction"])?;
+    let one = |side: Side, key: &'static str, contraction: &'static str| {
+        let muscle = muscle(settings, key, folder)?;
+        let value = settings.quantity(contraction, Dimension::NONE)?;
+        let value = value.ok_or_else(|| settings.missing(contraction))?;
+        if value.abs() >= 1.0 {
+            let what = format!("the contraction {value} is not possible: it must be between -1 and 1");
+            let instead = format!("write such as `{contraction} = \"15 %\"`");
+            return Err(settings.error(settings.value_span(contraction), what, instead));
+        }
+        JointMuscle::new(side, muscle, value).map_err(|error| {
+            let what = format!("the {}: {error}", side.name());
+            settings.error(settings.value_span(key), what, "name another muscle, or correct its file")
+        })
+    };
+    Ok([one(Side::Agonist, agonist, contractions[0])?, one(Side::Antagonist, antagonist, contractions[1])?])
+}
+
+/// The keys of both muscles: one for both, or one for each.
+fn each(
+    settings: &Settings<'_>,
+    both: &'static str,
+    single: [&'static str; 2],
+) -> Result<[&'static str; 2], FileError> {
+    let strange = single.iter().find(|key| settings.get(key).is_some());
+    match (settings.get(both), strange) {
+        (Some(_), None) => Ok([both; 2]),
+        (Some(_), Some(key)) => {
+            let what = format!("`{both}` belongs to both muscles, and `{key}` to one");
+            let instead = format!("delete `{key}`, or write `{}` and `{}` only", single[0], single[1]);
+            Err(settings.error(settings.key_span(key), what, instead))
+        }
+        (None, Some(_)) => {
+            let lacking = single.iter().find(|key| settings.get(key).is_none());
+            lacking.map_or(Ok(single), |key| Err(settings.missing(key)))
+        }
+        (None, None) => Err(settings.missing(both)),
+    }
+}
+
+fn linkage(settings: &Settings<'_>) -> Result<Linkage, FileError> {
+    let kind = settings.word("kind", &[("pulley", false), ("lever", true)])?;
+    let is_lever = kind.ok_or_else(|| settings.missing("kind"))?;
+    let strange: &[&str] = if is_lever { &["radius"] } else { &["arm", "base", "lever_angle"] };
+    if let Some(key) = strange.iter().find(|key| settings.get(key).is_some()) {
+        let (this, other) = if is_lever { ("lever", "pulley") } else { ("pulley", "lever") };
+        let what = format!("a {this} has no `{key}`");
+        let instead = format!("delete `{key}`, or write `kind = \"{other}\"`");
+        return Err(settings.error(settings.key_span(key), what, instead));
+    }
+    let positive = |key: &'static str, value: f64| {
+        let stated = settings.get(key).ok_or_else(|| settings.missing(key))?;
+        if value > 0.0 {
+            return Ok(value);
+        }
+        Err(settings.unreadable(key, stated, format!("`{key}` is {value}, but must be > 0")))
+    };
+    let length = |key| positive(key, settings.size::<Length>(key)?);
+    if !is_lever {
+        return Ok(Linkage::Pulley { radius: length("radius")? });
+    }
+    let lever_angle = positive("lever_angle", settings.size::<Angle>("lever_angle")?)?;
+    Ok(Linkage::Lever { arm: length("arm")?, base: length("base")?, lever_angle })
+}
+
+fn range(settings: &Settings<'_>, key: &'static str, scale: &Scale) -> Result<[f64; 2], FileError> {
+    let value = settings.get(key).ok_or_else(|| settings.missing(key))?;
+    let text =
+        value.text().ok_or_else(|| settings.wrong_type(key, value, "text with two values and `..`"))?;
+    let refused = |what: String| Err(settings.unreadable(key, value, what));
+    match scale.range(text) {
+        Ok((low, Some(high))) if low < high => Ok([low, high]),
+        Ok((low, Some(high))) => {
+            refused(format!("a range must rise: this one goes from {low} to {high} in SI"))
+        }
+        Ok((_, None)) => refused("this range needs a value at its upper end".to_owned()),
+        Err(what) => refused(what),
+    }
+}
+
+fn outputs(settings: &Settings<'_>) -> Result<Vec<JointOutput>, FileError> {
+    let Some(value) = settings.get("outputs") else {
+        return Ok(vec![JointOutput::Torque, JointOutput::Stiffness]);
+    };
+    let refused = |item| settings.wrong_type("outputs", item, "a list of names in quotes");
+    let mut found = vec![];
+    for item in value.items().ok_or_else(|| refused(value))? {
+        let name = item.text().ok_or_else(|| refused(item))?;
+        let names = JointOutput::ALL.map(JointOutput::name);
+        let Some(output) = JointOutput::ALL.into_iter().find(|output| output.name() == name) else {
+            let instead = match nearest(name, names.into_iter()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("known are {}", names.join(", ")),
+            };
+            return Err(settings.error(
+                item.span(),
+                format!("unknown output `{}`", shortened(name)),
+                instead,
+            ));
+        };
+        if found.contains(&output) {
+            let what = format!("the output `{name}` is named twice");
+            return Err(settings.error(item.span(), what, "delete one of the two"));
+        }
+        found.push(output);
+    }
+    if found.is_empty() {
+        return Err(settings.unreadable("outputs", value, "at least one output is needed"));
+    }
+    Ok(found)
+}
+
+/// Refuses ranges that leave the domain of the linkage or of a muscle.
+fn check(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
+    if joint.pressure[0] <= 0.0 {
+        let what = format!("the pressure {} Pa is not possible: it must be > 0", joint.pressure[0]);
+        let instead = "write such as `pressure = \"0.5 bar..3 bar\"`";
+        return Err(settings.error(settings.value_span("pressure"), what, instead));
+    }
+    check_lever(settings, joint)?;
+    joint.muscles.iter().try_for_each(|muscle| check_muscle(settings, joint, muscle))
+}
+
+/// A lever that is turned through its dead centre pulls the other way from there on.
+fn check_lever(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
+    let Linkage::Lever { lever_angle, .. } = joint.linkage else { return Ok(()) };
+    let room = lever_angle.min(PI - lever_angle);
+    if room <= 0.0 {
+        let what =
+            format!("`lever_angle` is {:.4} deg, but must be less than 180 deg", lever_angle.to_degrees());
+        let instead = "write such as `lever_angle = \"90 deg\"`";
+        return Err(settings.error(settings.value_span("lever_angle"), what, instead));
+    }
+    if let Some(angle) = joint.angle.into_iter().find(|angle| angle.abs() >= room) {
+        let at = room.to_degrees().copysign(angle);
+        let what = format!(
+            "a lever is at its dead centre at the angle {at:.4} deg: beyond it the muscle would turn the joint the other way"
+        );
+        let instead = format!("keep `angle` between {:.4} deg and {:.4} deg", -at.abs(), at.abs());
+        return Err(settings.error(settings.value_span("angle"), what, instead));
+    }
+    let distance = joint.linkage.distance().unwrap_or(f64::INFINITY);
+    for muscle in &joint.muscles {
+        let length = muscle.muscle.length().si() * (1.0 - muscle.contraction);
+        if length > distance {
+            let what = format!(
+                "the {} is {:.4} mm long at the angle 0, but its attachments are {:.4} mm apart",
+                muscle.side.name(),
+                1e3 * length,
+                1e3 * distance
+            );
+            let instead = "write a longer `base`, or a larger contraction";
+            return Err(settings.error(settings.value_span("base"), what, instead));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses angles at which a muscle has no length to pull with.
+fn check_muscle(settings: &Settings<'_>, joint: &Joint, muscle: &JointMuscle) -> Result<(), FileError> {
+    let name = muscle.side.name();
+    let refused =
+        |what: String, instead: String| Err(settings.error(settings.value_span("angle"), what, instead));
+    let contraction = |angle: f64| muscle.contraction(&joint.linkage, angle);
+    let angle_at = |contraction| muscle.angle_at(&joint.linkage, contraction, joint.angle);
+    // The angle at which it is longest comes first.
+    let mut ends = joint.angle;
+    if muscle.side == Side::Antagonist {
+        ends.reverse();
+    }
+    let [longest, shortest] = ends;
+    // "before": towards the angles where it is shorter, or longer.
+    let [above, below] = if muscle.side == Side::Agonist { ["above", "below"] } else { ["below", "above"] };
+    if muscle.is_singular && contraction(longest) <= 0.0 {
+        let angle = angle_at(0.0).to_degrees();
+        let what = format!(
+            "the {name} is straight at the angle {angle:.4} deg: its fibres don't stretch, and the force is infinite there"
+        );
+        let instead =
+            format!("keep `angle` {above} {angle:.4} deg, or write a larger contraction of the {name}");
+        return refused(what, instead);
+    }
+    for pressure in joint.pressure {
+        let limit = muscle.family.member(&[muscle.contraction, pressure]).and_then(|m| m.contraction_limit());
+        let limit = match limit {
+            Ok(limit) => limit,
+            Err(error) => return refused(format!("the {name} at {pressure} Pa: {error}"), OTHER.to_owned()),
+        };
+        if contraction(shortest) > limit {
+            // Where even the other end is too short, no angle helps.
+            let angle = angle_at(limit).to_degrees();
+            let what = format!(
+                "the {name} reaches its contraction limit at {pressure} Pa, {:.4} %, at the angle {angle:.4} deg: beyond it the muscle doesn't pull",
+                100.0 * limit
+            );
+            let instead =
+                format!("keep `angle` {below} {angle:.4} deg, or write a smaller contraction of the {name}");
+            return refused(what, instead);
+        }
+        for angle in joint.angle {
+            if let Err(error) = muscle.pull(&joint.linkage, angle, pressure) {
+                return refused(error.to_string(), OTHER.to_owned());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What helps where a muscle has no equilibrium.
+const OTHER: &str = "write a narrower range of `angle` or `pressure`, or another contraction";

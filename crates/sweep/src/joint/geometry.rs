@@ -1,0 +1,145 @@
+//! How muscles act on a joint: a pulley, or levers with the law of cosines.
+
+use serde::Serialize;
+
+/// Which of the two muscles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// The one that a positive angle shortens.
+    Agonist,
+    /// The one that a positive angle lengthens.
+    Antagonist,
+}
+
+impl Side {
+    /// In words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Agonist => "agonist",
+            Self::Antagonist => "antagonist",
+        }
+    }
+
+    /// 1 or -1: the sign of the angle that shortens it.
+    pub(super) const fn sign(self) -> f64 {
+        match self {
+            Self::Agonist => 1.0,
+            Self::Antagonist => -1.0,
+        }
+    }
+}
+
+/// What turns the pull of both muscles into torques; the antagonist's is the mirror image of the agonist's.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case", tag = "kind")]
+pub enum Linkage {
+    /// Belts on a pulley: l = l(0) - r theta.
+    Pulley {
+        /// Its radius r \[m\].
+        radius: f64,
+    },
+    /// Levers: l = sqrt(a^2 + b^2 - 2 a b cos(phi)) less a rigid rest, phi = phi(0) - theta.
+    Lever {
+        /// From the joint's axis to the attachment on the moving link, a \[m\].
+        arm: f64,
+        /// From the joint's axis to the attachment on the base, b \[m\].
+        base: f64,
+        /// Angle phi(0) between both at the joint's angle 0 \[rad\].
+        lever_angle: f64,
+    },
+}
+
+/// What an angle of the joint means for a muscle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Reach {
+    /// l(0) - l(theta) \[m\].
+    pub(super) shortening: f64,
+    /// -dl/dtheta: the torque per force \[m\]; negative for the antagonist.
+    pub(super) arm: f64,
+    /// Its derivative by the angle \[m/rad\].
+    pub(super) arm_by_angle: f64,
+}
+
+impl Linkage {
+    /// What a muscle does at an angle \[rad\].
+    ///
+    /// ```text
+    /// d^2 = a^2 + b^2 - 2 a b cos(phi),   dd/dphi = g = a b sin(phi)/d,   dg/dphi = a b cos(phi)/d - g^2/d
+    /// ```
+    pub(super) fn at(&self, side: Side, angle: f64) -> Reach {
+        let sign = side.sign();
+        match *self {
+            Self::Pulley { radius } => {
+                Reach { shortening: sign * radius * angle, arm: sign * radius, arm_by_angle: 0.0 }
+            }
+            Self::Lever { arm, base, lever_angle } => {
+                let phi = lever_angle - sign * angle;
+                let distance = distance(arm, base, phi);
+                let (sin, cos) = phi.sin_cos();
+                let by_phi = arm * base * sin / distance;
+                // d(0) - d without cancellation: the difference of the squares over the sum.
+                let half = 2.0 * f64::midpoint(lever_angle, phi).sin() * (0.5 * (lever_angle - phi)).sin();
+                let sum = self::distance(arm, base, lever_angle) + distance;
+                Reach {
+                    shortening: 2.0 * arm * base * half / sum,
+                    arm: sign * by_phi,
+                    arm_by_angle: (by_phi * by_phi - arm * base * cos) / distance,
+                }
+            }
+        }
+    }
+
+    /// Distance of the two attachments at the angle 0 \[m\]; none for a pulley.
+    pub(super) fn distance(&self) -> Option<f64> {
+        match *self {
+            Self::Pulley { .. } => None,
+            Self::Lever { arm, base, lever_angle } => Some(distance(arm, base, lever_angle)),
+        }
+    }
+}
+
+/// By the law of cosines, without cancellation where the attachments are close.
+fn distance(arm: f64, base: f64, phi: f64) -> f64 {
+    let sin = (0.5 * phi).sin();
+    (arm - base).hypot(2.0 * (arm * base).sqrt() * sin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levers_follow_the_law_of_cosines() {
+        let (a, b, phi) = (0.04_f64, 0.15_f64, 1.3_f64);
+        let lever = Linkage::Lever { arm: a, base: b, lever_angle: phi };
+        let d = |phi: f64| (a * a + b * b - 2.0 * a * b * phi.cos()).sqrt();
+        assert!((lever.distance().unwrap() - d(phi)).abs() < 1e-15);
+        for angle in [-0.9, -0.3, 0.0, 1e-6, 0.4, 1.1] {
+            for (side, sign) in [(Side::Agonist, 1.0), (Side::Antagonist, -1.0)] {
+                let at = |angle: f64| lever.at(side, angle);
+                let found = at(angle);
+                assert!((found.shortening - (d(phi) - d(phi - sign * angle))).abs() < 1e-15);
+                let h = 1e-5;
+                let slope = (at(angle + h).shortening - at(angle - h).shortening) / (2.0 * h);
+                assert!((found.arm - slope).abs() < 1e-9 && found.arm * sign > 0.0, "{found:?}");
+                let bend = (at(angle + h).arm - at(angle - h).arm) / (2.0 * h);
+                assert!((found.arm_by_angle - bend).abs() < 1e-9, "{found:?} {bend}");
+            }
+        }
+        // Its height over the line between the attachments is the arm.
+        let right = Linkage::Lever { arm: 0.03, base: 0.04, lever_angle: std::f64::consts::FRAC_PI_2 };
+        assert!((right.at(Side::Agonist, 0.0).arm - 0.024).abs() < 1e-15);
+    }
+
+    #[test]
+    fn pulleys_are_mirrored() {
+        let pulley = Linkage::Pulley { radius: 0.04 };
+        let (one, other) = (pulley.at(Side::Agonist, 0.3), pulley.at(Side::Antagonist, -0.3));
+        assert!(
+            (one.shortening - 0.012).abs() < 1e-17 && one.shortening.to_bits() == other.shortening.to_bits()
+        );
+        assert_eq!((one.arm, other.arm, one.arm_by_angle), (0.04, -0.04, 0.0));
+    }
+}

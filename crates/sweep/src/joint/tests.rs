@@ -1,0 +1,276 @@
+//! Joints: torques against other ways to them, files with mistakes, and a certified table.
+
+use super::*;
+use crate::certified::{Field as _, Wish, build};
+use crate::plan::TableForm;
+use bulge_fibre::Problem;
+use bulge_muscles::{FileError, Pressure, preset};
+use bulge_table::Table;
+
+const PULLEY: &str = "muscle = \"ppam-2-r16\"\nkind = \"pulley\"\nradius = \"40 mm\"\ncontraction = \"20 %\"\nangle = \"-25 deg..25 deg\"\npressure = \"0.5 bar..3 bar\"\n";
+const LEVER: &str = "muscle = \"ppam-2-r16\"\nkind = \"lever\"\narm = \"40 mm\"\nbase = \"150 mm\"\nlever_angle = \"80 deg\"\ncontraction = \"20 %\"\nangle = \"-25..20 deg\"\npressure = \"0.5..3 bar\"\n";
+
+fn from(text: &str) -> Result<Joint, FileError> {
+    Joint::from_toml(text, "j.toml", None)
+}
+
+#[track_caller]
+fn read(text: &str) -> Joint {
+    from(text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What is answered to a joint whose text has `old` replaced.
+#[track_caller]
+fn refused(text: &str, old: &str, new: &str, parts: &[&str]) {
+    assert!(text.contains(old), "{old}");
+    let message = from(&text.replace(old, new)).map(|joint| joint.name).unwrap_err().to_string();
+    for part in parts {
+        assert!(message.contains(part), "{message:?} does not say {part:?}");
+    }
+}
+
+#[test]
+fn every_key_is_read() {
+    let joint = read(JOINT_EXAMPLE);
+    assert_eq!((joint.name.as_str(), joint.linkage()), ("knee", Linkage::Pulley { radius: 0.04 }));
+    assert_eq!((joint.pressures(), joint.muscles()[1].side()), ([5e4, 3e5], Side::Antagonist));
+    assert!((joint.angles()[0] + 25_f64.to_radians()).abs() < 1e-15);
+    assert_eq!(joint.outputs(), [JointOutput::Torque, JointOutput::Stiffness]);
+    let table = joint.table().unwrap();
+    assert_eq!(
+        (table.tolerance, table.gradient, table.max_bytes, table.checks),
+        (1e-4, 1e-2, 1 << 20, 131_072)
+    );
+    assert!(table.outputs.is_empty() && read(PULLEY).table().is_none());
+    // What is in comments holds as well.
+    let each =
+        JOINT_EXAMPLE.replace("muscle = ", "# muscle = ").replace("contraction = \"20 %\"            #", "#");
+    let each = each
+        .replace("# agonist", "agonist")
+        .replace("# antagonist", "antagonist")
+        .replace("ppam-2-r11", "dmsp-20-250");
+    let each = each.replace("\"18 %\"", "\"10 %\"");
+    let joint = read(&each.replace("-25 deg..25 deg", "-20 deg..5 deg"));
+    assert_eq!(joint.muscles().each_ref().map(|m| m.muscle().name()), ["ppam-2-r16", "dmsp-20-250"]);
+    let lever = JOINT_EXAMPLE.replace("\"pulley\"", "\"lever\"").replace("radius", "# radius");
+    let lever = lever.replace("# arm", "arm").replace("# base", "base").replace("# lever", "lever");
+    assert!(matches!(read(&lever).linkage(), Linkage::Lever { arm: 0.04, base: 0.15, .. }));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("joint.toml");
+    std::fs::write(&path, JOINT_EXAMPLE).unwrap();
+    assert_eq!(Joint::read(&path).unwrap().name, "knee");
+    assert!(Joint::read(folder.path()).unwrap_err().to_string().contains("a folder, not a joint file"));
+}
+
+#[test]
+fn mistakes_have_a_place_and_a_cure() {
+    refused(PULLEY, "kind", "knd", &["j.toml:2:1", "unknown key `knd`", "did you mean `kind`?"]);
+    refused(PULLEY, "\"pulley\"", "\"puley\"", &["j.toml:2:8", "write `kind = \"pulley\"`"]);
+    refused(PULLEY, "kind = \"pulley\"", "", &["needs `kind`", "add such as `kind = \"pulley\"`"]);
+    refused(PULLEY, "radius = \"40 mm\"", "", &["needs `radius`", "radius = \"40 mm\""]);
+    refused(PULLEY, "40 mm", "-40 mm", &["j.toml:3:10", "must be > 0"]);
+    refused(PULLEY, "radius", "arm = \"1 mm\"\nradius", &["a pulley has no `arm`", "kind = \"lever\""]);
+    refused(LEVER, "arm", "radius = \"1 mm\"\narm", &["a lever has no `radius`", "kind = \"pulley\""]);
+    refused(LEVER, "80 deg", "80 %", &["j.toml:5:15", "deg"]);
+    refused(PULLEY, "kind", "agonist = \"x\"\nkind", &["j.toml:2:1", "`agonist` to one", "delete `agonist`"]);
+    refused(PULLEY, "muscle", "agonist", &["needs `antagonist`"]);
+    refused(PULLEY, "muscle = \"ppam-2-r16\"", "", &["needs `muscle`"]);
+    refused(PULLEY, "ppam-2-r16", "ppam-2-r61", &["j.toml:1:10", "did you mean"]);
+    refused(PULLEY, "\"20 %\"", "20", &["j.toml:4:15", "between -1 and 1", "contraction = \"15 %\""]);
+    refused(
+        PULLEY,
+        "-25 deg..25 deg",
+        "25 deg..-25 deg",
+        &["j.toml:5:9", "must rise", "angle = \"-25 deg..25 deg\""],
+    );
+    refused(PULLEY, "-25 deg..25 deg", "-25..25", &["must be an angle"]);
+    refused(PULLEY, "0.5 bar..3 bar", "0..3 bar", &["j.toml:6:12", "must be > 0"]);
+    refused(PULLEY, "0.5 bar..3 bar", "1 bar..limit", &["needs a value at its upper end"]);
+    let outputs = |list: &str| format!("outputs = {list}\nkind");
+    refused(PULLEY, "kind", &outputs("[\"torqe\"]"), &["j.toml:2:12", "did you mean `torque`?"]);
+    refused(PULLEY, "kind", &outputs("[\"torque\", \"torque\"]"), &["named twice"]);
+    refused(PULLEY, "kind", &outputs("[]"), &["at least one output"]);
+    refused(PULLEY, "kind", &outputs("\"torque\""), &["a list of names"]);
+    refused(JOINT_EXAMPLE, "tolerance", "tolerence", &["did you mean `tolerance`?"]);
+    refused(JOINT_EXAMPLE, "max_size", "outputs = []\nmax_size", &["unknown key `outputs`"]);
+    refused(JOINT_EXAMPLE, "1e-4", "2", &["`tolerance` is 2"]);
+}
+
+#[test]
+fn angles_leave_no_domain() {
+    // 20 % of 110 mm are 31.513 degrees of the pulley.
+    let straight =
+        ["j.toml:5:9", "the agonist is straight at the angle -31.5127 deg", "`angle` above -31.5127 deg"];
+    refused(PULLEY, "-25 deg", "-40 deg", &straight);
+    let other = ["the antagonist is straight at the angle 31.5127 deg", "`angle` below 31.5127 deg"];
+    refused(PULLEY, "..25 deg", "..32 deg", &other);
+    // The limit of 41.85 % lies 21.85 % above.
+    let limit = ["the agonist reaches its contraction limit", "41.8497 %, at the angle 34.4", "below 34.4"];
+    let far = PULLEY.replace("-25 deg", "0 deg").replace("muscle", "antagonist = \"dmsp-20-250\"\nagonist");
+    let far = far.replace(
+        "contraction = \"20 %\"",
+        "agonist_contraction = \"20 %\"\nantagonist_contraction = \"20 %\"",
+    );
+    refused(&far, "25 deg", "40 deg", &limit);
+    let far = PULLEY.replace("muscle", "agonist = \"dmsp-20-250\"\nantagonist");
+    let far = far.replace(
+        "contraction = \"20 %\"",
+        "agonist_contraction = \"5 %\"\nantagonist_contraction = \"20 %\"",
+    );
+    refused(
+        &far,
+        "-25 deg..25 deg",
+        "-40 deg..0 deg",
+        &["the antagonist reaches", "at the angle -34.4", "above -34.4"],
+    );
+    refused(
+        LEVER,
+        "\"80 deg\"",
+        "\"15 deg\"",
+        &["dead centre at the angle -15.0000 deg", "between -15.0000 deg and 15.0000 deg"],
+    );
+    refused(LEVER, "\"80 deg\"", "\"190 deg\"", &["must be less than 180 deg"]);
+    refused(LEVER, "150 mm", "60 mm", &["88.0000 mm long at the angle 0", "66.0794", "a longer `base`"]);
+}
+
+#[test]
+fn equal_pressures_balance() {
+    for text in [PULLEY, LEVER] {
+        let joint = read(text);
+        for pressure in [5e4, 1e5, 3e5] {
+            assert!(joint.torque(0.0, pressure, pressure).unwrap().abs() < 1e-12);
+            assert!(joint.angle(pressure, pressure).unwrap().abs() < 1e-12);
+        }
+        // Fibres that don't stretch: torque and stiffness are proportional to the pressure, and the angle depends on the ratio.
+        for angle in [-0.3, 0.1, 0.3] {
+            let one = joint.torque(angle, 1e5, 0.6e5).unwrap();
+            let three = joint.torque(angle, 3e5, 1.8e5).unwrap();
+            assert!((three / one - 3.0).abs() < 1e-12);
+            // Mirrored.
+            assert!((joint.torque(-angle, 0.6e5, 1e5).unwrap() + one).abs() < 1e-11 * one.abs());
+        }
+        let angle = joint.angle(1.5e5, 1e5).unwrap();
+        assert!(angle > 0.02 && (joint.angle(3e5, 2e5).unwrap() - angle).abs() < 1e-12, "{angle}");
+        assert!(joint.torque(angle, 1.5e5, 1e5).unwrap().abs() < 1e-10);
+        // The sum of the pressures sets the stiffness.
+        let stiffness = |p: f64| joint.stiffness(angle, 1.5 * p, p).unwrap();
+        assert!((stiffness(2e5) / stiffness(1e5) - 2.0).abs() < 1e-12 && stiffness(1e5) > 0.0);
+    }
+}
+
+#[test]
+fn stiffness_is_the_slope_of_the_torque() {
+    for text in [PULLEY, LEVER] {
+        let joint = read(text);
+        for angle in [-0.25, 0.0, 0.2] {
+            let h = 1e-4;
+            let at = |times: f64| joint.torque(angle + times * h, 1.3e5, 0.9e5).unwrap();
+            let slope = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
+            let stiffness = joint.stiffness(angle, 1.3e5, 0.9e5).unwrap();
+            assert!((stiffness + slope).abs() < 1e-8 * stiffness.abs().max(1.0), "{stiffness} {slope}");
+        }
+    }
+}
+
+/// Virtual work: M_1 = p dV/dtheta with the volume whose section carries the pressure.
+#[test]
+fn torque_is_the_work_of_the_gas() {
+    for text in [PULLEY, LEVER] {
+        let joint = read(text);
+        let muscle = &joint.muscles[0];
+        let problem = Problem::new(&preset("ppam-2-r16").unwrap(), Pressure::pa(1e5)).unwrap();
+        let volume = |angle: f64| {
+            let contraction = muscle.contraction(&joint.linkage, angle);
+            problem.follow(contraction, Approach::Auto).unwrap().volume_polygon_m3
+        };
+        for angle in [-0.25, 0.0, 0.2] {
+            let h = 1e-3;
+            let slope = (8.0 * (volume(angle + h) - volume(angle - h))
+                - (volume(angle + 2.0 * h) - volume(angle - 2.0 * h)))
+                / (12.0 * h);
+            let torque = muscle.pull(&joint.linkage, angle, 1e5).unwrap().torque;
+            assert!((1e5 * slope / torque - 1.0).abs() < 1e-6, "{} {torque}", 1e5 * slope);
+        }
+    }
+}
+
+#[test]
+fn gradients_of_the_field_are_slopes() {
+    let all = "outputs = [\"torque\", \"stiffness\", \"torque_agonist\", \"torque_antagonist\", \"contraction_agonist\", \"contraction_antagonist\"]\n";
+    let braids = LEVER
+        .replace("ppam-2-r16", "dmsp-20-250")
+        .replace("20 %", "8 %")
+        .replace("-25..20", "-10..10")
+        .replace("150", "300");
+    for text in [PULLEY, LEVER, &braids] {
+        let joint = read(&format!("{all}{text}"));
+        let field = JointField::new(&joint);
+        assert_eq!((field.axes().len(), field.outputs()[1].unit.as_str()), (3, "N m/rad"));
+        let point = [0.11, 1.2e5, 2.1e5];
+        let (mut values, mut gradients) = ([0.0; 6], [0.0; 18]);
+        field.gradients(&point, &mut values, &mut gradients).unwrap();
+        for (i, step) in [1e-3, 1e2, 1e2].into_iter().enumerate() {
+            let at = |times: f64| {
+                let mut point = point;
+                point[i] += times * step;
+                let mut values = [0.0; 6];
+                field.values(&point, &mut values).unwrap();
+                values
+            };
+            let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(at);
+            for o in 0..6 {
+                let slope = (8.0 * (c[o] - b[o]) - (d[o] - a[o])) / (12.0 * step);
+                let size = values[o].abs() / [0.3, 1e5, 1e5][i];
+                assert!(
+                    (gradients[3 * o + i] - slope).abs() < 1e-6 * size,
+                    "{o} {i}: {} {slope}",
+                    gradients[3 * o + i]
+                );
+            }
+        }
+        assert!((values[0] - values[2] - values[3]).abs() < 1e-12 && values[2] > 0.0 && values[3] < 0.0);
+    }
+}
+
+#[test]
+fn what_has_no_answer() {
+    let joint = read(PULLEY);
+    assert!(
+        joint.torque(0.5, 1e5, 1e5).unwrap_err().to_string().contains("28.6479 deg is outside the range")
+    );
+    assert!(joint.stiffness(f64::NAN, 1e5, 1e5).is_err());
+    let error = joint.torque(0.1, -1.0, 1e5).unwrap_err().to_string();
+    assert!(
+        error.contains("the agonist at the angle 5.7296 deg") && error.contains("greater than 0"),
+        "{error}"
+    );
+    let error = joint.angle(3e5, 1e4).unwrap_err().to_string();
+    assert!(error.contains("no angle without load") && error.contains("at 25.0000 deg"), "{error}");
+}
+
+#[test]
+fn a_certified_table() {
+    let joint = read(&PULLEY.replace("-25 deg..25 deg", "-20 deg..20 deg"));
+    let field = JointField::new(&joint);
+    let wish = Wish {
+        tolerance: 1e-4,
+        gradient: 1e-2,
+        max_bytes: 1 << 20,
+        form: TableForm::Chebyshev,
+        checks: 4000,
+        text: "{}".to_owned(),
+    };
+    let built = build(&field, &wish, &|_| {}).unwrap();
+    assert!(built.is_met);
+    for certificate in &built.certificates {
+        assert!(certificate.value_max <= 1e-4 && certificate.gradient_max <= 1e-2, "{certificate:?}");
+    }
+    let table = Table::from_bytes(&built.bytes).unwrap();
+    // Torque is linear in the pressures: few coefficients.
+    assert!(built.bytes.len() < 1500, "{} bytes", built.bytes.len());
+    let [torque, stiffness] = table.lookup::<3, 2>().unwrap().at([0.1, 2e5, 1e5]).unwrap();
+    let exact = joint.torque(0.1, 2e5, 1e5).unwrap();
+    assert!((torque.value / exact - 1.0).abs() < 1e-4, "{} {exact}", torque.value);
+    let exact = joint.stiffness(0.1, 2e5, 1e5).unwrap();
+    assert!((stiffness.value / exact - 1.0).abs() < 1e-4 && (torque.gradient[0] / exact + 1.0).abs() < 1e-2);
+}
