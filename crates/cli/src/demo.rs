@@ -1,6 +1,7 @@
 //! `bulge demo`: the tour, on shipped muscles.
 
 mod hidden;
+mod tabulated;
 
 use bulge_effects::Catalogue;
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response, isobars};
@@ -9,6 +10,7 @@ use bulge_measurements::Data;
 use bulge_muscles::{
     Bladder, Braided, Construction, Ends, Length, Muscle, MuscleError, Pressure, from_toml, preset,
 };
+use bulge_sweep::TableDescription;
 use bulge_vtk::{write_series, write_vtp};
 use clap::Args;
 use serde::Serialize;
@@ -69,6 +71,8 @@ struct Document {
     ladder: Vec<(String, f64)>,
     /// What was found in measurements with a hidden effect, and what when it was added.
     hidden: [Found; 2],
+    /// The table of a family of muscles.
+    table: TableDescription,
     files: Vec<PathBuf>,
 }
 
@@ -102,6 +106,7 @@ impl Demo {
         let braid = braid(&self.out, &mut text, &mut written)?;
         let comparison = measured(&self.out, &mut text, &mut written)?;
         let hidden = hidden::hidden(&self.out, &mut text, &mut written)?;
+        let table = tabulated::tabulated(&self.out, &mut text, &mut written)?;
         if self.json {
             let document = Document {
                 schema: "bulge.demo/1",
@@ -110,6 +115,7 @@ impl Demo {
                 braid,
                 ladder: comparison.ladder.iter().map(|rung| (rung.title.clone(), rung.rmse_n)).collect(),
                 hidden: [Found::of(&hidden[0]), Found::of(&hidden[1])],
+                table,
                 files: written,
             };
             return Ok(serde_json::to_string_pretty(&document)? + "\n");
