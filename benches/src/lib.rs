@@ -4,6 +4,8 @@ use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
 use bulge_muscles::{
     Angle, Bladder, Braided, Construction, Ends, Length, Muscle, MuscleError, Parameter, Pressure, preset,
 };
+use bulge_numerics::Random;
+use bulge_table::Lookup;
 use std::error::Error;
 use std::time::Instant;
 
@@ -90,4 +92,18 @@ pub fn median_us(rounds: usize, calls: usize, mut run: impl FnMut()) -> f64 {
         .collect();
     times.sort_by(f64::total_cmp);
     times[rounds / 2]
+}
+
+/// Random points of a table's domain whose first axis ends where the second one says.
+#[must_use]
+pub fn random_points<const O: usize>(lookup: &Lookup<'_, 2, O>, count: usize) -> Vec<[f64; 2]> {
+    let mut random = Random::new(1, 0);
+    let mut points = Vec::with_capacity(count);
+    while points.len() < count {
+        let second = 2.0 + 98.0 * random.uniform();
+        if let Some(end) = lookup.upper_end([0.0, second]) {
+            points.push([end * random.uniform(), second]);
+        }
+    }
+    points
 }

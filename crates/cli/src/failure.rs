@@ -8,6 +8,7 @@ use bulge_measurements::MeasurementError;
 use bulge_model::{ExtendedError, ModelError};
 use bulge_muscles::{FileError, PresetError, UnitError};
 use bulge_report::PlotError;
+use bulge_sweep::export::ExportError;
 use bulge_sweep::{BuildError, SweepError, TabulateError};
 use bulge_table::TableError;
 use bulge_vtk::VtkError;
@@ -50,6 +51,8 @@ pub(crate) enum Failure {
     Sweep(Box<SweepError>),
     #[error("{0}")]
     Tabulate(Box<TabulateError>),
+    #[error("{0}")]
+    Export(Box<ExportError>),
     #[error("{} {what}", path.display())]
     TableFile { path: PathBuf, what: String },
     #[error("{0}")]
@@ -124,5 +127,6 @@ boxed!(
     Inference(InferenceError),
     Model(ModelError),
     Sweep(SweepError),
-    Tabulate(TabulateError)
+    Tabulate(TabulateError),
+    Export(ExportError)
 );

@@ -17,6 +17,7 @@ use std::time::Duration;
 use crate::failure::Failure;
 use crate::files;
 use crate::table::errors;
+use crate::text::shown;
 
 /// Points from which a sweep has to be confirmed.
 const MANY: u128 = 1_000_000_000;
@@ -24,6 +25,7 @@ const MANY: u128 = 1_000_000_000;
 const PER_SECOND: f64 = 1e6;
 
 /// A parallel sweep over the axes of a family of muscles, into Parquet files and a certified table.
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 #[derive(Debug, Args)]
 #[command(after_long_help = example())]
 pub(crate) struct SweepCommand {
@@ -54,7 +56,7 @@ pub(crate) struct SweepCommand {
 }
 
 fn example() -> String {
-    format!("A sweep file:\n\n{}", SWEEP_EXAMPLE.lines().map(|line| format!("  {line}\n")).collect::<String>())
+    shown("A sweep file", SWEEP_EXAMPLE)
 }
 
 fn range(text: &str) -> Result<Range<u64>, String> {

@@ -1,5 +1,7 @@
 //! `bulge table`: looking into tables, and taking them elsewhere.
 
+mod export;
+
 use bulge_muscles::units;
 use bulge_sweep::TableDescription;
 use bulge_table::Table;
@@ -28,6 +30,12 @@ enum What {
     Eval(Eval),
     /// Axes, outputs, size and certified errors
     Info(Info),
+    /// Rust source, a C header, CSV, JSON, or the papers' polynomials
+    Export(export::Export),
+    /// The table of a joint with two antagonistic muscles: torque and stiffness over angle and pressures
+    Joint(export::JointCommand),
+    /// The polynomials that S1 prints (Tables 1 and 2), beside what they were fitted to
+    Papers(export::Papers),
 }
 
 #[derive(Debug, Args)]
@@ -58,6 +66,9 @@ impl TableCommand {
         match &self.what {
             What::Eval(eval) => eval.run(),
             What::Info(info) => info.run(),
+            What::Export(export) => export.run(),
+            What::Joint(joint) => joint.run(),
+            What::Papers(papers) => papers.run(),
         }
     }
 }
@@ -116,13 +127,8 @@ pub(crate) fn errors(description: &TableDescription) -> String {
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
     for output in &description.outputs {
         let mut row = vec![output.name.clone(), output.unit.clone()];
-        let errors = [
-            output.error,
-            output.error_rms,
-            output.gradient_error,
-            output.gradient_error_rms,
-            output.bound,
-        ];
+        let errors =
+            [output.error, output.error_rms, output.gradient_error, output.gradient_error_rms, output.bound];
         row.extend(errors.map(|error| format!("{error:.1e}")));
         rows.push(row);
     }
@@ -139,7 +145,7 @@ impl Eval {
         let (axes, outputs) = (point.len(), description.outputs.len());
         let (mut values, mut gradients) = (vec![0.0; outputs], vec![0.0; outputs * axes]);
         if table.sample(&point, &mut values, &mut gradients).is_none() {
-            return Err(self.outside(&table, &description, &point));
+            return Err(outside(&table, &description, &point));
         }
         if self.json {
             let mut at = json!({});
@@ -195,27 +201,28 @@ impl Eval {
         }
         Ok(point.into_iter().flatten().collect())
     }
+}
 
-    fn outside(&self, table: &Table<'_>, description: &TableDescription, point: &[f64]) -> Failure {
-        for (i, (axis, x)) in description.axes.iter().zip(point).enumerate().rev() {
-            let high = if i == 0 { table.upper_end(point).unwrap_or(axis.high) } else { axis.high };
-            if !(axis.low..=high).contains(x) {
-                let what = format!(
-                    "{} = {x} lies outside the table: it goes from {} to {}{}",
-                    axis.name,
-                    significant(axis.low, 6),
-                    significant(high, 9),
-                    if axis.is_fitted { " there" } else { "" }
-                );
-                return Failure::Outside(what);
-            }
+/// Why a point has no value.
+fn outside(table: &Table<'_>, description: &TableDescription, point: &[f64]) -> Failure {
+    for (i, (axis, x)) in description.axes.iter().zip(point).enumerate().rev() {
+        let high = if i == 0 { table.upper_end(point).unwrap_or(axis.high) } else { axis.high };
+        if !(axis.low..=high).contains(x) {
+            let what = format!(
+                "{} = {x} lies outside the table: it goes from {} to {}{}",
+                axis.name,
+                significant(axis.low, 6),
+                significant(high, 9),
+                if axis.is_fitted { " there" } else { "" }
+            );
+            return Failure::Outside(what);
         }
-        let axis = &description.axes[0];
-        Failure::Outside(format!(
-            "{} = {}: an output of the table is infinite there; give more than {}",
-            axis.name, point[0], axis.low
-        ))
     }
+    let axis = &description.axes[0];
+    Failure::Outside(format!(
+        "{} = {}: an output of the table is infinite there; give more than {}",
+        axis.name, point[0], axis.low
+    ))
 }
 
 /// A value in SI: a number in the axis' unit, or one with a unit of the same dimension.

@@ -27,6 +27,17 @@ pub(crate) fn table(rows: &[Vec<String>]) -> String {
     text
 }
 
+/// A file as the long help shows it.
+pub(crate) fn shown(title: &str, file: &str) -> String {
+    let mut text = format!("{title}:\n\n");
+    for line in file.lines() {
+        text.push_str("  ");
+        text.push_str(line);
+        text.push('\n');
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -94,7 +94,7 @@ impl<'a> Computer<'a> {
                     *x = at.value(limit.unwrap_or(1.0));
                 }
                 let contraction = self.family.contraction(&point);
-                self.feasible(&place, *limit)?;
+                begins_below(&place, *limit)?;
                 member
                     .pulling(contraction, *limit, &self.plan.outputs, &mut values)
                     .map_err(|error| error.to_string())?;
@@ -123,18 +123,6 @@ impl<'a> Computer<'a> {
             Ok((member, limit))
         };
         self.family.member(point).and_then(of).map_err(|error: FamilyError| error.to_string())
-    }
-
-    /// An axis that follows the limit must begin below it.
-    fn feasible(&self, place: &[Coordinate], limit: Option<f64>) -> Result<(), String> {
-        for at in place {
-            if let (Coordinate::OfLimit { from, .. }, Some(limit)) = (at, limit)
-                && *from >= limit
-            {
-                return Err(FibreError::BeyondLimit { contraction: *from, limit }.to_string());
-            }
-        }
-        Ok(())
     }
 
     /// The columns of the data set, in order: number of the point, axes, outputs, reason.
@@ -247,6 +235,18 @@ impl<'a> Computer<'a> {
         }
         text
     }
+}
+
+/// An axis that follows the limit must begin below it.
+fn begins_below(place: &[Coordinate], limit: Option<f64>) -> Result<(), String> {
+    for at in place {
+        if let (Coordinate::OfLimit { from, .. }, Some(limit)) = (at, limit)
+            && *from >= limit
+        {
+            return Err(FibreError::BeyondLimit { contraction: *from, limit }.to_string());
+        }
+    }
+    Ok(())
 }
 
 impl Chunk {

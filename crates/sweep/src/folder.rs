@@ -93,7 +93,8 @@ impl Folder {
             let Ok(entries) = fs::read_dir(self.0.join(name)) else { continue };
             for entry in entries {
                 let path = entry?.path();
-                let unfinished = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with(UNFINISHED));
+                let unfinished =
+                    path.file_name().is_some_and(|n| n.to_string_lossy().starts_with(UNFINISHED));
                 if unfinished {
                     fs::remove_file(path)?;
                 }

@@ -27,4 +27,6 @@ pub use muscle_field::MuscleField;
 pub use output::Output;
 pub use plan::Plan;
 pub use run::{Progress, RunOptions, Summary, SweepError, run};
-pub use tabulate::{AxisDescription, OutputDescription, TableDescription, TabulateError, table_text, tabulate};
+pub use tabulate::{
+    AxisDescription, OutputDescription, TableDescription, TabulateError, table_text, tabulate,
+};

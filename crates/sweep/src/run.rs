@@ -238,7 +238,8 @@ impl Run<'_> {
         }
         let points = points_of_chunk(self.plan, number);
         let chunk = self.computer.chunk(points.clone());
-        let about = json!({ "name": self.plan.name, "plan": self.key, "chunk": number, "first": points.start });
+        let about =
+            json!({ "name": self.plan.name, "plan": self.key, "chunk": number, "first": points.start });
         let bytes = self.computer.parquet(&chunk, &about.to_string())?;
         write(&self.folder.parquet(number), &bytes)?;
         let csv_sha256 = if self.csv {
@@ -322,7 +323,8 @@ fn merge(folder: &Folder, from: &Path, canonical: &str, key: &str, all: u64) -> 
         return Err(SweepError::Changed { path: from.to_owned(), difference });
     }
     for chunk in 0..all {
-        let standing = |folder: &Folder| folder.standing(chunk, key, false).map_err(at(&folder.promise(chunk)));
+        let standing =
+            |folder: &Folder| folder.standing(chunk, key, false).map_err(at(&folder.promise(chunk)));
         if matches!(standing(folder)?, Standing::Done(_)) {
             continue;
         }

@@ -175,12 +175,11 @@ fn best_pole(
 /// Length of an axis in s; of a fitted one where the others are in their middle.
 fn width(field: &dyn Field, chosen: &Coordinates, axis: usize) -> Result<f64, NoValue> {
     let axes = field.axes();
-    let high = match axes[axis].high {
-        Some(high) => high,
-        None => {
-            let middle = |axis: &FieldAxis| 0.5 * (axis.low + axis.high.unwrap_or(axis.low));
-            field.upper_end(&axes[1..].iter().map(middle).collect::<Vec<_>>())?
-        }
+    let high = if let Some(high) = axes[axis].high {
+        high
+    } else {
+        let middle = |axis: &FieldAxis| 0.5 * (axis.low + axis.high.unwrap_or(axis.low));
+        field.upper_end(&axes[1..].iter().map(middle).collect::<Vec<_>>())?
     };
     let length = high - axes[axis].low;
     Ok(if chosen.axes[axis].is_root { length.sqrt() } else { length })

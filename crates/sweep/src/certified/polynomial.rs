@@ -15,6 +15,9 @@ const PROGRESS: f64 = 0.5;
 /// Most values of a fit.
 const MOST_VALUES: usize = 4_000_000;
 
+/// Outputs of unit coordinates.
+type Function<'a> = &'a (dyn Fn(&[f64], &mut [f64]) -> Result<(), NoValue> + Sync);
+
 /// Polynomials of `outputs` outputs; the last axis varies fastest, then the outputs.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Polynomial {
@@ -107,7 +110,7 @@ impl Polynomial {
         outputs: usize,
         most_orders: usize,
         wanted: f64,
-        function: &(dyn Fn(&[f64], &mut [f64]) -> Result<(), NoValue> + Sync),
+        function: Function<'_>,
     ) -> Result<Self, NoValue> {
         let mut orders = vec![FIRST_ORDERS.min(most_orders); axes];
         let mut stalled = vec![0; axes];
@@ -135,11 +138,7 @@ impl Polynomial {
         }
     }
 
-    fn interpolated(
-        orders: &[usize],
-        outputs: usize,
-        function: &(dyn Fn(&[f64], &mut [f64]) -> Result<(), NoValue> + Sync),
-    ) -> Result<Self, NoValue> {
+    fn interpolated(orders: &[usize], outputs: usize, function: Function<'_>) -> Result<Self, NoValue> {
         let points: Vec<Vec<f64>> = orders.iter().map(|n| gauss_points(*n)).collect();
         let count: usize = orders.iter().product();
         let mut tensor = vec![0.0; count * outputs];
@@ -295,6 +294,7 @@ mod tests {
     use super::super::coordinate::b_splines;
     use super::*;
 
+    #[expect(clippy::unnecessary_wraps, reason = "what is fitted may have no value")]
     fn waves(unit: &[f64], values: &mut [f64]) -> Result<(), NoValue> {
         values[0] = (3.0 * unit[0] + unit[1] * unit[2]).sin();
         values[1] = (unit[0] - 2.0 * unit[1]).exp() + unit[2];
