@@ -24,6 +24,7 @@ pub mod sample;
 mod section;
 mod shooting;
 mod specimen;
+mod tables;
 
 pub use check::Check;
 
@@ -54,6 +55,8 @@ pub const CHECKS: &[fn() -> Check] = &[
     derivative::linearised,
     derivative::stiffness,
     isobars::one_by_one,
+    tables::lookups,
+    tables::gradients,
     meridian::first_integral,
     meridian::fibre_length,
     meridian::consistency,

@@ -289,21 +289,23 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
 fn open(folder: &Folder, path: &Path, canonical: &str, options: &RunOptions) -> Result<(), SweepError> {
     folder.create(options.csv).map_err(at(path))?;
     let plan = folder.plan();
+    // Other processes may be at work on other chunks.
+    let sweep_up = || if options.chunks.is_none() { folder.sweep_up().map_err(at(path)) } else { Ok(()) };
     match fs::read_to_string(&plan) {
         Ok(before) if before == canonical => {
             if !options.resume && options.chunks.is_none() && options.merge.is_empty() {
                 return Err(SweepError::AlreadyThere { path: path.to_owned() });
             }
-            // Other processes may be at work on other chunks.
-            if options.chunks.is_none() {
-                folder.sweep_up().map_err(at(path))?;
-            }
-            Ok(())
+            sweep_up()
         }
         Ok(before) => {
             Err(SweepError::Changed { path: path.to_owned(), difference: difference(&before, canonical) })
         }
-        Err(error) if error.kind() == io::ErrorKind::NotFound => write(&plan, canonical.as_bytes()),
+        // A process may have been killed before the plan was there.
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            sweep_up()?;
+            write(&plan, canonical.as_bytes())
+        }
         Err(error) => Err(at(&plan)(error)),
     }
 }

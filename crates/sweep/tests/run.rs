@@ -532,6 +532,7 @@ fn every_output_is_the_solver_s() {
         let rows = rows(folder.path());
         assert_whole(&plan, &rows);
         for row in &rows {
+            assert_eq!(reason(row), None);
             let at = |name: &str| number(row, name).unwrap();
             let mut muscle = plan.muscle.clone();
             let mut pressure = plan.pressure_pa;
@@ -591,7 +592,7 @@ fn effects_of_the_muscle_file_act() {
     let folder = TempDir::new().unwrap();
     let text = bulge_muscles::to_toml(&preset("dmsp-20-250").unwrap());
     let with = format!(
-        "{text}\n[effects.force-offset]\noffset = \"-10 N\"\n[effects.bladder-elasticity]\nmodulus = \"0.2 MPa\"\n"
+        "{text}\n[effects.force-offset]\noffset = \"-10 N\"\n[effects.bladder-elasticity]\nc10 = \"0.2 MPa\"\nc01 = \"0.05 MPa\"\nwall = \"2 mm\"\n"
     );
     fs::write(folder.path().join("muscle.toml"), &with).unwrap();
     let sweep = |muscle: &str| {
