@@ -29,6 +29,12 @@ fn lookups(c: &mut Criterion) {
             b.iter(|| lookup.at(black_box(*next.next().unwrap())));
         });
         if form == "splines" {
+            // What a controller of one muscle does.
+            let curve = lookup.curve::<96>([0.0, 6.875]).unwrap();
+            let mut next = points.iter().cycle();
+            group.bench_function("lookup, splines, one slenderness", |b| {
+                b.iter(|| curve.at(black_box(0.75 * next.next().unwrap()[0])));
+            });
             let mut next = points.iter().cycle();
             group.bench_function("closed form", |b| {
                 b.iter(|| {

@@ -49,10 +49,12 @@ pub fn table_text(plan: &Plan, wish: &TableWish) -> Result<String, serde_json::E
         "pressure_pa": plan.pressure_pa,
         "method": format!("{:?}", plan.approach),
         "axes": plan.axes,
+        "outputs": wish.outputs,
         "tolerance": wish.tolerance,
         "gradient": wish.gradient,
         "max_bytes": wish.max_bytes,
         "form": wish.form,
+        "checks": wish.checks,
     });
     if let (Some(contraction), Some(entries)) = (plan.contraction, document.as_object_mut()) {
         entries.insert("contraction".to_owned(), contraction.into());

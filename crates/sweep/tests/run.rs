@@ -517,8 +517,8 @@ fn every_output_is_the_solver_s() {
         list.iter().map(|p| Variable::Parameter(*p)).chain([Variable::Pressure]).collect::<Vec<_>>()
     };
     let pleated = "muscle = \"ppam-2-r16\"\npressure = \"2 bar\"\n\
-        [axes.slenderness]\nlist = [4, 6.875, 30]\n[axes.fibres]\nlist = [12, 40]\n\
-        [axes.elastic_group]\nlist = [0.001, 0.02]\n[axes.contraction]\nlist = [0.03, 0.2, 0.33]\n";
+        [axes.slenderness]\nlist = [4, 6.875, 12]\n[axes.fibres]\nlist = [12, 40]\n\
+        [axes.elastic_group]\nlist = [0.0005, 0.004]\n[axes.contraction]\nlist = [0.03, 0.1, 0.2]\n";
     let braided = "muscle = \"dmsp-20-250\"\n[axes.pressure]\nlist = [\"1 bar\", \"5 bar\"]\n\
         [axes.length]\nlist = [\"0.2 m\", \"0.3 m\"]\n[axes.contraction]\nlist = [-0.01, 0.1, 0.25]\n";
     let pleated = with_outputs(
@@ -591,19 +591,18 @@ fn f_and_v_are_those_of_the_pleated_muscle() {
 fn effects_of_the_muscle_file_act() {
     let folder = TempDir::new().unwrap();
     let text = bulge_muscles::to_toml(&preset("dmsp-20-250").unwrap());
-    let with = format!(
-        "{text}\n[effects.force-offset]\noffset = \"-10 N\"\n[effects.bladder-elasticity]\nc10 = \"0.2 MPa\"\nc01 = \"0.05 MPa\"\nwall = \"2 mm\"\n"
-    );
+    let with = format!("{text}\n[effects.hoop-elasticity]\nstiffness = \"1 kN/m\"\n");
     fs::write(folder.path().join("muscle.toml"), &with).unwrap();
     let sweep = |muscle: &str| {
         format!(
-            "muscle = \"{muscle}\"\npressure = \"3 bar\"\noutputs = [\"force\", \"volume\", \"stiffness\"]\n[axes.contraction]\nlist = [0.02, 0.1, 0.2]\n"
+            "muscle = \"{muscle}\"\npressure = \"3 bar\"\noutputs = [\"force\", \"volume\", \"stiffness\"]\n[axes.contraction]\nlist = [0.02, 0.06, 0.1]\n"
         )
     };
     let values = |plan: &Plan| {
         let folder = whole(plan, false);
         let rows = rows(folder.path());
         assert_whole(plan, &rows);
+        assert_eq!(rows.iter().find_map(reason), None);
         rows.iter()
             .map(|row| ["force", "volume", "stiffness"].map(|name| number(row, name).unwrap()))
             .collect::<Vec<_>>()
@@ -611,26 +610,35 @@ fn effects_of_the_muscle_file_act() {
     let plain = values(&plan(&sweep("dmsp-20-250")));
     let changed = Plan::from_toml(&sweep("muscle.toml"), "sweep.toml", Some(folder.path())).unwrap();
     let found = values(&changed);
-    let muscle = from_toml(&with, "muscle.toml").unwrap();
-    let extended = Extended::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap();
-    for (i, contraction) in [0.02, 0.1, 0.2].into_iter().enumerate() {
+    let extended = |text: &str| {
+        let muscle = from_toml(text, "muscle.toml").unwrap();
+        Extended::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
+    };
+    let stated = extended(&with);
+    for (i, contraction) in [0.02, 0.06, 0.1].into_iter().enumerate() {
         let [force, volume, stiffness] = found[i];
         assert!((force - plain[i][0]).abs() > 1.0, "the effects add nothing: {force} N");
         assert!((volume - plain[i][1]).abs() < 1e-12);
         let wanted =
-            extended.solve(Pressure::bar(3.0), Given::Contraction(contraction), Approach::Auto).unwrap();
+            stated.solve(Pressure::bar(3.0), Given::Contraction(contraction), Approach::Auto).unwrap();
         assert_close(force, wanted.force_n, 1e-12, "force");
         assert_close(stiffness, wanted.stiffness_n_per_m, 1e-12, "stiffness");
     }
-    // Its number as an axis: each newton of the offset is one of the force.
-    let axis =
-        sweep("muscle.toml") + "[axes.\"force-offset.offset\"]\nlist = [\"-30 N\", \"-10 N\", \"0 N\"]\n";
+    // Its number as an axis: the muscle with that number in its file.
+    let axis = sweep("muscle.toml")
+        + "[axes.\"hoop-elasticity.stiffness\"]\nlist = [\"0.5 kN/m\", \"1 kN/m\", \"2 kN/m\"]\n";
     let varied = Plan::from_toml(&axis, "sweep.toml", Some(folder.path())).unwrap();
     let found_varied = values(&varied);
-    for (k, newton) in [-30.0, -10.0, 0.0].into_iter().enumerate() {
-        for i in 0..3 {
-            let difference = found_varied[3 * k + i][0] - found[i][0];
-            assert!((difference - (newton + 10.0)).abs() < 1e-9, "{newton} N: {difference}");
+    assert_eq!(
+        found_varied[3..6].iter().flatten().map(|x| x.to_bits()).collect::<Vec<_>>(),
+        found.iter().flatten().map(|x| x.to_bits()).collect::<Vec<_>>()
+    );
+    for (k, stiffness) in ["0.5 kN/m", "1 kN/m", "2 kN/m"].into_iter().enumerate() {
+        let extended = extended(&with.replace("1 kN/m", stiffness));
+        for (i, contraction) in [0.02, 0.06, 0.1].into_iter().enumerate() {
+            let wanted =
+                extended.solve(Pressure::bar(3.0), Given::Contraction(contraction), Approach::Auto).unwrap();
+            assert_close(found_varied[3 * k + i][0], wanted.force_n, 1e-12, stiffness);
         }
     }
 }

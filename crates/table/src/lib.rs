@@ -55,6 +55,7 @@ extern crate std;
 mod chebyshev;
 mod coordinate;
 mod crc64;
+mod curve;
 mod error;
 pub mod format;
 mod lookup;
@@ -65,6 +66,7 @@ mod table;
 
 pub use chebyshev::MOST_ORDERS;
 pub use crc64::crc64;
+pub use curve::Curve;
 pub use error::TableError;
 pub use format::{Axis, Certificate, Form, Output};
 pub use lookup::{Lookup, Sample};

@@ -38,11 +38,11 @@ pub struct Lookup<'a, const A: usize, const O: usize> {
 }
 
 /// The coordinates of a point with their derivatives.
-struct Place<const A: usize> {
+pub(crate) struct Place<const A: usize> {
     /// u, v_1, ...
-    at: [f64; A],
+    pub(crate) at: [f64; A],
     /// d(coordinate)/dx of its own axis.
-    own: [f64; A],
+    pub(crate) own: [f64; A],
     /// du/dv_i of the axes 1.., through the fitted edge.
     shift: [f64; A],
 }
@@ -71,10 +71,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     /// The upper end of axis 0 at the other axes' values (that of axis 0 in `point` is ignored); `None` outside.
     #[must_use]
     pub fn upper_end(&self, point: [f64; A]) -> Option<f64> {
-        let mut place = Place { at: [0.0; A], own: [1.0; A], shift: [0.0; A] };
-        for (i, x) in point.iter().enumerate().skip(1) {
-            [place.at[i], place.own[i]] = self.axes[i].at(*x)?;
-        }
+        let place = self.others(point)?;
         if !self.is_fitted {
             return Some(self.axes[0].high);
         }
@@ -84,12 +81,18 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         Some(self.axes[0].low + if self.is_root { s * s } else { s })
     }
 
-    #[inline]
-    fn place(&self, point: [f64; A]) -> Option<Place<A>> {
+    /// The coordinates of the axes 1..
+    pub(crate) fn others(&self, point: [f64; A]) -> Option<Place<A>> {
         let mut place = Place { at: [0.0; A], own: [1.0; A], shift: [0.0; A] };
         for (i, x) in point.iter().enumerate().skip(1) {
             [place.at[i], place.own[i]] = self.axes[i].at(*x)?;
         }
+        Some(place)
+    }
+
+    #[inline]
+    fn place(&self, point: [f64; A]) -> Option<Place<A>> {
+        let mut place = self.others(point)?;
         let first = &self.axes[0];
         let distance = point[0] - first.low;
         // Also refuses NaN.
@@ -119,7 +122,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     }
 
     /// 1/Q and c with their derivatives by v_1 ..
-    fn edge(&self, place: &Place<A>) -> Graded<A, 2> {
+    pub(crate) fn edge(&self, place: &Place<A>) -> Graded<A, 2> {
         let mut cells = [0; A];
         let mut basis = [Basis::default(); A];
         for i in 1..A {

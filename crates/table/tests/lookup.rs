@@ -4,7 +4,7 @@
 
 mod writer;
 
-use bulge_table::{Table, TableError};
+use bulge_table::{Form, Lookup, Table, TableError};
 use writer::{Axis, Draft, Dual, Kind, Polynomial, Random, single};
 
 const PPAM: &[u8] = include_bytes!("../examples/data/ppam.table");
@@ -336,6 +336,7 @@ fn both_agree<const A: usize, const O: usize>(random: &mut Random) {
                 }
             }
         }
+        curve_agrees(&lookup, &table, random);
         let shape = TableError::Shape { axes: A, outputs: O };
         assert!(table.lookup::<5, 1>().is_err_and(|error| error == shape));
         assert!(table.lookup::<A, 9>().is_err_and(|error| error == shape));
@@ -347,6 +348,39 @@ fn both_agree<const A: usize, const O: usize>(random: &mut Random) {
         assert!(table.upper_end(&point[1..]).is_none());
         assert!(table.sample(&point, &mut values[..O], &mut gradients).is_some());
         assert!(table.axis(A).is_none() && table.output(O).is_none());
+    }
+}
+
+/// A curve is the lookup with the other axes fixed, inside and outside.
+fn curve_agrees<const A: usize, const O: usize>(
+    lookup: &Lookup<'_, A, O>,
+    table: &Table<'_>,
+    random: &mut Random,
+) {
+    let fractions: Vec<f64> = (0..A).map(|_| random.between(0.1, 0.9)).collect();
+    let point: [f64; A] = *point_at(table, &fractions).first_chunk().unwrap();
+    let Some(curve) = lookup.curve::<16>(point) else {
+        return assert!(table.form() == Form::Chebyshev);
+    };
+    assert!(lookup.curve::<3>(point).is_none(), "more coefficients than fit");
+    let axis = table.axis(0).unwrap();
+    for _ in 0..9 {
+        let mut there = point;
+        there[0] = axis.low + random.between(-0.1, 1.1) * (axis.high - axis.low);
+        let (exact, found) = (lookup.at(there), curve.at(there[0]));
+        assert_eq!(exact.is_some(), found.is_some(), "{there:?}");
+        for (a, b) in exact.iter().flatten().zip(found.iter().flatten()) {
+            let size = a.gradient.iter().fold(a.value.abs(), |size, by| size.max(by.abs()));
+            assert!((a.value - b.value).abs() <= 1e-12 * size);
+            for (a, b) in a.gradient.iter().zip(b.gradient) {
+                assert!((a - b).abs() <= 1e-11 * size, "{there:?}: {a} {b}");
+            }
+        }
+    }
+    let mut outside = point;
+    if A > 1 {
+        outside[A - 1] = table.axis(A - 1).unwrap().high * 1.5 + 1.0;
+        assert!(lookup.curve::<16>(outside).is_none());
     }
 }
 
