@@ -2,6 +2,7 @@
 
 use bulge_sweep::{
     Built, Plan, Progress, RunOptions, SWEEP_EXAMPLE, Summary, TableDescription, run, table_text, tabulate,
+    write_durably,
 };
 use bulge_table::Table;
 use clap::Args;
@@ -121,15 +122,25 @@ impl SweepCommand {
                 .outputs
                 .iter()
                 .all(|output| output.error <= wish.tolerance && output.gradient_error <= wish.gradient);
+            self.describe(&there)?;
             return Ok(Some((there, is_met)));
         }
         let bar = Bar::new(self.json);
         let Built { bytes, is_met, .. } = tabulate(plan, wish, &|what| bar.says(what))?;
         let description = TableDescription::of(&Table::from_bytes(&bytes)?)?;
-        files::write(&path, &bytes)?;
-        let json = serde_json::to_string_pretty(&description)? + "\n";
-        files::write(&self.out.join("table.json"), json.as_bytes())?;
+        durably(&path, &bytes)?;
+        self.describe(&description)?;
         Ok(Some((description, is_met)))
+    }
+
+    /// What the table says of itself, beside it; also where a kill has left the table alone.
+    fn describe(&self, description: &TableDescription) -> Result<(), Failure> {
+        let json = serde_json::to_string_pretty(description)? + "\n";
+        let path = self.out.join("table.json");
+        if fs::read(&path).is_ok_and(|there| there == json.as_bytes()) {
+            return Ok(());
+        }
+        durably(&path, json.as_bytes())
     }
 
     fn text(
@@ -164,6 +175,10 @@ impl SweepCommand {
         }
         out
     }
+}
+
+fn durably(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    write_durably(path, bytes).map_err(|source| Failure::Output { path: path.to_owned(), source })
 }
 
 /// What is described by a table file, if that is whole and says the same of itself.

@@ -184,6 +184,7 @@ fn a_huge_sweep_must_be_confirmed() {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "one table, built once")]
 fn a_table_is_built_and_asked() {
     let folder = Folder::new("sweep-table");
     let (sweep, out) = (folder.write("sweep.toml", TABLE), folder.path("out"));

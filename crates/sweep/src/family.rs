@@ -1,6 +1,6 @@
 //! The family of muscles that the axes of a plan span: the muscle at a point of the axes, and its outputs.
 
-use bulge_effects::{Catalogue, Known, known};
+use bulge_effects::{Catalogue, Group, Known, known};
 use bulge_fibre::{Approach, FibreError, Given, Gradient, Problem, Response, Variable};
 use bulge_model::{Extended, ExtendedError, ModelError};
 use bulge_muscles::{FileError, Muscle, MuscleError, Parameter, Pressure, Quantity as _};
@@ -30,6 +30,14 @@ pub enum FamilyError {
     /// An elastic group for a muscle without a number of fibres.
     #[error("the elastic group p sin(2 pi/n) R^2/EA needs a number of fibres n")]
     NoFibreNumber,
+    /// An axis of an effect that is no part of the muscle.
+    #[error(
+        "the effect `{effect}` belongs to a rig or to one specimen: a sweep of the muscle leaves it out, so it can't be an axis"
+    )]
+    NoPart {
+        /// Its name.
+        effect: String,
+    },
     /// A number of fibres that isn't whole.
     #[error("the number of fibres is {found}: it must be a whole number")]
     NotWhole {
@@ -55,6 +63,8 @@ pub struct Member {
     problem: Problem,
     /// Where effects add to the force of the equilibrium.
     extended: Option<Extended>,
+    /// The muscle, effects and pressure that are stated, where there are effects.
+    stated: Option<Box<(Muscle, Vec<Known>, f64)>>,
     approach: Approach,
     /// p l0^2 a and l0^3: what makes force and volume dimensionless.
     scales: [f64; 2],
@@ -66,8 +76,18 @@ impl Family {
     /// # Errors
     /// If the muscle file states an effect that doesn't exist or has other numbers.
     pub fn new(plan: &Plan) -> Result<Self, FamilyError> {
+        let effects = known(&plan.muscle, &Catalogue::builtin())?;
+        for axis in &plan.axes {
+            let Quantity::Effect { effect, .. } = &axis.quantity else { continue };
+            let is_part = |(known, _): &Known| {
+                known.card().name == effect && !matches!(known.card().group, Group::Rig | Group::Specimen)
+            };
+            if !effects.iter().any(is_part) {
+                return Err(FamilyError::NoPart { effect: effect.clone() });
+            }
+        }
         Ok(Self {
-            effects: known(&plan.muscle, &Catalogue::builtin())?,
+            effects,
             muscle: plan.muscle.clone(),
             pressure: plan.pressure_pa,
             contraction: plan.contraction,
@@ -94,25 +114,7 @@ impl Family {
     /// If a value is out of range.
     pub fn member(&self, point: &[f64]) -> Result<Member, FamilyError> {
         let (muscle, effects, pressure) = self.varied(point)?;
-        let (extended, muscle) = if effects.is_empty() {
-            (None, muscle)
-        } else {
-            let extended = Extended::new(&muscle, &effects)?;
-            let muscle = extended.muscle().clone();
-            (Some(extended), muscle)
-        };
-        let problem = Problem::new(&muscle, Pressure::pa(pressure))?;
-        let length = muscle.length().si();
-        let factor = match muscle.fibres().filter(|_| muscle.is_pleated()) {
-            Some(n) => f64::from(n) / TAU * (TAU / f64::from(n)).sin(),
-            None => 1.0,
-        };
-        Ok(Member {
-            problem,
-            extended,
-            approach: self.approach,
-            scales: [pressure * length * length * factor, length.powi(3)],
-        })
+        Member::new(muscle, effects, pressure, self.approach)
     }
 
     /// The muscle with the axes' values, its effects with theirs, and the pressure.
@@ -264,7 +266,7 @@ impl Family {
         let mut around = vec![0.0; outputs.len()];
         gradients.fill(0.0);
         for axis in 0..count {
-            let step = 1e-4 * point[axis].abs().max(1e-6);
+            let step = 1e-4 * point[axis].abs().max(1e-3);
             for (times, weight) in [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)] {
                 let mut moved = point.to_vec();
                 moved[axis] += times * step;
@@ -280,6 +282,34 @@ impl Family {
 }
 
 impl Member {
+    fn new(
+        muscle: Muscle,
+        effects: Vec<Known>,
+        pressure: f64,
+        approach: Approach,
+    ) -> Result<Self, FamilyError> {
+        let (extended, stated, muscle) = if effects.is_empty() {
+            (None, None, muscle)
+        } else {
+            let extended = Extended::new(&muscle, &effects)?;
+            let changed = extended.muscle().clone();
+            (Some(extended), Some(Box::new((muscle, effects, pressure))), changed)
+        };
+        let problem = Problem::new(&muscle, Pressure::pa(pressure))?;
+        let length = muscle.length().si();
+        let factor = match muscle.fibres().filter(|_| muscle.is_pleated()) {
+            Some(n) => f64::from(n) / TAU * (TAU / f64::from(n)).sin(),
+            None => 1.0,
+        };
+        Ok(Member {
+            problem,
+            extended,
+            stated,
+            approach,
+            scales: [pressure * length * length * factor, length.powi(3)],
+        })
+    }
+
     /// The problem that is solved.
     #[must_use]
     pub const fn problem(&self) -> &Problem {
@@ -360,16 +390,24 @@ impl Member {
     ) -> Result<(), FamilyError> {
         let [force_scale, volume_scale] = self.scales;
         let needs = |output: &Output| matches!(output, Output::ForceBy(_) | Output::VolumeBy(_));
-        let gradient = if outputs.iter().any(needs) {
+        let gradient = if outputs.iter().any(needs) && self.stated.is_none() {
             Some(self.problem.gradient(response.contraction, self.approach)?)
         } else {
             None
         };
-        let by = |variable: Variable, which: usize| {
-            let of = gradient.as_ref().and_then(|g| g.by_variable.iter().find(|(v, _)| *v == variable));
-            of.map(|(_, by)| by[which]).ok_or(FibreError::NoVariable { name: name_of(variable) })
+        // The contraction is that from the stated length.
+        let length = match &self.stated {
+            Some(stated) => stated.0.length().si(),
+            None => response.length_m / (1.0 - response.contraction),
         };
-        let length = response.length_m / (1.0 - response.contraction);
+        let by = |variable: Variable, which: usize| -> Result<f64, FamilyError> {
+            if let Some(stated) = &self.stated {
+                let contraction = 1.0 - response.length_m / length;
+                return Ok(self.by_stated(stated, variable, contraction)?[which]);
+            }
+            let of = gradient.as_ref().and_then(|g| g.by_variable.iter().find(|(v, _)| *v == variable));
+            Ok(of.map(|(_, by)| by[which]).ok_or(FibreError::NoVariable { name: name_of(variable) })?)
+        };
         let radius = self.problem.muscle().end_radius().si();
         // Circular volume over that of the sections that carry the pressure.
         let circular = response.volume_m3 / response.volume_polygon_m3;
@@ -397,6 +435,36 @@ impl Member {
             };
         }
         Ok(())
+    }
+
+    /// Derivatives of force and volume by a number of the stated muscle, whose effects follow it: differences of fourth order.
+    fn by_stated(
+        &self,
+        (muscle, effects, pressure): &(Muscle, Vec<Known>, f64),
+        variable: Variable,
+        contraction: f64,
+    ) -> Result<[f64; 2], FamilyError> {
+        let value = match variable {
+            Variable::Pressure => Some(*pressure),
+            // Whole numbers have no differences.
+            Variable::Parameter(Parameter::Fibres) => None,
+            Variable::Parameter(parameter) => muscle.get(parameter),
+        };
+        let value = value.ok_or(FibreError::NoVariable { name: name_of(variable) })?;
+        let step = 1e-4 * value.abs().max(1e-3);
+        let mut by = [0.0; 2];
+        for (times, weight) in [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)] {
+            let moved = value + times * step;
+            let (muscle, pressure) = match variable {
+                Variable::Pressure => (muscle.clone(), moved),
+                Variable::Parameter(parameter) => (muscle.clone().with(parameter, moved)?, *pressure),
+            };
+            let response =
+                Self::new(muscle, effects.clone(), pressure, self.approach)?.response(contraction)?;
+            by[0] += weight * response.force_n / (12.0 * step);
+            by[1] += weight * response.volume_m3 / (12.0 * step);
+        }
+        Ok(by)
     }
 }
 

@@ -1,5 +1,7 @@
 //! A family of muscles as a field to tabulate: the contraction first, up to its limit.
 
+use bulge_fibre::FibreError;
+
 use crate::certified::{Field, FieldAxis, FieldOutput, NoValue};
 use crate::family::{Family, FamilyError};
 use crate::output::Output;
@@ -52,6 +54,9 @@ impl MuscleField {
         let starts_at_zero = plan.axes[places[0]].quantity == Quantity::Contraction && axes[0].low == 0.0;
         let is_singular = starts_at_zero && family.member(&middle)?.problem().is_singular();
         let to_limit = axes[0].high.is_none();
+        if let (Quantity::Contraction, Some(high)) = (&plan.axes[places[0]].quantity, axes[0].high) {
+            ends_before_limit(&family, plan, high)?;
+        }
         let output = |output: &Output| FieldOutput {
             name: output.name(),
             unit: output.unit(),
@@ -71,6 +76,26 @@ impl MuscleField {
         }
         planned
     }
+}
+
+/// Refuses a contraction beyond the limit of a muscle in the corners and middles of the other axes: a table must not push.
+fn ends_before_limit(family: &Family, plan: &Plan, contraction: f64) -> Result<(), FamilyError> {
+    let count = plan.axes.len();
+    for corner in 0..3_usize.pow(u32::try_from(count).unwrap_or(0)) {
+        let mut rest = corner;
+        let mut point = vec![0.0; count];
+        for (x, axis) in point.iter_mut().zip(&plan.axes) {
+            if let Range::Between { from, to: End::Value(to), .. } = axis.range {
+                *x = from + (to - from) * (rest % 3) as f64 / 2.0;
+            }
+            rest /= 3;
+        }
+        let limit = family.member(&point)?.contraction_limit()?;
+        if contraction > limit {
+            return Err(FibreError::BeyondLimit { contraction, limit }.into());
+        }
+    }
+    Ok(())
 }
 
 fn none(what: &str, planned: &[f64]) -> impl Fn(FamilyError) -> NoValue {

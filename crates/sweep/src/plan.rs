@@ -1,4 +1,4 @@
-//! What is swept: axes, design, outputs and table, as a sweep file states them. Plain values; [`crate::file`] reads them, [`crate::run`] runs them.
+//! What is swept: axes, design, outputs and table, as a sweep file states them. Plain values, read by [`Plan::read`] and run by [`crate::run`].
 
 use bulge_fibre::Approach;
 use bulge_muscles::{Muscle, Parameter};

@@ -1,6 +1,6 @@
 //! Sweeps in their folders: the same bytes however they are run, nothing lost and nothing doubled, and every number that of the solver.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![expect(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -375,6 +375,9 @@ fn folders_merge_into_one() {
     }
 }
 
+/// Whether there is an equilibrium at a value.
+type Exists = fn(f64) -> bool;
+
 /// Rows without equilibrium hold a reason and no number; the others numbers and no reason.
 fn assert_whole(plan: &Plan, rows: &[BTreeMap<String, Field>]) {
     assert_eq!(rows.len() as u128, plan.points());
@@ -409,7 +412,7 @@ fn points_without_equilibrium_say_why() {
         ));
     fibres.axes[0].range = Range::List(vec![2.0, 20.5, 40.0]);
     // (plan, the axis that decides, from which value on there are equilibria, what is said of the others)
-    let cases: [(Plan, &str, &dyn Fn(f64) -> bool, &str); 5] = [
+    let cases: [(Plan, &str, Exists, &str); 5] = [
         (
             plan(
                 &CLOSED
@@ -417,18 +420,18 @@ fn points_without_equilibrium_say_why() {
                     .replace("2 %..limit", "30 %..50 %"),
             ),
             "contraction",
-            &|e| e < 0.418_497,
+            |e| e < 0.418_497,
             "41.8497 %",
         ),
-        (with(1, to(-0.1, 0.3, 41)), "contraction", &|e| e > 1e-12, "greater than 0"),
+        (with(1, to(-0.1, 0.3, 41)), "contraction", |e| e > 1e-12, "greater than 0"),
         (
             with(0, Range::List(vec![0.1, 5.0, 2000.0])),
             "slenderness",
-            &|s| (s - 5.0).abs() < 1.0,
+            |s| (s - 5.0).abs() < 1.0,
             "0.5 to 1000",
         ),
-        (with(0, Range::List(vec![-1.0, 0.0, 5.0])), "slenderness", &|s| s > 0.0, "radius"),
-        (fibres, "fibres", &|n| n > 30.0, "fibres"),
+        (with(0, Range::List(vec![-1.0, 0.0, 5.0])), "slenderness", |s| s > 0.0, "radius"),
+        (fibres, "fibres", |n| n > 30.0, "fibres"),
     ];
     for (plan, axis, exists, says) in cases {
         let folder = TempDir::new().unwrap();
@@ -640,6 +643,32 @@ fn effects_of_the_muscle_file_act() {
                 extended.solve(Pressure::bar(3.0), Given::Contraction(contraction), Approach::Auto).unwrap();
             assert_close(found_varied[3 * k + i][0], wanted.force_n, 1e-12, stiffness);
         }
+    }
+}
+
+#[test]
+fn derivatives_are_those_of_the_muscle_with_its_effects() {
+    let folder = TempDir::new().unwrap();
+    let text = bulge_muscles::to_toml(&preset("dmsp-20-250").unwrap());
+    let with = text + "\n[effects.hoop-elasticity]\nstiffness = \"1 kN/m\"\n";
+    fs::write(folder.path().join("muscle.toml"), with).unwrap();
+    for (axis, list, output, within) in [
+        ("radius", "[\"10.715 mm\", \"10.725 mm\", \"10.735 mm\"]", "force_by_radius", 1e-5),
+        ("length", "[\"249.9 mm\", \"250 mm\", \"250.1 mm\"]", "force_by_length", 1e-5),
+        ("pressure", "[\"2.99 bar\", \"3 bar\", \"3.01 bar\"]", "force_by_pressure", 1e-5),
+        ("contraction", "[0.0499, 0.05, 0.0501]", "force_by_contraction", 1e-5),
+    ] {
+        let fixed = [("pressure", "pressure = \"3 bar\"\n"), ("contraction", "contraction = 0.05\n")];
+        let fixed: String = fixed.iter().filter(|(name, _)| *name != axis).map(|(_, line)| *line).collect();
+        let text = format!(
+            "muscle = \"muscle.toml\"\n{fixed}outputs = [\"force\", \"{output}\"]\n[axes.{axis}]\nlist = {list}\n"
+        );
+        let plan = Plan::from_toml(&text, "sweep.toml", Some(folder.path())).unwrap();
+        let rows = rows(whole(&plan, false).path());
+        assert_whole(&plan, &rows);
+        let at = |i: usize, name: &str| number(&rows[i], name).unwrap();
+        let difference = (at(2, "force") - at(0, "force")) / (at(2, axis) - at(0, axis));
+        assert_close(at(1, output), difference, within, output);
     }
 }
 
