@@ -53,7 +53,7 @@ pub(crate) enum Failure {
     Tabulate(Box<TabulateError>),
     #[error("{0}")]
     Export(Box<ExportError>),
-    #[error("{} {what}", path.display())]
+    #[error("{}: {what}", path.display())]
     TableFile { path: PathBuf, what: String },
     #[error("{0}")]
     Table(#[from] TableError),

@@ -72,20 +72,37 @@ impl SweepCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         let plan = Plan::read(&self.sweep)?;
         self.check_size(&plan)?;
+        self.check_options(&plan)?;
         let summary = if plan.points() > 0 { Some(self.points(&plan)?) } else { None };
         let table = if self.chunks.is_none() { self.table(&plan)? } else { None };
         if self.json {
             let mut document = json!({ "schema": "bulge.sweep/1", "name": plan.name, "folder": self.out });
             document["points"] = serde_json::to_value(&summary)?;
             document["table"] = table.as_ref().map_or(Value::Null, |(description, _)| json!(description));
+            document["table_is_met"] = table.as_ref().map_or(Value::Null, |(_, is_met)| json!(is_met));
             return Ok(serde_json::to_string_pretty(&document)? + "\n");
         }
         Ok(self.text(&plan, summary.as_ref(), table.as_ref()))
     }
 
+    /// Options that mean nothing where only a table is built.
+    fn check_options(&self, plan: &Plan) -> Result<(), Failure> {
+        let options =
+            [("--chunks", self.chunks.is_some()), ("--merge", !self.merge.is_empty()), ("--csv", self.csv)];
+        match options.into_iter().find(|(_, given)| *given && plan.points() == 0) {
+            Some((option, _)) => {
+                let what =
+                    "this sweep has no points, only a table: leave the option out, or give the axes `points`";
+                Err(Failure::Value { option, what: what.to_owned() })
+            }
+            None => Ok(()),
+        }
+    }
+
     fn check_size(&self, plan: &Plan) -> Result<(), Failure> {
-        let points = plan.points();
-        if points <= MANY || self.confirm || self.chunks.is_some() {
+        let asked = self.chunks.as_ref().map(|c| u128::from(c.end - c.start) * u128::from(plan.chunk));
+        let points = asked.map_or(plan.points(), |asked| asked.min(plan.points()));
+        if points <= MANY || self.confirm {
             return Ok(());
         }
         let columns = (plan.axes.len() + plan.outputs.len()) as f64;
@@ -95,7 +112,7 @@ impl SweepCommand {
         let what = format!(
             "{points} points: about {:.0} GB in {} files, and at least {hours:.0} hours here; take fewer, or add `--confirm`",
             bytes / 1e9,
-            plan.chunks(),
+            points.div_ceil(plan.chunk.into()),
         );
         Err(Failure::Value { option: "SWEEP.toml", what })
     }
@@ -124,6 +141,18 @@ impl SweepCommand {
                 .all(|output| output.error <= wish.tolerance && output.gradient_error <= wish.gradient);
             self.describe(&there)?;
             return Ok(Some((there, is_met)));
+        }
+        let holds_points = self.out.join("plan.json").exists() && plan.points() == 0;
+        let holds_another =
+            !self.resume && fs::read(&path).is_ok_and(|there| Table::from_bytes(&there).is_ok());
+        if holds_points || holds_another {
+            let what = format!(
+                "{} holds {}: take another folder{}",
+                self.out.display(),
+                if holds_points { "a sweep with points" } else { "another table" },
+                if holds_points { "" } else { ", or add `--resume` to replace it" }
+            );
+            return Err(Failure::Value { option: "--out", what });
         }
         let bar = Bar::new(self.json);
         let Built { bytes, is_met, .. } = tabulate(plan, wish, &|what| bar.says(what))?;

@@ -220,7 +220,7 @@ fn outside(table: &Table<'_>, description: &TableDescription, point: &[f64]) -> 
     }
     let axis = &description.axes[0];
     Failure::Outside(format!(
-        "{} = {}: an output of the table is infinite there; give more than {}",
+        "{} = {:e}: the table has no value at its lower end, where an output or its gradient is infinite; give more than {}",
         axis.name, point[0], axis.low
     ))
 }

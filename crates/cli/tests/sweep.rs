@@ -27,7 +27,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else {
+            } else if path.file_name().is_some_and(|name| name != ".lock") {
                 found.insert(path.strip_prefix(folder).unwrap().to_owned(), std::fs::read(&path).unwrap());
             }
         }
@@ -162,8 +162,9 @@ fn a_folder_that_cannot_be_written_is_named() {
     }
     // A folder where a file has to be.
     let out = folder.path("out");
+    assert!(bulge(&["sweep", &sweep, "--out", &out, "--chunks", "0..1"]).status.success());
     std::fs::create_dir_all(Path::new(&out).join("points/000002.parquet")).unwrap();
-    let (status, message) = failure(&["sweep", &sweep, "--out", &out]);
+    let (status, message) = failure(&["sweep", &sweep, "--out", &out, "--resume"]);
     assert!(status == 1 && message.contains("000002.parquet"), "{message}");
     std::fs::remove_dir(Path::new(&out).join("points/000002.parquet")).unwrap();
     assert!(bulge(&["sweep", &sweep, "--out", &out, "--resume"]).status.success());

@@ -1,6 +1,5 @@
 //! One chunk of a sweep: its points computed, and as the bytes of a Parquet file or of CSV. A pure function of the plan and the chunk's number.
 
-use bulge_fibre::FibreError;
 use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -23,7 +22,8 @@ use crate::plan::Plan;
 pub struct Chunk {
     /// Number of the first point.
     pub first: u64,
-    /// Values of the axes in SI, in the order of the plan. Of a contraction that follows the limit of a muscle which has none, the part of it.
+    /// Values of the axes in SI, in the order of the plan. A contraction that follows the limit of a muscle which has none, or one below the
+    /// axis, stays where the axis begins.
     pub axes: Vec<Vec<f64>>,
     /// Values of the outputs in SI, in the order of the plan; meaningless where [`Chunk::infeasible`] gives a reason.
     pub outputs: Vec<Vec<f64>>,
@@ -81,20 +81,20 @@ impl<'a> Computer<'a> {
             self.layout.place(number, &mut place);
             let follows = place.iter().any(|at| matches!(at, Coordinate::OfLimit { .. }));
             let member = self.layout.member(number);
-            // The limit is needed to know the contraction; the muscle doesn't depend on it.
+            // The limit is needed to know the contraction, the muscle doesn't depend on it; where there is none the axis stays at its beginning.
             for (x, at) in point.iter_mut().zip(&place) {
-                *x = at.value(1.0);
+                *x = if let Coordinate::OfLimit { from, .. } = at { *from } else { at.value(1.0) };
             }
             let now = match last.take() {
                 Some(same) if same.number == member => same,
                 _ => Last { number: member, member: self.member(&point, follows) },
             };
             let found = now.member.as_ref().map_err(Clone::clone).and_then(|(member, limit)| {
+                begins_below(&place, *limit)?;
                 for (x, at) in point.iter_mut().zip(&place) {
                     *x = at.value(limit.unwrap_or(1.0));
                 }
                 let contraction = self.family.contraction(&point);
-                begins_below(&place, *limit)?;
                 member
                     .pulling(contraction, *limit, &self.plan.outputs, &mut values)
                     .map_err(|error| error.to_string())?;
@@ -243,7 +243,10 @@ fn begins_below(place: &[Coordinate], limit: Option<f64>) -> Result<(), String> 
         if let (Coordinate::OfLimit { from, .. }, Some(limit)) = (at, limit)
             && *from >= limit
         {
-            return Err(FibreError::BeyondLimit { contraction: *from, limit }.to_string());
+            let [from, limit] = [100.0 * from, 100.0 * limit];
+            return Err(format!(
+                "the axis begins at {from:.4} %, beyond this muscle's limit of {limit:.4} %"
+            ));
         }
     }
     Ok(())

@@ -288,6 +288,13 @@ impl Member {
         pressure: f64,
         approach: Approach,
     ) -> Result<Self, FamilyError> {
+        // The scales are those of the muscle as stated, whatever effects make of its length or its number of fibres: who multiplies back knows no
+        // other.
+        let length = muscle.length().si();
+        let factor = match muscle.fibres().filter(|_| muscle.is_pleated()) {
+            Some(n) => f64::from(n) / TAU * (TAU / f64::from(n)).sin(),
+            None => 1.0,
+        };
         let (extended, stated, muscle) = if effects.is_empty() {
             (None, None, muscle)
         } else {
@@ -296,11 +303,6 @@ impl Member {
             (Some(extended), Some(Box::new((muscle, effects, pressure))), changed)
         };
         let problem = Problem::new(&muscle, Pressure::pa(pressure))?;
-        let length = muscle.length().si();
-        let factor = match muscle.fibres().filter(|_| muscle.is_pleated()) {
-            Some(n) => f64::from(n) / TAU * (TAU / f64::from(n)).sin(),
-            None => 1.0,
-        };
         Ok(Member {
             problem,
             extended,

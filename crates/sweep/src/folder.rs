@@ -6,6 +6,7 @@
 //! csv/000000.csv          the same as CSV, where it was asked for
 //! chunks/000000.json      written after the chunk's files: its hashes, by which it counts as done
 //! manifest.json           written at the end: all chunks
+//! .lock                   held by every process at work: what others have unfinished is left alone
 //! ```
 //! Every file is written under another name, forced to the disk, renamed, and its folder forced to the disk. What a crash or a power loss leaves is
 //! either the whole file or none; a chunk whose file doesn't have the hash of its promise is computed again.
@@ -64,7 +65,31 @@ impl Folder {
         for name in ["points", "chunks"].into_iter().chain(csv.then_some("csv")) {
             fs::create_dir_all(self.0.join(name))?;
         }
-        sync(&self.0)
+        // What may be new: the folders, and the folder in its own.
+        sync(&self.0)?;
+        self.0.canonicalize()?.parent().map_or(Ok(()), sync)
+    }
+
+    /// Whether it holds chunks of some sweep.
+    pub(crate) fn has_chunks(&self) -> bool {
+        let finished = |entry: io::Result<fs::DirEntry>| {
+            entry.is_ok_and(|entry| !entry.file_name().to_string_lossy().starts_with(UNFINISHED))
+        };
+        ["points", "chunks", "csv"]
+            .into_iter()
+            .any(|name| fs::read_dir(self.0.join(name)).is_ok_and(|mut entries| entries.any(finished)))
+    }
+
+    /// A lock that every process at work in the folder shares, and whether this one is alone. The system lets go of it when a process ends,
+    /// however it ends. None where the file system has no locks.
+    pub(crate) fn lock(&self) -> io::Result<(Option<File>, bool)> {
+        let file = File::options().create(true).truncate(false).write(true).open(self.0.join(".lock"))?;
+        let is_alone = file.try_lock().is_ok();
+        if is_alone {
+            file.unlock()?;
+        }
+        let is_shared = file.try_lock_shared().is_ok();
+        Ok((is_shared.then_some(file), is_alone))
     }
 
     pub(crate) fn plan(&self) -> PathBuf {
@@ -95,8 +120,9 @@ impl Folder {
                 let path = entry?.path();
                 let unfinished =
                     path.file_name().is_some_and(|n| n.to_string_lossy().starts_with(UNFINISHED));
-                if unfinished {
-                    fs::remove_file(path)?;
+                match unfinished.then(|| fs::remove_file(path)) {
+                    Some(Err(error)) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+                    _ => {}
                 }
             }
         }

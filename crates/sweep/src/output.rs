@@ -114,7 +114,11 @@ impl Output {
                 Variable::Pressure => "Pa",
                 Variable::Parameter(parameter) => parameter.unit(),
             };
-            if below == "1" { unit.to_owned() } else { format!("{unit}/({below})") }
+            match below {
+                "1" => unit.to_owned(),
+                _ if below.contains('/') => format!("{unit}/({below})"),
+                _ => format!("{unit}/{below}"),
+            }
         };
         match self {
             Self::Force | Self::FibreTension | Self::ForceByContraction => "N".to_owned(),
@@ -147,6 +151,6 @@ mod tests {
             assert_eq!(names.iter().filter(|name| **name == names[i]).count(), 1);
         }
         assert_eq!(Output::named("forse"), None);
-        assert_eq!(Output::named("force_by_pressure").unwrap().unit(), "N/(Pa)");
+        assert_eq!(Output::named("force_by_pressure").unwrap().unit(), "N/Pa");
     }
 }

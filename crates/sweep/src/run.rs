@@ -65,7 +65,7 @@ pub struct Summary {
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
     /// A file that can't be read or written.
-    #[error("{}: {source}; nothing that is finished is lost: make room or mend it, and go on with `--resume`", path.display())]
+    #[error("{}: {source}; chunks that are finished stay, and `--resume` goes on from them", path.display())]
     File {
         /// Which.
         path: PathBuf,
@@ -79,6 +79,18 @@ pub enum SweepError {
         path: PathBuf,
         /// Lines that differ: `-` in the folder, `+` now.
         difference: String,
+    },
+    /// The folder's plan is no JSON.
+    #[error("{} is damaged: take another folder, or delete this one", path.display())]
+    DamagedPlan {
+        /// The plan.
+        path: PathBuf,
+    },
+    /// The folder holds chunks without a plan.
+    #[error("{} holds chunks of an unknown sweep, without a plan.json: take another folder, or empty this one", path.display())]
+    Foreign {
+        /// The folder.
+        path: PathBuf,
     },
     /// The folder holds this sweep already.
     #[error("{} holds this sweep already: add `--resume` to go on with it, or take another folder", path.display())]
@@ -155,9 +167,10 @@ pub fn run(
     let canonical = plan.canonical()?;
     let key = hash(canonical.as_bytes());
     let folder = Folder::new(path);
-    open(&folder, path, &canonical, options)?;
+    let _lock = open(&folder, path, &canonical, options)?;
+    let damaged = Mutex::new(Vec::new());
     for from in &options.merge {
-        merge(&folder, from, &canonical, &key, all)?;
+        merge(&folder, from, &canonical, (&key, all), &damaged)?;
     }
     let run = Run {
         plan,
@@ -167,7 +180,7 @@ pub fn run(
         csv: options.csv,
         done: AtomicU64::new(0),
         all: points_of(plan, &chunks),
-        damaged: Mutex::new(Vec::new()),
+        damaged,
         told,
     };
     run.tell(0);
@@ -238,11 +251,11 @@ impl Run<'_> {
         }
         let points = points_of_chunk(self.plan, number);
         let chunk = self.computer.chunk(points.clone());
-        let about =
-            json!({ "name": self.plan.name, "plan": self.key, "chunk": number, "first": points.start });
+        let about = json!({ "plan": self.key, "chunk": number, "first": points.start });
         let bytes = self.computer.parquet(&chunk, &about.to_string())?;
         write(&self.folder.parquet(number), &bytes)?;
-        let csv_sha256 = if self.csv {
+        // A CSV file that was damaged, or isn't asked for this time, must not stay as it was.
+        let csv_sha256 = if self.csv || self.folder.csv(number).exists() {
             let text = self.computer.csv(&chunk);
             write(&self.folder.csv(number), text.as_bytes())?;
             Some(hash(text.as_bytes()))
@@ -286,32 +299,54 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
 }
 
 /// Makes the folder ready, or says why it can't be this sweep's.
-fn open(folder: &Folder, path: &Path, canonical: &str, options: &RunOptions) -> Result<(), SweepError> {
+fn open(
+    folder: &Folder,
+    path: &Path,
+    canonical: &str,
+    options: &RunOptions,
+) -> Result<Option<fs::File>, SweepError> {
     folder.create(options.csv).map_err(at(path))?;
     let plan = folder.plan();
+    let (lock, is_alone) = folder.lock().map_err(at(path))?;
     // Other processes may be at work on other chunks.
-    let sweep_up = || if options.chunks.is_none() { folder.sweep_up().map_err(at(path)) } else { Ok(()) };
+    let sweep_up = || if is_alone { folder.sweep_up().map_err(at(path)) } else { Ok(()) };
     match fs::read_to_string(&plan) {
         Ok(before) if before == canonical => {
             if !options.resume && options.chunks.is_none() && options.merge.is_empty() {
                 return Err(SweepError::AlreadyThere { path: path.to_owned() });
             }
-            sweep_up()
+            sweep_up()?;
+        }
+        Ok(before) if serde_json::from_str::<serde_json::Value>(&before).is_err() => {
+            return Err(SweepError::DamagedPlan { path: plan });
         }
         Ok(before) => {
-            Err(SweepError::Changed { path: path.to_owned(), difference: difference(&before, canonical) })
+            return Err(SweepError::Changed {
+                path: path.to_owned(),
+                difference: difference(&before, canonical),
+            });
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound && folder.has_chunks() => {
+            return Err(SweepError::Foreign { path: path.to_owned() });
         }
         // A process may have been killed before the plan was there.
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             sweep_up()?;
-            write(&plan, canonical.as_bytes())
+            write(&plan, canonical.as_bytes())?;
         }
-        Err(error) => Err(at(&plan)(error)),
+        Err(error) => return Err(at(&plan)(error)),
     }
+    Ok(lock)
 }
 
 /// Takes over the chunks of another folder of the same sweep that are done and whole.
-fn merge(folder: &Folder, from: &Path, canonical: &str, key: &str, all: u64) -> Result<(), SweepError> {
+fn merge(
+    folder: &Folder,
+    from: &Path,
+    canonical: &str,
+    (key, all): (&str, u64),
+    damaged: &Mutex<Vec<String>>,
+) -> Result<(), SweepError> {
     let other = Folder::new(from);
     let plan = match fs::read_to_string(other.plan()) {
         Ok(plan) => plan,
@@ -330,7 +365,16 @@ fn merge(folder: &Folder, from: &Path, canonical: &str, key: &str, all: u64) -> 
         if matches!(standing(folder)?, Standing::Done(_)) {
             continue;
         }
-        let Standing::Done(promise) = standing(&other)? else { continue };
+        let promise = match standing(&other)? {
+            Standing::Done(promise) => promise,
+            Standing::Absent => continue,
+            Standing::Damaged(what) => {
+                if let Ok(mut damaged) = damaged.lock() {
+                    damaged.push(what);
+                }
+                continue;
+            }
+        };
         let mut files = vec![(other.parquet(chunk), folder.parquet(chunk))];
         if promise.csv_sha256.is_some() {
             fs::create_dir_all(folder.csv(chunk).with_file_name("")).map_err(at(&folder.csv(chunk)))?;

@@ -62,7 +62,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, (Vec<u8>, SystemTime)> {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else {
+            } else if path.file_name().is_some_and(|name| name != ".lock") {
                 let changed = path.metadata().unwrap().modified().unwrap();
                 let name = path.strip_prefix(folder).unwrap().to_owned();
                 found.insert(name, (fs::read(&path).unwrap(), changed));
@@ -263,14 +263,33 @@ fn half_written_files_are_swept_up() {
 }
 
 #[test]
-fn chunks_leave_the_unfinished_files_of_others_alone() {
+fn the_unfinished_files_of_others_at_work_are_left_alone() {
     let plan = plan(CLOSED);
     let folder = whole(&plan, false);
     let other = folder.path().join("points/.unfinished-other");
     fs::write(&other, "another process is at it").unwrap();
+    let at_work = fs::File::open(folder.path().join(".lock")).unwrap();
+    at_work.lock_shared().unwrap();
     let part = RunOptions { chunks: Some(0..1), ..RunOptions::default() };
-    go(&plan, folder.path(), &part).unwrap();
-    assert!(other.exists());
+    for options in [part, resume()] {
+        go(&plan, folder.path(), &options).unwrap();
+        assert!(other.exists());
+    }
+    drop(at_work);
+    go(&plan, folder.path(), &resume()).unwrap();
+    assert!(!other.exists());
+}
+
+#[test]
+fn chunks_without_a_plan_are_nobodys() {
+    let plan = plan(CLOSED);
+    let folder = whole(&plan, false);
+    fs::remove_file(folder.path().join("plan.json")).unwrap();
+    let error = go(&plan, folder.path(), &resume()).unwrap_err().to_string();
+    assert!(error.contains("without a plan.json"), "{error}");
+    fs::write(folder.path().join("plan.json"), "{").unwrap();
+    let error = go(&plan, folder.path(), &resume()).unwrap_err().to_string();
+    assert!(error.contains("plan.json is damaged"), "{error}");
 }
 
 #[test]
@@ -741,7 +760,7 @@ fn columns_carry_their_units() {
     assert!((0..wanted.len()).all(|i| schema.column(i).name() == wanted[i].0));
     let about = of("bulge.sweep");
     assert_eq!(
-        (about["name"].as_str(), about["chunk"].as_u64(), about["first"].as_u64()),
-        (Some("dmsp-20-250"), Some(2), Some(14))
+        (about["plan"].as_str().map(str::len), about["chunk"].as_u64(), about["first"].as_u64()),
+        (Some(64), Some(2), Some(14))
     );
 }

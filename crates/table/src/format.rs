@@ -92,14 +92,15 @@ pub struct Output<'a> {
     pub certificate: Certificate,
 }
 
-/// Errors of an output, measured off the grid against the solver. Relative errors are |error|/max(|value|, 0.001 scale/u^k).
+/// Errors of an output, measured off the grid against the solver. Relative errors are |error|/max(|value|, floor), floor = 0.001 scale, where
+/// the output is singular over the root of the part of the way to the upper end.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Certificate {
     /// Largest relative error of the value.
     pub value_max: f64,
     /// Its root mean square.
     pub value_rms: f64,
-    /// Largest relative error of a component of the gradient, |error|/max(|component|, |value|/width of the axis).
+    /// Largest relative error of a component of the gradient, |error|/max(|component|, max(|value|, floor)/width of the axis).
     pub gradient_max: f64,
     /// Root mean square.
     pub gradient_rms: f64,

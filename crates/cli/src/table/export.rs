@@ -115,7 +115,7 @@ impl JointCommand {
             "schema": "bulge.table/1",
             "version": env!("CARGO_PKG_VERSION"),
             "name": joint.name,
-            "linkage": format!("{:?}", joint.linkage()),
+            "joint": joint,
             "muscles": muscles,
             "meaning": [
                 "a positive angle shortens the agonist; torque without load",

@@ -2,9 +2,10 @@
 //!
 //! Every cell is divided; at the middle of each part the error against the polynomial that stands for the solver is computed together with that of the
 //! neighbours at the part's faces. Between them a smooth error rises by at most an eighth of its second difference along each axis. To the largest
-//! of these the misfit of the polynomial at the solver is added. The bound is as sure as the error is smooth on a part of a cell: it is no proof.
+//! of these the misfit of the polynomial at the solver is added, and it is never less than what was measured. The bound is as sure as the error is
+//! smooth on a part of a cell: it is no proof.
 
-use bulge_table::Table;
+use bulge_table::{Form, Table};
 use rayon::prelude::*;
 
 use super::certificate::{FLOOR, golden};
@@ -12,8 +13,8 @@ use super::domain::Domain;
 use super::field::NoValue;
 use super::polynomial::Polynomial;
 
-/// Most parts in all.
-const MOST_PARTS: usize = 16_000;
+/// Most parts in all, where cells are divided; an undivided cell is one part.
+const MOST_PARTS: usize = 24_000;
 /// Parts of a cell along an axis, at most.
 const PARTS: usize = 3;
 /// Points at which the polynomial is compared with the solver.
@@ -28,15 +29,12 @@ pub(crate) fn bound(
     nodes: &[usize],
 ) -> Result<Vec<f64>, NoValue> {
     let axes = nodes.len();
-    let mut parts: Vec<usize> = nodes.iter().map(|n| PARTS * n.saturating_sub(3).max(1)).collect();
-    while parts.iter().product::<usize>() > MOST_PARTS {
-        for part in &mut parts {
-            *part = (*part * 9).div_ceil(10).max(2);
-        }
-        if parts.iter().all(|part| *part == 2) {
-            break;
-        }
-    }
+    // Cells of a spline; of a polynomial as many as it has orders.
+    let less = if table.form() == Form::Spline { 3 } else { 0 };
+    let cells: Vec<usize> = nodes.iter().map(|n| n.saturating_sub(less).max(1)).collect();
+    let all = |each: usize| cells.iter().map(|cells| cells * each).product::<usize>();
+    let each = (1..=PARTS).rev().find(|each| all(*each) <= MOST_PARTS).unwrap_or(1);
+    let parts: Vec<usize> = cells.iter().map(|cells| cells * each).collect();
     let count: usize = parts.iter().product();
     let outputs = scales.len();
     let worst = (0..count)

@@ -1,9 +1,11 @@
 //! What a table's errors are: measured against the solver at points off the grid, and bounded by subdivision.
 //!
 //! ```text
-//! error of the value       |y - y*|/max(|y*|, 0.001 S/u^k)                     S = max |y| u^k, k = 1 where y is singular
-//! error of the gradient    |dy/dx_i - dy*/dx_i|/max(|dy*/dx_i|, |y*|/width_i)  the largest of all i
+//! error of the value       |y - y*|/max(|y*|, floor)                           floor = 0.001 max |y| u^k, over the root of the part of the way to the upper end if k = 1
+//! error of the gradient    |dy/dx_i - dy*/dx_i|/max(|dy*/dx_i|, max(|y*|, floor)/width_i)    the largest of all i
 //! ```
+//! A point that lies outside the table by no more than the error of its fitted end is left out.
+//!
 //! The points are those of the additive recurrence of the generalised golden ratio (M. Roberts 2018): x_k = frac(k (g^-1, g^-2, ...)) with
 //! g^(d+1) = g + 1. Every second one is uniform in the axes themselves, the others in the coordinates of the table, where layers are as wide as the
 //! rest.

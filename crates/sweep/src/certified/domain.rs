@@ -32,7 +32,10 @@ impl<'a> Domain<'a> {
         let coordinates = coordinates(field, form)?;
         let mut highs: Vec<f64> = field.axes().iter().map(|axis| axis.high.unwrap_or(f64::NAN)).collect();
         let mut edge = None;
-        if field.axes()[0].high.is_none() {
+        if field.axes()[0].high.is_none() && field.axes().len() == 1 {
+            // Nothing that the end could depend on.
+            highs[0] = field.upper_end(&[])?;
+        } else if field.axes()[0].high.is_none() {
             // What vanishes at the edge is compared with a part `floor` of its largest value.
             let wanted = OF_TOLERANCE * tolerance * floor;
             let fitted = Edge::fitted(field, &coordinates, wanted, most_bytes / OF_SIZE)?;

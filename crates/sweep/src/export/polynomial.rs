@@ -91,6 +91,12 @@ pub fn papers_polynomial(
     range_percent: [f64; 2],
 ) -> Result<PapersPolynomial, ExportError> {
     let lacks = |what: &str| ExportError::NotOfThisTable { what: what.to_owned() };
+    if fibres.is_some_and(|n| n < 3) {
+        return Err(lacks("a muscle has at least 3 fibres"));
+    }
+    if slenderness.is_some_and(|slenderness| !slenderness.is_finite()) {
+        return Err(lacks("the slenderness must be a number"));
+    }
     let names: Vec<&str> = axes(table).iter().map(|axis| axis.name).collect();
     let point = |k: f64| match (names.as_slice(), slenderness) {
         (["contraction"], None) => Ok(vec![k]),
