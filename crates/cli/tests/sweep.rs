@@ -286,7 +286,9 @@ fn a_table_is_built_and_asked() {
     // Other outputs are another table.
     let other =
         folder.write("other.toml", &TABLE.replace("[table]\n", "[table]\noutputs = [\"volume_v\"]\n"));
-    let other = json(&["sweep", &other, "--out", &out, "--json"]);
+    let (status, message) = failure(&["sweep", &other, "--out", &out]);
+    assert!(status == 1 && message.contains("holds another table"), "{message}");
+    let other = json(&["sweep", &other, "--out", &out, "--resume", "--json"]);
     assert_eq!(other["table"]["outputs"].as_array().unwrap().len(), 1);
     assert!(
         std::fs::read_dir(&out).unwrap().all(|entry| !entry
