@@ -46,7 +46,7 @@ def main():
 
 
 def peer(columns, fine, nodes):
-    """Cubic and linear interpolation of f eps^(1/2) and v over (fraction^(1/2), slenderness)."""
+    """Cubic and linear interpolation of f eps^(1/2) and v over (fraction^(1/2), log slenderness)."""
     slenderness = np.unique(columns["slenderness"])
     limit = np.array([columns["contraction"][columns["slenderness"] == s].max() for s in slenderness])
     root, values = [], []
@@ -63,12 +63,14 @@ def peer(columns, fine, nodes):
     if any(len(r) != len(fraction) or np.abs(r - fraction).max() > 1e-9 for r in root):
         raise SystemExit("the grid does not follow the limit")
     wanted = (fine["contraction"] > 0) & np.isfinite(fine["force_f"])
-    ends = np.interp(fine["slenderness"], slenderness, limit)
+    # The peer is told the exact limit.
+    of_fine = {s: fine["contraction"][fine["slenderness"] == s].max() for s in np.unique(fine["slenderness"])}
+    ends = np.array([of_fine[s] for s in fine["slenderness"]])
     part = np.sqrt(np.clip(fine["contraction"] / ends, 0, 1))
     chosen = np.random.default_rng(1).choice(np.flatnonzero(wanted & (part > 0.1) & (part < 0.99)), POINTS)
-    points = np.stack([fine["slenderness"][chosen], part[chosen]], -1)
+    points = np.stack([np.log(fine["slenderness"][chosen]), part[chosen]], -1)
     for method in ("linear", "cubic"):
-        interpolator = RegularGridInterpolator((slenderness, fraction), values, method=method, bounds_error=False, fill_value=None)
+        interpolator = RegularGridInterpolator((np.log(slenderness), fraction), values, method=method, bounds_error=False, fill_value=None)
         start = time.perf_counter()
         found = interpolator(points)
         together = (time.perf_counter() - start) / len(points)
