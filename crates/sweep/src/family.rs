@@ -30,6 +30,14 @@ pub enum FamilyError {
     /// An elastic group for a muscle without a number of fibres.
     #[error("the elastic group p sin(2 pi/n) R^2/EA needs a number of fibres n")]
     NoFibreNumber,
+    /// An output of inextensible fibres that has no table from a contraction of 0.
+    #[error(
+        "a table of `{output}` can't begin at a contraction of 0, where the force of inextensible fibres is infinite: begin at \"0.5 %..limit\", say, or leave `{output}` out"
+    )]
+    FromZero {
+        /// Its name.
+        output: String,
+    },
     /// An axis of an effect that is no part of the muscle.
     #[error(
         "the effect `{effect}` belongs to a rig or to one specimen: a sweep of the muscle leaves it out, so it can't be an axis"

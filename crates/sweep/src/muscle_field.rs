@@ -53,6 +53,12 @@ impl MuscleField {
             .collect();
         let starts_at_zero = plan.axes[places[0]].quantity == Quantity::Contraction && axes[0].low == 0.0;
         let is_singular = starts_at_zero && family.member(&middle)?.problem().is_singular();
+        let is_exact = |output: &&Output| {
+            matches!(output, Output::ForceF | Output::VolumeV | Output::Force | Output::Volume)
+        };
+        if let Some(steep) = wish.outputs.iter().find(|output| is_singular && !is_exact(output)) {
+            return Err(FamilyError::FromZero { output: steep.name() });
+        }
         let to_limit = axes[0].high.is_none();
         if let (Quantity::Contraction, Some(high)) = (&plan.axes[places[0]].quantity, axes[0].high) {
             ends_before_limit(&family, plan, high)?;

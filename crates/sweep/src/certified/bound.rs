@@ -15,6 +15,8 @@ use super::polynomial::Polynomial;
 
 /// Most parts in all, where cells are divided; an undivided cell is one part.
 const MOST_PARTS: usize = 24_000;
+/// Multiplications that the bound may take: where every cell would take more, as many of them as that, evenly spread.
+const MOST_WORK: usize = 3_000_000_000;
 /// Parts of a cell along an axis, at most.
 const PARTS: usize = 3;
 /// Points at which the polynomial is compared with the solver.
@@ -35,16 +37,19 @@ pub(crate) fn bound(
     let all = |each: usize| cells.iter().map(|cells| cells * each).product::<usize>();
     let each = (1..=PARTS).rev().find(|each| all(*each) <= MOST_PARTS).unwrap_or(1);
     let parts: Vec<usize> = cells.iter().map(|cells| cells * each).collect();
-    let count: usize = parts.iter().product();
     let outputs = scales.len();
-    let worst = (0..count)
+    let count: usize = parts.iter().product();
+    let most = MOST_WORK / (fit.coefficients.len() * (2 * axes + 1)).max(1);
+    let chosen = count.min(most.max(1));
+    let worst = (0..chosen)
         .into_par_iter()
-        .map(|mut part| {
-            let mut middle = vec![0.0; axes];
-            for i in (0..axes).rev() {
-                middle[i] = ((part % parts[i]) as f64 + 0.5) / parts[i] as f64;
-                part /= parts[i];
-            }
+        .map(|part| {
+            let middle = if chosen == count {
+                numbered(&parts, part)
+            } else {
+                let even = golden(part as u64, axes);
+                even.iter().zip(&parts).map(|(v, n)| ((v * *n as f64).floor() + 0.5) / *n as f64).collect()
+            };
             let at = errors(domain, fit, table, scales, &middle)?;
             let mut worst: Vec<f64> = at.iter().map(|error| error.abs()).collect();
             for i in 0..axes {
@@ -75,6 +80,16 @@ pub(crate) fn bound(
         })
         .try_reduce(|| vec![0.0; outputs], |a, b| Ok(larger(&a, &b)))?;
     Ok(worst.iter().zip(misfit).map(|(error, misfit)| error + misfit).collect())
+}
+
+/// The middle of a part by its number.
+fn numbered(parts: &[usize], mut number: usize) -> Vec<f64> {
+    let mut middle = vec![0.0; parts.len()];
+    for (middle, parts) in middle.iter_mut().zip(parts).rev() {
+        *middle = ((number % parts) as f64 + 0.5) / *parts as f64;
+        number /= parts;
+    }
+    middle
 }
 
 fn larger(a: &[f64], b: &[f64]) -> Vec<f64> {
