@@ -231,14 +231,16 @@ impl Bar {
     }
 
     fn at(&self, progress: Progress) {
-        if self.0.length() != Some(progress.all) {
-            self.0.set_length(progress.all);
+        // Rate and time left are those of what is computed now.
+        let all = progress.all.saturating_sub(progress.there);
+        if self.0.length() != Some(all) {
+            self.0.set_length(all);
             let template = "  {spinner} [{bar:30}] {human_pos} of {human_len} points, {per_sec}, {eta} left";
             if let Ok(style) = ProgressStyle::with_template(template) {
                 self.0.set_style(style.progress_chars("=> "));
             }
         }
-        self.0.set_position(progress.done);
+        self.0.set_position(progress.done.saturating_sub(progress.there));
     }
 
     fn says(&self, what: &str) {

@@ -38,8 +38,10 @@ pub struct RunOptions {
 /// How far a run is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
-    /// Points that are done.
+    /// Points that are done, with those that were there.
     pub done: u64,
+    /// Points of chunks that were there already: they took no time.
+    pub there: u64,
     /// Points of this run.
     pub all: u64,
 }
@@ -179,11 +181,12 @@ pub fn run(
         key,
         csv: options.csv,
         done: AtomicU64::new(0),
+        there: AtomicU64::new(0),
         all: points_of(plan, &chunks),
         damaged,
         told,
     };
-    run.tell(0);
+    run.tell(0, 0);
     let count = usize::try_from(chunks.end - chunks.start).unwrap_or(usize::MAX);
     let promises: Vec<(Promise, bool)> = (0..count)
         .into_par_iter()
@@ -223,15 +226,19 @@ struct Run<'a> {
     key: String,
     csv: bool,
     done: AtomicU64,
+    there: AtomicU64,
     all: u64,
     damaged: Mutex<Vec<String>>,
     told: &'a (dyn Fn(Progress) + Sync),
 }
 
 impl Run<'_> {
-    fn tell(&self, more: u64) {
+    /// Tells of points computed now, and of points that were there.
+    fn tell(&self, computed: u64, there: u64) {
+        let more = computed + there;
         let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
-        (self.told)(Progress { done, all: self.all });
+        let there = self.there.fetch_add(there, Ordering::Relaxed) + there;
+        (self.told)(Progress { done, there, all: self.all });
     }
 
     /// A chunk that is there, or is computed now.
@@ -239,7 +246,7 @@ impl Run<'_> {
         let path = self.folder.promise(number);
         match self.folder.standing(number, &self.key, self.csv).map_err(at(&path))? {
             Standing::Done(promise) => {
-                self.tell(promise.points);
+                self.tell(0, promise.points);
                 return Ok((promise, false));
             }
             Standing::Absent => {}
@@ -272,7 +279,7 @@ impl Run<'_> {
             plan: self.key.clone(),
         };
         write(&path, (serde_json::to_string(&promise)? + "\n").as_bytes())?;
-        self.tell(promise.points);
+        self.tell(promise.points, 0);
         Ok((promise, true))
     }
 }

@@ -9,7 +9,8 @@ use super::{ExportError, MOST_ROWS, axes, outputs};
 const INSIDE: f64 = 1e-9;
 
 /// Rows of `points_per_axis` equal steps on each axis, the last one fastest: coordinates, outputs, and the outputs' derivatives by each axis. A
-/// fitted axis 0 goes to its edge at the other coordinates. Numbers have as many digits as reading them back needs.
+/// fitted axis 0 goes to its edge at the other coordinates. Numbers have as many digits as reading them back needs;
+/// cells without a value are empty.
 ///
 /// # Errors
 /// [`ExportError::TooFewPoints`] or [`ExportError::TooManyRows`].
@@ -57,13 +58,13 @@ pub fn csv(table: &Table<'_>, points_per_axis: usize) -> Result<String, ExportEr
             // Exact at both ends.
             point[i] = if part >= 1.0 { high } else { low + part * (high - low) };
         }
-        if table.sample(&point, &mut values, &mut gradients).is_none() {
-            values.fill(f64::NAN);
-            gradients.fill(f64::NAN);
-        }
-        for (i, number) in point.iter().chain(&values).chain(&gradients).enumerate() {
+        let has_value = table.sample(&point, &mut values, &mut gradients).is_some();
+        for (i, x) in point.iter().enumerate() {
             let comma = if i == 0 { "" } else { "," };
-            let _ = write!(text, "{comma}{number:?}");
+            let _ = write!(text, "{comma}{x:?}");
+        }
+        for number in values.iter().chain(&gradients) {
+            let _ = if has_value { write!(text, ",{number:?}") } else { write!(text, ",") };
         }
         text.push('\n');
     }
