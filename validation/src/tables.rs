@@ -1,8 +1,8 @@
 //! Tables against the closed form that they stand for, and against themselves.
 
-use bulge_fibre::closed_form;
+use bulge_fibre::closed_form::{self, ClosedForm};
 use bulge_sweep::{Plan, tabulate};
-use bulge_table::Table;
+use bulge_table::{Sample, Table};
 
 use crate::check::{Check, Claim, Trouble};
 
@@ -41,7 +41,22 @@ fn points(table: &Table<'_>) -> Result<Vec<[f64; 2]>, Trouble> {
     Ok(points)
 }
 
-/// Looked-up values and gradients against the closed form.
+/// A point, force and volume looked up there, and the closed form.
+type Compared = ([f64; 2], [Sample<2>; 2], ClosedForm);
+
+/// Every point with what is compared there.
+fn compared() -> Result<Vec<Compared>, Trouble> {
+    let bytes = table()?;
+    let table = Table::from_bytes(&bytes)?;
+    let lookup = table.lookup::<2, 2>()?;
+    let one = |point: [f64; 2]| {
+        let exact = closed_form::solve(point[0], point[1], 0.0)?;
+        Ok((point, lookup.at(point).ok_or("outside")?, exact))
+    };
+    points(&table)?.into_iter().map(one).collect()
+}
+
+/// Looked-up values against the closed form.
 pub(crate) fn lookups() -> Check {
     Claim {
         group: "tables",
@@ -51,12 +66,7 @@ pub(crate) fn lookups() -> Check {
         why: "what the table is asked to meet",
     }
     .run(|tally| {
-        let bytes = table()?;
-        let table = Table::from_bytes(&bytes)?;
-        let lookup = table.lookup::<2, 2>()?;
-        for point in points(&table)? {
-            let exact = closed_form::solve(point[0], point[1], 0.0)?;
-            let [force, volume] = lookup.at(point).ok_or("outside")?;
+        for (point, [force, volume], exact) in compared()? {
             tally.relative(force.value, exact.force.value, || format!("f at {point:?}"));
             tally.relative(volume.value, exact.volume.value, || format!("v at {point:?}"));
         }
@@ -74,12 +84,7 @@ pub(crate) fn gradients() -> Check {
         why: "what the gradients of the table are asked to meet",
     }
     .run(|tally| {
-        let bytes = table()?;
-        let table = Table::from_bytes(&bytes)?;
-        let lookup = table.lookup::<2, 2>()?;
-        for point in points(&table)? {
-            let exact = closed_form::solve(point[0], point[1], 0.0)?;
-            let [force, volume] = lookup.at(point).ok_or("outside")?;
+        for (point, [force, volume], exact) in compared()? {
             for (name, found, exact) in [("f", force, exact.force), ("v", volume, exact.volume)] {
                 let width = [point[0].max(0.1), 98.0];
                 for (i, by) in [exact.by_contraction, exact.by_slenderness].into_iter().enumerate() {

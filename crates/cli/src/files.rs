@@ -1,7 +1,8 @@
 //! Files that appear whole or not at all.
 
+use bulge_sweep::write_durably;
 use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
@@ -20,19 +21,7 @@ fn publish(path: &Path, bytes: &[u8]) -> io::Result<()> {
         let missing = format!("there is no folder {}; create it first", folder.display());
         return Err(io::Error::new(io::ErrorKind::NotFound, missing));
     }
-    let mut name = tempfile::Builder::new();
-    name.prefix(".bulge-").suffix(".part");
-    #[cfg(unix)]
-    {
-        // As any new file: readable by whom the user's mask allows, not by the owner alone.
-        use std::os::unix::fs::PermissionsExt;
-        name.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let mut file = name.tempfile_in(folder)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(path).map_err(|error| error.error)?;
-    Ok(())
+    write_durably(path, bytes)
 }
 
 /// Writes files into a folder, which is created if it isn't there; none of them if one of the names is that of a folder.

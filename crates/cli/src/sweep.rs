@@ -2,7 +2,6 @@
 
 use bulge_sweep::{
     Built, Plan, Progress, RunOptions, SWEEP_EXAMPLE, Summary, TableDescription, run, table_text, tabulate,
-    write_durably,
 };
 use bulge_table::Table;
 use clap::Args;
@@ -157,7 +156,7 @@ impl SweepCommand {
         let bar = Bar::new(self.json);
         let Built { bytes, is_met, .. } = tabulate(plan, wish, &|what| bar.says(what))?;
         let description = TableDescription::of(&Table::from_bytes(&bytes)?)?;
-        durably(&path, &bytes)?;
+        files::write(&path, &bytes)?;
         self.describe(&description)?;
         Ok(Some((description, is_met)))
     }
@@ -169,7 +168,7 @@ impl SweepCommand {
         if fs::read(&path).is_ok_and(|there| there == json.as_bytes()) {
             return Ok(());
         }
-        durably(&path, json.as_bytes())
+        files::write(&path, json.as_bytes())
     }
 
     fn text(
@@ -204,10 +203,6 @@ impl SweepCommand {
         }
         out
     }
-}
-
-fn durably(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    write_durably(path, bytes).map_err(|source| Failure::Output { path: path.to_owned(), source })
 }
 
 /// What is described by a table file, if that is whole and says the same of itself.

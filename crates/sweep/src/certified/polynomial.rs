@@ -243,39 +243,20 @@ fn interpolation(count: usize, orders: usize) -> Vec<f64> {
     let nodes: Vec<[Vec<f64>; 2]> = (0..inner).map(|k| basis(k as f64 / cells, orders)).collect();
     let mut matrix = vec![0.0; count * orders];
     // Thomas' elimination of (1 4 1) rows whose first and last are (4 2) and (2 4) after the end conditions.
-    let mut upper = vec![0.0; inner];
-    for k in 0..inner {
-        let below = if k == 0 {
-            0.0
-        } else if k == inner - 1 {
-            2.0
-        } else {
-            1.0
-        };
-        let above = if k == 0 { 2.0 } else { 1.0 };
-        let pivot = 4.0 - below * if k == 0 { 0.0 } else { upper[k - 1] };
-        upper[k] = above / pivot;
+    let below = |k: usize| if k == inner - 1 { 2.0 } else { 1.0 };
+    let (mut upper, mut pivots) = (vec![0.5; inner], vec![4.0; inner]);
+    for k in 1..inner {
+        pivots[k] = 4.0 - below(k) * upper[k - 1];
+        upper[k] = 1.0 / pivots[k];
     }
     for order in 0..orders {
         let slopes = [nodes[0][1][order] / cells, nodes[inner - 1][1][order] / cells];
-        let mut right = vec![0.0; inner];
-        for k in 0..inner {
-            let below = if k == 0 {
-                0.0
-            } else if k == inner - 1 {
-                2.0
-            } else {
-                1.0
-            };
-            let mut sum = 6.0 * nodes[k][0][order];
-            if k == 0 {
-                sum += 2.0 * slopes[0];
-            } else if k == inner - 1 {
-                sum -= 2.0 * slopes[1];
-            }
-            let (before, pivot) =
-                if k == 0 { (0.0, 4.0) } else { (right[k - 1], 4.0 - below * upper[k - 1]) };
-            right[k] = (sum - below * before) / pivot;
+        let mut right: Vec<f64> = nodes.iter().map(|node| 6.0 * node[0][order]).collect();
+        right[0] += 2.0 * slopes[0];
+        right[inner - 1] -= 2.0 * slopes[1];
+        right[0] /= pivots[0];
+        for k in 1..inner {
+            right[k] = (right[k] - below(k) * right[k - 1]) / pivots[k];
         }
         for k in (0..inner - 1).rev() {
             right[k] -= upper[k] * right[k + 1];
