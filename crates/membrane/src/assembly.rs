@@ -1,0 +1,228 @@
+//! From elements to the structure: energy, forces and stiffness over its degrees of freedom.
+//!
+//! Where each number of each element goes is found once. A sum then runs over the sources of one entry, in the order of the elements: the
+//! result doesn't depend on who computed what when.
+
+use crate::dofs::{Dofs, NONE, NodeDofs};
+use crate::element::Vector;
+use crate::set::{Elements, Parts, Place, packed};
+use rayon::prelude::*;
+
+/// For each entry of a vector the places in a buffer whose sum it is.
+#[derive(Debug, Default)]
+struct Gather {
+    starts: Vec<u32>,
+    sources: Vec<u32>,
+}
+
+impl Gather {
+    /// From (entry, source), in the order of the sources.
+    fn new(entries: usize, mut pairs: Vec<(u32, u32)>) -> Self {
+        pairs.sort_unstable();
+        let mut starts = vec![0_u32; entries + 1];
+        for (entry, _) in &pairs {
+            starts[*entry as usize + 1] += 1;
+        }
+        for i in 0..entries {
+            starts[i + 1] += starts[i];
+        }
+        Self { starts, sources: pairs.into_iter().map(|(_, source)| source).collect() }
+    }
+
+    fn sum(&self, buffer: &[f64], out: &mut [f64]) {
+        let one = |(i, out): (usize, &mut f64)| {
+            let sources = &self.sources[self.starts[i] as usize..self.starts[i + 1] as usize];
+            *out = sources.iter().map(|source| buffer[*source as usize]).sum();
+        };
+        if out.len() < 4096 {
+            out.iter_mut().enumerate().for_each(one);
+        } else {
+            out.par_iter_mut().enumerate().with_min_len(1024).for_each(one);
+        }
+    }
+}
+
+/// The buffers of all elements, and where their numbers go.
+#[derive(Debug)]
+pub(crate) struct Assembly {
+    /// The upper triangle of the stiffness over the free degrees of freedom, by columns.
+    pub(crate) columns: Vec<usize>,
+    pub(crate) rows: Vec<usize>,
+    /// Where the diagonal stands.
+    pub(crate) diagonal: Vec<usize>,
+    stiffness: Gather,
+    force: Gather,
+    sweep: Gather,
+    sizes: Vec<(usize, usize)>,
+    measures: Vec<f64>,
+    gradients: Vec<f64>,
+    packed: Vec<f64>,
+}
+
+/// Energy, volume, and their gradients over all degrees of freedom.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Totals {
+    pub(crate) energy: f64,
+    pub(crate) volume: f64,
+    pub(crate) force: Vec<f64>,
+    pub(crate) sweep: Vec<f64>,
+    /// The sum of the sizes of what is added up in `force`, and the pressure's share: what a residual is measured by.
+    pub(crate) scale: f64,
+}
+
+impl Assembly {
+    pub(crate) fn new(sets: &[&dyn Elements], dofs: &Dofs) -> Self {
+        let (mut force, mut sweep, mut stiffness) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut gradient_at, mut packed_at, mut count) = (0_usize, 0_usize, 0);
+        let mut sizes = Vec::new();
+        for set in sets {
+            let own = 3 * set.each();
+            sizes.push((set.count(), set.each()));
+            for e in 0..set.count() {
+                let all: Vec<u32> =
+                    set.nodes(e).iter().flat_map(|node| dofs.nodes[*node as usize].dof).collect();
+                for (i, dof) in all.iter().enumerate() {
+                    if *dof != NONE {
+                        force.push((*dof, short(gradient_at + i)));
+                        sweep.push((*dof, short(gradient_at + own + i)));
+                    }
+                }
+                gradient_at += 2 * own;
+                // The order in which a set writes its blocks.
+                let nodes = set.each();
+                let mut at = packed_at;
+                for a in 0..nodes {
+                    for k in 0..3 {
+                        for b in a..nodes {
+                            for l in if a == b { k } else { 0 }..3 {
+                                let (i, j) = (all[3 * a + k], all[3 * b + l]);
+                                if (i as usize) < dofs.free && (j as usize) < dofs.free {
+                                    let entry = (i.max(j), i.min(j));
+                                    stiffness.push((entry, short(at)));
+                                    // Two of its numbers are the same one: both halves of the matrix come to the diagonal.
+                                    if i == j && (a, k) != (b, l) {
+                                        stiffness.push((entry, short(at)));
+                                    }
+                                }
+                                at += 1;
+                            }
+                        }
+                    }
+                }
+                packed_at += packed(own);
+            }
+            count += set.count();
+        }
+        stiffness.par_sort_unstable();
+        let (mut columns, mut rows) = (vec![0_usize], Vec::new());
+        let mut pairs = Vec::with_capacity(stiffness.len());
+        let mut diagonal = Vec::with_capacity(dofs.free);
+        let mut next = stiffness.into_iter().peekable();
+        for column in 0..short(dofs.free) {
+            let mut last = NONE;
+            while let Some(((_, row), source)) = next.next_if(|((c, _), _)| *c == column) {
+                if row != last {
+                    rows.push(row as usize);
+                    last = row;
+                }
+                pairs.push((short(rows.len() - 1), source));
+            }
+            if last != column {
+                rows.push(column as usize);
+            }
+            diagonal.push(rows.len() - 1);
+            columns.push(rows.len());
+        }
+        Self {
+            stiffness: Gather::new(rows.len(), pairs),
+            force: Gather::new(dofs.all, force),
+            sweep: Gather::new(dofs.all, sweep),
+            columns,
+            rows,
+            diagonal,
+            sizes,
+            measures: vec![0.0; 2 * count],
+            gradients: vec![0.0; gradient_at],
+            packed: vec![0.0; packed_at],
+        }
+    }
+
+    fn place<'a>(x: &'a [Vector], dofs: &'a [NodeDofs], penalty: f64, pressure: f64) -> Place<'a> {
+        Place { x, dofs, penalty, pressure }
+    }
+
+    /// Energy and volume.
+    pub(crate) fn measure(
+        &mut self,
+        sets: &[&dyn Elements],
+        dofs: &Dofs,
+        x: &[Vector],
+        penalty: f64,
+    ) -> [f64; 2] {
+        let mut left = &mut self.measures[..];
+        for (set, (count, _)) in sets.iter().zip(&self.sizes) {
+            let (own, rest) = left.split_at_mut(2 * count);
+            set.measure(Self::place(x, &dofs.nodes, penalty, 0.0), own);
+            left = rest;
+        }
+        self.summed()
+    }
+
+    fn summed(&self) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        for pair in self.measures.chunks_exact(2) {
+            sum[0] += pair[0];
+            sum[1] += pair[1];
+        }
+        sum
+    }
+
+    /// Everything: `totals`, and the stiffness of energy - pressure volume in the places of the pattern.
+    pub(crate) fn work(
+        &mut self,
+        sets: &[&dyn Elements],
+        dofs: &Dofs,
+        x: &[Vector],
+        penalty: f64,
+        pressure: f64,
+        totals: &mut Totals,
+        matrix: &mut [f64],
+    ) {
+        let (mut measures, mut gradients, mut stiffness) =
+            (&mut self.measures[..], &mut self.gradients[..], &mut self.packed[..]);
+        for (set, (count, each)) in sets.iter().zip(&self.sizes) {
+            let (m, m_rest) = measures.split_at_mut(2 * count);
+            let (g, g_rest) = gradients.split_at_mut(6 * each * count);
+            let (k, k_rest) = stiffness.split_at_mut(packed(3 * each) * count);
+            let out = Parts { measures: m, gradients: g, stiffness: k };
+            set.work(Self::place(x, &dofs.nodes, penalty, pressure), out);
+            (measures, gradients, stiffness) = (m_rest, g_rest, k_rest);
+        }
+        [totals.energy, totals.volume] = self.summed();
+        totals.force.resize(dofs.all, 0.0);
+        totals.sweep.resize(dofs.all, 0.0);
+        self.force.sum(&self.gradients, &mut totals.force);
+        self.sweep.sum(&self.gradients, &mut totals.sweep);
+        self.stiffness.sum(&self.packed, matrix);
+        totals.scale = self.scale(dofs, pressure);
+    }
+
+    /// The mean over the free degrees of freedom of the sum of the sizes of their forces.
+    fn scale(&self, dofs: &Dofs, pressure: f64) -> f64 {
+        let mut sum = 0.0;
+        for dof in 0..dofs.free {
+            for (gather, weight) in [(&self.force, 1.0), (&self.sweep, pressure)] {
+                let range = gather.starts[dof] as usize..gather.starts[dof + 1] as usize;
+                for source in &gather.sources[range] {
+                    sum += (weight * self.gradients[*source as usize]).abs();
+                }
+            }
+        }
+        sum / dofs.free.max(1) as f64
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "checked when the structure is built: fewer than 2^32 numbers")]
+fn short(count: usize) -> u32 {
+    count as u32
+}

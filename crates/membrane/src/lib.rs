@@ -1,0 +1,23 @@
+//! Membrane finite elements for pressurised fibre-reinforced membranes: from a mesh to converged equilibrium states.
+
+mod assembly;
+mod dofs;
+mod element;
+mod error;
+mod factor;
+mod load;
+mod material;
+mod mesh;
+pub mod mesher;
+mod path;
+mod set;
+mod solver;
+mod structure;
+
+pub use mesh::{Block, CellKind, Mesh, MeshError};
+pub use element::RingLayer;
+pub use error::MembraneError;
+pub use load::{Gas, Inflation, Load};
+pub use material::{Cloth, Law, Orthotropic, Sheet, Tension, Thread};
+pub use solver::{Effort, Solver, State, Tolerance};
+pub use structure::{Fitting, Part, Structure, Support};

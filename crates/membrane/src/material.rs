@@ -1,0 +1,17 @@
+//! Materials: energies per unit area of the stress-free membrane, and of threads, with their derivatives.
+
+mod law;
+mod orthotropic;
+mod sheet;
+mod tension_field;
+mod thread;
+
+pub use law::Law;
+pub use orthotropic::Orthotropic;
+pub use sheet::{Cloth, Sheet};
+pub use tension_field::Tension;
+pub use thread::Thread;
+
+pub(crate) use sheet::Plane;
+pub(crate) use thread::pull;
+pub(crate) use tension_field::Principal;

@@ -1,0 +1,113 @@
+//! A mesh: nodes, and blocks of cells with the names by which a case gives them material, load and support.
+
+mod error;
+
+pub use error::MeshError;
+
+use crate::dofs::turned;
+use crate::element::{norm, sub};
+use crate::error::MembraneError;
+
+/// What a cell is. Nodes are counted as Gmsh does: corners first, then the middles of the edges 1-2, 2-3, 3-1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum CellKind {
+    /// One node: a place to hold or to look at.
+    Point,
+    /// A cable or a membrane of revolution, two nodes.
+    Line2,
+    /// The same with a node between.
+    Line3,
+    /// A membrane, three corners.
+    Triangle3,
+    /// A membrane with nodes on its edges.
+    Triangle6,
+}
+
+impl CellKind {
+    /// Its number of nodes.
+    #[must_use]
+    pub fn nodes(self) -> usize {
+        match self {
+            Self::Point => 1,
+            Self::Line2 => 2,
+            Self::Line3 | Self::Triangle3 => 3,
+            Self::Triangle6 => 6,
+        }
+    }
+}
+
+/// Cells of one kind under one name (a physical group of Gmsh).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Block {
+    /// The group's name; empty where the mesh gives none.
+    pub group: String,
+    /// What the cells are.
+    pub kind: CellKind,
+    /// Indices into [`Mesh::nodes`], `kind.nodes()` for each cell.
+    pub cells: Vec<usize>,
+    /// The number of each cell in the file it came from, for messages.
+    pub numbers: Vec<u64>,
+    /// Where the nodes of each cell lie in the flat, stress-free pattern of the cloth, one place for each entry of `cells`, m. `None`: the mesh
+    /// itself is free of stress.
+    pub pattern: Option<Vec<[f64; 2]>>,
+}
+
+/// Nodes and cells.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mesh {
+    /// Places, m. A membrane of revolution lies in the plane y = 0 with its axis along z: x is the radius.
+    pub nodes: Vec<[f64; 3]>,
+    /// The number of each node in the file it came from, for messages.
+    pub numbers: Vec<u64>,
+    /// The cells.
+    pub blocks: Vec<Block>,
+}
+
+impl Mesh {
+    /// The nodes of all cells of a group, in order and each once; `None` if there is no such group.
+    #[must_use]
+    pub fn nodes_of(&self, group: &str) -> Option<Vec<usize>> {
+        let mut nodes = Vec::new();
+        let mut is_known = false;
+        for block in self.blocks.iter().filter(|block| block.group == group) {
+            is_known = true;
+            nodes.extend_from_slice(&block.cells);
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        is_known.then_some(nodes)
+    }
+
+    /// Each node of a group with the one of `partner` from which it is `angle` about z.
+    pub(crate) fn partners(
+        &self,
+        group: &str,
+        nodes: &[usize],
+        partner: &str,
+        partners: &[usize],
+        angle: f64,
+    ) -> Result<Vec<(usize, usize)>, MembraneError> {
+        let size = nodes.iter().flat_map(|node| self.nodes[*node]).fold(0.0_f64, |a, x| a.max(x.abs()));
+        // By z, so that only a few are looked at.
+        let mut sorted: Vec<(f64, usize)> = partners.iter().map(|node| (self.nodes[*node][2], *node)).collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let close = 1e-6 * size;
+        nodes
+            .iter()
+            .map(|node| {
+                let place = turned(self.nodes[*node], -angle);
+                let from = sorted.partition_point(|(z, _)| *z < place[2] - close);
+                let found = sorted[from..]
+                    .iter()
+                    .take_while(|(z, _)| *z <= place[2] + close)
+                    .find(|(_, other)| norm(sub(self.nodes[*other], place)) <= close);
+                found.map(|(_, other)| (*node, *other)).ok_or_else(|| MembraneError::NoPartner {
+                    node: self.numbers.get(*node).copied().unwrap_or(*node as u64 + 1),
+                    group: group.to_owned(),
+                    partner: partner.to_owned(),
+                    degrees: angle.to_degrees(),
+                })
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,7 @@
+//! Meshes of our own muscles, and of simple membranes: for pictures, for sizing, and for verification.
+//!
+//! All lie about the z axis; a membrane of revolution in the half-plane y = 0. Groups are named for what a case says of them.
+
+mod revolved;
+
+pub use revolved::{Grading, revolved};

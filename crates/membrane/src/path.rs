@@ -1,0 +1,137 @@
+//! Paths: from one load to another in steps that find their own length.
+
+use crate::error::MembraneError;
+use crate::load::{Inflation, Load};
+use crate::solver::{Solver, State};
+
+/// The smallest step, over the whole path.
+const SMALLEST: f64 = 1.0 / 4096.0;
+/// How far an extrapolation may reach, over the step before it.
+const REACH: f64 = 2.0;
+
+impl Solver {
+    /// The equilibrium under `load`, reached from the equilibrium `from` under `before` in as few steps as it takes. The loads must
+    /// prescribe the same kinds of things. `seen` is told each equilibrium on the way with its share of the path.
+    ///
+    /// # Errors
+    /// [`MembraneError::LimitPoint`] if the pressure can't be reached; [`MembraneError::NotConverged`].
+    pub fn follow(
+        &mut self,
+        before: &Load,
+        from: &State,
+        load: &Load,
+        mut seen: impl FnMut(f64, &State),
+    ) -> Result<State, MembraneError> {
+        let (mut done, mut step) = (0.0, 1.0_f64);
+        let mut last = from.clone();
+        let mut older: Option<(f64, State)> = None;
+        loop {
+            let next = (done + step).min(1.0);
+            let between = before.towards(load, next);
+            let start = match &older {
+                Some((at, state)) if next - done <= REACH * (done - at) => {
+                    extrapolated(state, &last, (next - done) / (done - at))
+                }
+                _ => self.stretched(&last, &between),
+            };
+            let solved = self.solve(&between, &start).or_else(|error| {
+                // An extrapolation may lead astray where the last state itself wouldn't.
+                if older.is_some() { self.solve(&between, &last) } else { Err(error) }
+            });
+            match solved {
+                Ok(state) => {
+                    seen(next, &state);
+                    if next >= 1.0 {
+                        return Ok(state);
+                    }
+                    older = Some((done, std::mem::replace(&mut last, state)));
+                    done = next;
+                    step *= 1.5;
+                }
+                Err(error) => {
+                    step *= 0.5;
+                    if step < SMALLEST {
+                        return Err(limit(&last, load).unwrap_or(error));
+                    }
+                }
+            }
+        }
+    }
+
+    /// A state whose nodes have followed the fittings along z in proportion: what a new place of a fitting starts from.
+    fn stretched(&self, state: &State, load: &Load) -> State {
+        let structure = &self.structure;
+        let mut start = state.clone();
+        let dofs = &structure.dofs;
+        let mut ends: Vec<(f64, f64)> = Vec::new();
+        for (fitting, kind) in structure.fittings.iter().enumerate() {
+            if *kind != crate::structure::Fitting::Placed {
+                continue;
+            }
+            let dof = dofs.fittings[fitting];
+            let Some(node) = dofs.nodes.iter().position(|node| node.dof[0] == dof) else { continue };
+            let before = state.y[dof as usize];
+            ends.push((structure.places[node][2] + before, load.fittings[fitting] - before));
+        }
+        // Nodes held on a plane across z count as an end that doesn't move.
+        let still = dofs.nodes.iter().find(|node| {
+            node.axis.iter().zip(node.dof).all(|(axis, dof)| dof == crate::dofs::NONE || axis[2] == 0.0)
+        });
+        if let (1, Some(node)) = (ends.len(), still) {
+            ends.push((node.base[2], 0.0));
+        }
+        let [(z0, d0), (z1, d1)] = ends[..] else { return start };
+        if (z1 - z0).abs() <= 1e-12 * self.structure.size() || (d0 == 0.0 && d1 == 0.0) {
+            return start;
+        }
+        let mut x = Vec::new();
+        dofs.places(&state.y, &mut x);
+        for (node, place) in dofs.nodes.iter().zip(&x) {
+            let by = d0 + (d1 - d0) * (place[2] - z0) / (z1 - z0);
+            for (dof, axis) in node.dof.iter().zip(&node.axis) {
+                if *dof != crate::dofs::NONE && (*dof as usize) < dofs.free && axis[2].abs() > 0.99 {
+                    start.y[*dof as usize] += by * axis[2];
+                }
+            }
+        }
+        start
+    }
+}
+
+impl Load {
+    /// The load at a share of the way to another.
+    fn towards(&self, other: &Self, share: f64) -> Self {
+        let mix = |a: f64, b: f64| if share >= 1.0 { b } else { a + share * (b - a) };
+        let inflation = match (self.inflation, other.inflation) {
+            (Inflation::Pressure(a), Inflation::Pressure(b)) => Inflation::Pressure(mix(a, b)),
+            (Inflation::Volume(a), Inflation::Volume(b)) => Inflation::Volume(mix(a, b)),
+            (Inflation::Gas(a), Inflation::Gas(mut b)) => {
+                b.constant = mix(a.constant, b.constant);
+                Inflation::Gas(b)
+            }
+            (_, b) => b,
+        };
+        let fittings = self.fittings.iter().zip(&other.fittings).map(|(a, b)| mix(*a, *b)).collect();
+        Self { inflation, fittings }
+    }
+}
+
+/// From two states on, by `ratio` of the step between them.
+fn extrapolated(older: &State, last: &State, ratio: f64) -> State {
+    let mut start = last.clone();
+    for (y, older) in start.y.iter_mut().zip(&older.y) {
+        *y += ratio * (*y - older);
+    }
+    start.pressure += ratio * (last.pressure - older.pressure);
+    start
+}
+
+/// What a path that ends says, if it is the pressure that can't rise.
+fn limit(last: &State, load: &Load) -> Option<MembraneError> {
+    match load.inflation {
+        Inflation::Pressure(pressure) if pressure > last.pressure => {
+            Some(MembraneError::LimitPoint { pressure, last: last.pressure, volume: last.volume })
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,309 @@
+//! A structure: the elements over a mesh, and what holds its nodes.
+
+use crate::dofs::{Dofs, Supports};
+use crate::element::{Cable, Ring, RingLayer, Triangle, Vector};
+use crate::error::MembraneError;
+use crate::material::{Sheet, Thread};
+use crate::mesh::{Block, CellKind, Mesh};
+use crate::set::{Elements, Set};
+use serde::Serialize;
+
+/// What the cells of a group are.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub enum Part {
+    /// Triangles in space.
+    Membrane {
+        /// Its material; `None`: it only hands the pressure on.
+        sheet: Option<Sheet>,
+        /// Direction of the sheet's first axis (warp), in the pattern if there is one.
+        warp: Vector,
+    },
+    /// Lines in the half-plane y = 0, x > 0, revolved about z.
+    Revolved {
+        /// What lies on it.
+        layers: Vec<RingLayer>,
+    },
+    /// Lines in space.
+    Cable {
+        /// Its material.
+        thread: Thread,
+    },
+}
+
+/// What holds the nodes of a group.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub enum Support {
+    /// They don't move.
+    Fixed,
+    /// They don't move along this direction: they stay in a plane of symmetry across it.
+    Plane {
+        /// Across the plane.
+        normal: Vector,
+    },
+    /// They stay on the z axis.
+    Axis,
+    /// They keep their distance from the z axis and their angle about it, and may slide along it.
+    Slide,
+    /// They ride on a rigid end fitting, which moves along z.
+    Fitting {
+        /// Which: the fittings are counted from 0.
+        fitting: usize,
+    },
+    /// They follow the nodes of another group, turned about z: the far edge of a cyclic sector.
+    Cyclic {
+        /// The group they follow.
+        partner: String,
+        /// From the partner to this group, rad.
+        angle: f64,
+    },
+}
+
+/// How an end fitting moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Fitting {
+    /// Its place is prescribed; the force on it is a result.
+    Placed,
+    /// The force on it is prescribed; its place is a result.
+    Loaded,
+}
+
+/// Elements of one block, for results.
+#[derive(Debug)]
+pub(crate) enum Group {
+    Cable2(Set<Cable<2>, 2>),
+    Cable3(Set<Cable<3>, 3>),
+    Ring2(Set<Ring<2>, 2>),
+    Ring3(Set<Ring<3>, 3>),
+    Triangle3(Set<Triangle<3>, 3>),
+    Triangle6(Set<Triangle<6>, 6>),
+}
+
+macro_rules! each {
+    ($group:expr, $set:ident => $body:expr) => {
+        match $group {
+            Group::Cable2($set) => $body,
+            Group::Cable3($set) => $body,
+            Group::Ring2($set) => $body,
+            Group::Ring3($set) => $body,
+            Group::Triangle3($set) => $body,
+            Group::Triangle6($set) => $body,
+        }
+    };
+}
+
+impl Group {
+    pub(crate) fn elements(&self) -> &dyn Elements {
+        each!(self, set => set)
+    }
+
+    pub(crate) fn elements_mut(&mut self) -> &mut dyn Elements {
+        each!(self, set => set)
+    }
+}
+
+/// Elements and supports: what an equilibrium is sought for.
+#[derive(Debug)]
+pub struct Structure {
+    pub(crate) groups: Vec<(String, Group)>,
+    pub(crate) dofs: Dofs,
+    /// Degrees of freedom at the mesh's own places.
+    pub(crate) start: Vec<f64>,
+    pub(crate) places: Vec<Vector>,
+    pub(crate) fittings: Vec<Fitting>,
+}
+
+impl Structure {
+    /// Elements over `mesh`: `parts` and `supports` by the names of its groups, which must exist.
+    ///
+    /// # Errors
+    /// An unknown group, an element without length or area, contradictory supports, a structure with nothing to solve for.
+    pub fn new(
+        mesh: &Mesh,
+        parts: &[(String, Part)],
+        supports: &[(String, Support)],
+        fittings: &[Fitting],
+    ) -> Result<Self, MembraneError> {
+        let mut groups = Vec::new();
+        let mut is_used = vec![false; mesh.nodes.len()];
+        let mut is_flat = vec![false; mesh.nodes.len()];
+        for (name, part) in parts {
+            let mut is_known = false;
+            for block in mesh.blocks.iter().filter(|block| block.group == *name) {
+                is_known = true;
+                if block.kind == CellKind::Point {
+                    continue;
+                }
+                groups.push((name.clone(), group(mesh, block, part)?));
+                for node in &block.cells {
+                    is_used[*node] = true;
+                    is_flat[*node] |= matches!(part, Part::Revolved { .. });
+                }
+            }
+            if !is_known {
+                return Err(MembraneError::unknown_group(name, mesh));
+            }
+        }
+        let mut held = Supports::new(mesh.nodes.len());
+        for fitting in fittings {
+            held.fitting(*fitting == Fitting::Loaded);
+        }
+        for (node, (is_used, is_flat)) in is_used.iter().zip(&is_flat).enumerate() {
+            if !is_used {
+                held.fix(node);
+            } else if *is_flat {
+                held.hold(node, [0.0, 1.0, 0.0]);
+            }
+        }
+        for (name, support) in supports {
+            support_group(mesh, name, support, fittings.len(), &mut held)?;
+        }
+        let (dofs, start) = held.dofs(&mesh.nodes)?;
+        if dofs.free == 0 {
+            return Err(MembraneError::NothingMoves);
+        }
+        let numbers: usize = groups
+            .iter()
+            .map(|(_, group)| {
+                let set = group.elements();
+                let own = 3 * set.each();
+                set.count() * own * (own + 1) / 2
+            })
+            .sum();
+        if numbers > u32::MAX as usize / 2 {
+            return Err(MembraneError::Memory { unknowns: dofs.free });
+        }
+        Ok(Self { groups, dofs, start, places: mesh.nodes.clone(), fittings: fittings.to_vec() })
+    }
+
+    /// Degrees of freedom that are solved for.
+    #[must_use]
+    pub fn unknowns(&self) -> usize {
+        self.dofs.free
+    }
+
+    /// Elements.
+    #[must_use]
+    pub fn elements(&self) -> usize {
+        self.groups.iter().map(|(_, group)| group.elements().count()).sum()
+    }
+
+    /// Threads that pull side by side, at most.
+    pub(crate) fn threads(&self) -> f64 {
+        let count = |layers: &[crate::element::Layer]| layers.iter().map(crate::element::Layer::count).fold(0.0, f64::max);
+        let groups = self.groups.iter().map(|(_, group)| match group {
+            Group::Ring2(set) => set.elements.first().map_or(0.0, |ring| count(&ring.layers)),
+            Group::Ring3(set) => set.elements.first().map_or(0.0, |ring| count(&ring.layers)),
+            _ => 0.0,
+        });
+        groups.fold(0.0, f64::max)
+    }
+
+    /// The size of the structure: the diagonal of the box about its nodes.
+    pub(crate) fn size(&self) -> f64 {
+        let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        for place in &self.places {
+            for (range, x) in range.iter_mut().zip(place) {
+                *range = [range[0].min(*x), range[1].max(*x)];
+            }
+        }
+        range.iter().map(|[low, high]| (high - low).powi(2)).sum::<f64>().sqrt()
+    }
+}
+
+fn support_group(
+    mesh: &Mesh,
+    name: &str,
+    support: &Support,
+    fittings: usize,
+    held: &mut Supports,
+) -> Result<(), MembraneError> {
+    let nodes = mesh.nodes_of(name).ok_or_else(|| MembraneError::unknown_group(name, mesh))?;
+    match support {
+        Support::Cyclic { partner, angle } => {
+            let partners = mesh.nodes_of(partner).ok_or_else(|| MembraneError::unknown_group(partner, mesh))?;
+            for (node, partner) in mesh.partners(name, &nodes, partner, &partners, *angle)? {
+                held.follow(node, partner, *angle);
+            }
+            return Ok(());
+        }
+        Support::Fitting { fitting } if *fitting >= fittings => {
+            return Err(MembraneError::NoFitting { fitting: *fitting, known: fittings });
+        }
+        _ => (),
+    }
+    for node in nodes {
+        let [x, y, _] = mesh.nodes[node];
+        match support {
+            Support::Fixed => held.fix(node),
+            Support::Plane { normal } => held.hold(node, *normal),
+            Support::Axis => {
+                held.hold(node, [1.0, 0.0, 0.0]);
+                held.hold(node, [0.0, 1.0, 0.0]);
+            }
+            Support::Slide => {
+                held.hold(node, [x, y, 0.0]);
+                held.hold(node, [-y, x, 0.0]);
+            }
+            Support::Fitting { fitting } => held.ride(node, *fitting)?,
+            Support::Cyclic { .. } => (),
+        }
+    }
+    Ok(())
+}
+
+/// The places where the nodes of a cell are free of stress.
+fn stress_free<const N: usize>(mesh: &Mesh, block: &Block, cell: usize) -> [Vector; N] {
+    core::array::from_fn(|i| match &block.pattern {
+        Some(pattern) => {
+            let [u, v] = pattern[cell * N + i];
+            [u, v, 0.0]
+        }
+        None => mesh.nodes[block.cells[cell * N + i]],
+    })
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a mesh has fewer than 2^31 nodes: checked when it is read")]
+fn built<E: crate::set::Element<N>, const N: usize>(
+    mesh: &Mesh,
+    block: &Block,
+    what: &'static str,
+    element: impl Fn(&[Vector; N]) -> Option<E>,
+) -> Result<Set<E, N>, MembraneError> {
+    let (cells, _) = block.cells.as_chunks::<N>();
+    let mut nodes = Vec::with_capacity(cells.len());
+    let mut elements = Vec::with_capacity(cells.len());
+    for (i, cell) in cells.iter().enumerate() {
+        let made = element(&stress_free(mesh, block, i));
+        elements.push(made.ok_or_else(|| MembraneError::Element {
+            element: block.numbers.get(i).copied().unwrap_or(i as u64 + 1),
+            group: block.group.clone(),
+            what,
+        })?);
+        nodes.push(cell.map(|node| node as u32));
+    }
+    Ok(Set::new(nodes, elements))
+}
+
+fn group(mesh: &Mesh, block: &Block, part: &Part) -> Result<Group, MembraneError> {
+    match (part, block.kind) {
+        (Part::Membrane { sheet, warp }, CellKind::Triangle3) => {
+            Ok(Group::Triangle3(built(mesh, block, "area", |x| Triangle::new(x, *warp, *sheet))?))
+        }
+        (Part::Membrane { sheet, warp }, CellKind::Triangle6) => {
+            Ok(Group::Triangle6(built(mesh, block, "area", |x| Triangle::new(x, *warp, *sheet))?))
+        }
+        (Part::Revolved { layers }, CellKind::Line2) => {
+            Ok(Group::Ring2(built(mesh, block, "length off the axis", |x| Ring::new(x, layers))?))
+        }
+        (Part::Revolved { layers }, CellKind::Line3) => {
+            Ok(Group::Ring3(built(mesh, block, "length off the axis", |x| Ring::new(x, layers))?))
+        }
+        (Part::Cable { thread }, CellKind::Line2) => {
+            Ok(Group::Cable2(built(mesh, block, "length", |x| Cable::new(x, *thread))?))
+        }
+        (Part::Cable { thread }, CellKind::Line3) => {
+            Ok(Group::Cable3(built(mesh, block, "length", |x| Cable::new(x, *thread))?))
+        }
+        (_, kind) => Err(MembraneError::WrongCells { group: block.group.clone(), kind }),
+    }
+}
