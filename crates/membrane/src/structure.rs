@@ -27,6 +27,8 @@ pub enum Part {
     Cable {
         /// Its material.
         thread: Thread,
+        /// The part of it that belongs to the structure: 1/2 for one that lies in a plane of symmetry.
+        share: f64,
     },
 }
 
@@ -298,11 +300,11 @@ fn group(mesh: &Mesh, block: &Block, part: &Part) -> Result<Group, MembraneError
         (Part::Revolved { layers }, CellKind::Line3) => {
             Ok(Group::Ring3(built(mesh, block, "length off the axis", |x| Ring::new(x, layers))?))
         }
-        (Part::Cable { thread }, CellKind::Line2) => {
-            Ok(Group::Cable2(built(mesh, block, "length", |x| Cable::new(x, *thread))?))
+        (Part::Cable { thread, share }, CellKind::Line2) => {
+            Ok(Group::Cable2(built(mesh, block, "length", |x| Cable::new(x, *thread, *share))?))
         }
-        (Part::Cable { thread }, CellKind::Line3) => {
-            Ok(Group::Cable3(built(mesh, block, "length", |x| Cable::new(x, *thread))?))
+        (Part::Cable { thread, share }, CellKind::Line3) => {
+            Ok(Group::Cable3(built(mesh, block, "length", |x| Cable::new(x, *thread, *share))?))
         }
         (_, kind) => Err(MembraneError::WrongCells { group: block.group.clone(), kind }),
     }

@@ -20,13 +20,15 @@ struct Point<const N: usize> {
 pub(crate) struct Cable<const N: usize> {
     points: Vec<Point<N>>,
     thread: Thread,
+    /// The part of the cable that belongs to the structure.
+    share: f64,
     /// Tensions T0 at each point, of an inextensible thread.
     held: Vec<f64>,
 }
 
 impl<const N: usize> Cable<N> {
     /// Along the stress-free places of its nodes; `None` if they have no length or fold over.
-    pub(crate) fn new(places: &[Vector; N], thread: Thread) -> Option<Self> {
+    pub(crate) fn new(places: &[Vector; N], thread: Thread, share: f64) -> Option<Self> {
         let mut points = Vec::new();
         for (weight, _, d) in line_strain::<N>() {
             let speed = norm(mixed(places, &d));
@@ -36,7 +38,7 @@ impl<const N: usize> Cable<N> {
             points.push(Point { by: d.map(|d| d / speed), length: weight * speed });
         }
         let held = vec![0.0; points.len()];
-        Some(Self { points, thread, held })
+        Some(Self { points, thread, share, held })
     }
 
     /// Stiffness EA: the thread's own, or `penalty` for an inextensible one.
@@ -50,7 +52,9 @@ impl<const N: usize> Cable<N> {
     pub(crate) fn energy(&self, x: &[Vector; N], penalty: f64) -> f64 {
         let stiffness = self.stiffness(penalty);
         let each = self.points.iter().zip(&self.held);
-        each.map(|(point, t0)| point.length * pull(stiffness, *t0, norm(mixed(x, &point.by))).energy).sum()
+        let sum: f64 =
+            each.map(|(point, t0)| point.length * pull(stiffness, *t0, norm(mixed(x, &point.by))).energy).sum();
+        self.share * sum
     }
 
     pub(crate) fn local(&self, x: &[Vector; N], penalty: f64) -> Local<N> {
@@ -60,7 +64,8 @@ impl<const N: usize> Cable<N> {
             let tangent = mixed(x, &point.by);
             let stretch = norm(tangent);
             let pull = pull(stiffness, *t0, stretch);
-            out.energy += point.length * pull.energy;
+            let length = self.share * point.length;
+            out.energy += length * pull.energy;
             if pull.tension <= 0.0 {
                 continue;
             }
@@ -69,10 +74,10 @@ impl<const N: usize> Cable<N> {
             let across = pull.tension / stretch;
             for a in 0..N {
                 for i in 0..3 {
-                    out.force[a][i] += point.length * pull.tension * along[i] * point.by[a];
+                    out.force[a][i] += length * pull.tension * along[i] * point.by[a];
                 }
                 for b in a..N {
-                    let weight = point.length * point.by[a] * point.by[b];
+                    let weight = length * point.by[a] * point.by[b];
                     for i in 0..3 {
                         out.stiffness[a][b][i][i] += weight * across;
                         for j in 0..3 {
