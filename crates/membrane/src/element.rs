@@ -6,9 +6,9 @@ mod shape;
 mod triangle;
 
 pub(crate) use cable::Cable;
-pub(crate) use ring::{Layer, Ring};
-pub(crate) use triangle::Triangle;
 pub use ring::RingLayer;
+pub(crate) use ring::{Carried as CarriedByRing, Layer, Ring};
+pub(crate) use triangle::{Carried, Triangle};
 
 /// A vector.
 pub(crate) type Vector = [f64; 3];

@@ -9,7 +9,7 @@ use crate::element::{norm, sub};
 use crate::error::MembraneError;
 
 /// What a cell is. Nodes are counted as Gmsh does: corners first, then the middles of the edges 1-2, 2-3, 3-1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 pub enum CellKind {
     /// One node: a place to hold or to look at.
     Point,

@@ -101,6 +101,15 @@ struct Step {
     slope: f64,
 }
 
+/// How the way down is guarded.
+#[derive(Debug, Clone, Copy, Default)]
+struct Guard {
+    /// Multiple of the unit matrix that is added to the stiffness.
+    shift: f64,
+    /// Whether the last step was made with the stiffness under a dead pressure.
+    was_dead: bool,
+}
+
 /// What is known where the iteration stands.
 struct Now {
     gradient: Vec<f64>,
@@ -115,6 +124,8 @@ struct Now {
 const HALVINGS: usize = 5;
 /// Trials of one iteration with more and more shift.
 const SHIFTS: usize = 30;
+/// The first shift of a stiffness that isn't positive, over its mean diagonal.
+const LEAST_SHIFT: f64 = 1e-6;
 /// How far a node goes in one solution, over the size of the structure: farther is a way without end.
 const FARTHEST: f64 = 3.0;
 /// Outer iterations of the augmented Lagrangian.
@@ -393,7 +404,7 @@ impl Solver {
         y: &mut Vec<f64>,
         pressure: &mut f64,
     ) -> Result<(f64, usize), MembraneError> {
-        let mut shift = 0.0;
+        let mut guard = Guard::default();
         let mut last = f64::INFINITY;
         let first = y.clone();
         for iteration in 0..self.tolerance.iterations {
@@ -427,7 +438,7 @@ impl Solver {
                 }
             }
             self.effort.iterations += 1;
-            if !self.improve(load, &now, closure, &mut shift, y) {
+            if !self.improve(load, &now, closure, &mut guard, y) {
                 break;
             }
         }
@@ -444,23 +455,33 @@ impl Solver {
         load: &Load,
         now: &Now,
         closure: Closure,
-        shift: &mut f64,
+        guard: &mut Guard,
         y: &mut Vec<f64>,
     ) -> bool {
         let unit = self.mean_diagonal();
         // What rounding leaves of the potential.
         let floor = 1e-13 * (self.totals.energy.abs() + now.potential.abs());
         let mut trial = y.clone();
+        // Far from equilibrium most attempts with the whole stiffness are in vain: only every third is made after one that was.
+        let mut is_dead = guard.was_dead && now.residual > 0.03 && self.effort.iterations % 3 != 0;
+        if is_dead {
+            self.work(y, 0.0);
+        }
         for _ in 0..SHIFTS {
-            let inertia = self.factorise(*shift);
-            let Inertia::Negative(negative) = inertia else {
-                *shift = (4.0 * *shift).max(1e-4 * unit);
-                continue;
+            let applied = if is_dead { guard.shift } else { 0.0 };
+            let (step, negative) = match self.factorise(applied) {
+                Inertia::Negative(negative) => self.step(&now.gradient, closure, negative),
+                Inertia::Singular => (Step { by: Vec::new(), pressure: 0.0, slope: f64::NAN }, 1),
             };
-            let (step, negative) = self.step(&now.gradient, closure, negative);
             let longest = step.by.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-            if negative > 0 || !longest.is_finite() || step.slope > 0.0 {
-                *shift = (4.0 * *shift).max(1e-4 * unit);
+            if negative > 0 || !longest.is_finite() || step.slope > 0.0 || step.slope.is_nan() {
+                if is_dead {
+                    guard.shift = (4.0 * guard.shift).max(LEAST_SHIFT * unit);
+                } else {
+                    // As if the pressure kept its direction: what it adds to the stiffness is all that a slack cloth can't bear.
+                    is_dead = true;
+                    self.work(y, 0.0);
+                }
                 continue;
             }
             let mut length = (0.2 * self.size / longest).min(1.0);
@@ -474,20 +495,24 @@ impl Solver {
                     // A quadratic potential falls by slope/2.
                     let expected = length * (1.0 - 0.5 * length) * step.slope;
                     let is_as_expected = (fell - expected).abs() < 0.3 * expected.abs() + floor;
-                    *shift = match (is_as_expected, length < 1.0) {
-                        (true, false) => 0.1 * *shift,
-                        (true, true) => 0.5 * *shift,
-                        (false, _) => *shift,
-                    };
-                    if *shift < 1e-9 * unit {
-                        *shift = 0.0;
+                    if is_as_expected {
+                        guard.shift *= if length < 1.0 { 0.5 } else { 0.1 };
                     }
+                    if guard.shift < 1e-3 * LEAST_SHIFT * unit {
+                        guard.shift = 0.0;
+                    }
+                            guard.was_dead = is_dead;
                     y.copy_from_slice(&trial);
                     return true;
                 }
                 length *= 0.4;
             }
-            *shift = (4.0 * *shift).max(1e-4 * unit);
+            if is_dead {
+                guard.shift = (4.0 * guard.shift).max(LEAST_SHIFT * unit);
+            } else {
+                is_dead = true;
+                self.work(y, 0.0);
+            }
         }
         false
     }

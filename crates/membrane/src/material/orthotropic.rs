@@ -37,10 +37,6 @@ impl Orthotropic {
         [[self.warp / below, mixed, 0.0], [mixed, self.weft / below, 0.0], [0.0, 0.0, self.shear]]
     }
 
-    pub(crate) fn stiffness(&self) -> f64 {
-        self.warp.max(self.weft)
-    }
-
     /// The unrelaxed law at Green's strain (E11, E22, 2 E12).
     pub(crate) fn taut(&self, e: [f64; 3]) -> Plane {
         let d = self.tangent();

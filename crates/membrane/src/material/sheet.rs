@@ -98,13 +98,6 @@ impl Sheet {
         Principal { energy, tension }
     }
 
-    /// Its stiffness against small strains, N/m.
-    pub(crate) fn stiffness(&self) -> f64 {
-        match &self.cloth {
-            Cloth::Isotropic(law) => law.stiffness(),
-            Cloth::Orthotropic(cloth) => cloth.stiffness(),
-        }
-    }
 }
 
 fn mixed(mut relaxed: Plane, full: &Plane, residual: f64) -> Plane {
