@@ -59,6 +59,7 @@ mod curve;
 mod error;
 pub mod format;
 mod lookup;
+mod pair;
 mod plane;
 mod spline;
 mod sqrt;

@@ -3,6 +3,7 @@
 use crate::chebyshev::Polynomial;
 use crate::coordinate::{Fixed, cell, rooted};
 use crate::format::Form;
+use crate::plane::Plane;
 use crate::spline::{Basis, Double, Graded, Number, Single, Spline};
 
 /// An output at a point.
@@ -35,6 +36,8 @@ pub struct Lookup<'a, const A: usize, const O: usize> {
     /// k and j of each output: 0 or 1.
     pub(crate) singular: [f64; O],
     pub(crate) vanishing: [f64; O],
+    /// What else two axes need.
+    pub(crate) plane: Plane,
 }
 
 /// The coordinates of a point with their derivatives.
@@ -49,6 +52,7 @@ pub(crate) struct Place<const A: usize> {
 
 impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     /// All outputs at a point with their gradients; `None` outside the domain, for a NaN, and at a singular lower end.
+    #[inline]
     #[must_use]
     pub fn at(&self, point: [f64; A]) -> Option<[Sample<A>; O]> {
         if A == 2 && self.form == Form::Spline {
@@ -58,6 +62,12 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
                 self.in_plane::<Double>(point)
             };
         }
+        self.in_space(point)
+    }
+
+    /// [`Lookup::at`] for any number of axes; not inlined, since the stack that it needs would be prepared for two axes as well.
+    #[inline(never)]
+    fn in_space(&self, point: [f64; A]) -> Option<[Sample<A>; O]> {
         let place = self.place(point)?;
         let found = match (self.form, self.is_single) {
             (Form::Spline, true) => self.spline::<Single>(&place),

@@ -1,102 +1,220 @@
-//! The lookup of splines over two axes, the second one first: the general path with everything known beforehand and no loop left.
+//! The lookup of splines over two axes: the general path with everything known beforehand and no loop left, two outputs at a time.
+//!
+//! What doesn't depend on the output is computed twice, from numbers that are stored twice: so it needn't be spread before it meets the outputs.
 
 use core::array;
 
+use crate::coordinate::Fixed;
 use crate::lookup::{Lookup, Sample};
-use crate::spline::{Basis, Number, on_line, weighted};
-use crate::sqrt::reciprocal_root;
+use crate::pair::{Factors, Pair, Weights};
+use crate::spline::{Double, Number};
 
 /// 1.5 2^52: added to a small number, the sum is a whole number whose low bits are its own.
 const WHOLE: f64 = 6_755_399_441_055_744.0;
+/// Keeps a coordinate of 1 and the rounding above it in the last cell.
+const INSIDE: f64 = 1.0 - 8.0 * f64::EPSILON;
+/// Most pairs of outputs.
+const PAIRS: usize = crate::format::MOST_OUTPUTS / 2;
 
-/// Cell of a coordinate in \[0, 1\] and the place in it, without the checks of a conversion. Where two cells meet it may be either.
-#[inline]
-#[expect(clippy::cast_possible_truncation, reason = "the low bits are the number of the cell")]
-fn cell(v: f64, cells: f64) -> (usize, f64) {
-    let along = v * cells;
-    let number = smaller((along - 0.5) + WHOLE - WHOLE, cells - 1.0);
-    ((number + WHOLE).to_bits() as u32 as usize, along - number)
+/// Numbers of a table of two axes, most of them twice.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Plane {
+    low: [Pair; 2],
+    /// Upper ends; where the edge is one, a number before those whose multiples are infinite.
+    high: [f64; 2],
+    /// Of the first coordinate scale s/(factor s + pole) without fitted edge: scale and pole.
+    first: Pair,
+    factor: Pair,
+    /// Pole of the second coordinate, and its scale by the pole.
+    pole: Pair,
+    own: Pair,
+    is_linear: bool,
+    /// From u, and from s/(s + c) of the second axis, to cells.
+    across: Cells,
+    along: Cells,
+    edge: Cells,
+    /// From H - L to derivatives by the coordinates.
+    across_by: Pair,
+    along_by: Pair,
+    edge_by: Pair,
+    /// Coefficients along the second axis.
+    nodes: u32,
+    factors: [Factors; PAIRS],
 }
 
-/// The smaller of two numbers, neither of which is a NaN: one instruction.
+impl Plane {
+    /// The numbers of a lookup whose others are known.
+    pub(crate) fn new<const A: usize, const O: usize>(lookup: &Lookup<'_, A, O>) -> Self {
+        if A != 2 {
+            return Self::default();
+        }
+        let [first, second] = [&lookup.axes[0], &lookup.axes[1]];
+        let [across, along] = [lookup.cells[0], lookup.cells[1]];
+        let is_fitted = lookup.is_fitted;
+        // scale, factor and pole.
+        let fraction = |axis: &Fixed| {
+            if axis.pole == f64::INFINITY { [axis.scale, 0.0, 1.0] } else { [axis.scale, 1.0, axis.pole] }
+        };
+        // A fitted edge gives six times its numbers.
+        let [scale, factor, pole] = if is_fitted { [0.0, 6.0, 0.0] } else { fraction(first) };
+        let (end, _) = second.coordinate(second.high - second.low);
+        let scale_v = second.scale / if end > 1.0 { end } else { 1.0 };
+        let [second_scale, _, second_pole] = fraction(second);
+        let both = Pair::both;
+        Self {
+            low: [both(first.low), both(second.low)],
+            high: [if is_fitted { first.low + f64::MAX / 8.0 } else { first.high }, second.high],
+            first: Pair([scale, pole]),
+            factor: both(factor),
+            pole: both(second_pole),
+            own: both(second_scale * second_pole),
+            is_linear: second.pole == f64::INFINITY,
+            across: Cells::new(1.0, across),
+            along: Cells::new(scale_v, along),
+            edge: Cells::new(scale_v, lookup.edge_cells[1]),
+            across_by: both(3.0 * across),
+            along_by: both(3.0 * along),
+            edge_by: both(3.0 * lookup.edge_cells[1]),
+            nodes: u32::try_from(lookup.nodes[1]).unwrap_or(0),
+            factors: array::from_fn(|i| {
+                let of =
+                    |numbers: &[f64; O]| [2 * i, 2 * i + 1].map(|o| numbers.get(o).copied().unwrap_or(0.0));
+                Factors::new(of(&lookup.singular), of(&lookup.vanishing))
+            }),
+        }
+    }
+}
+
+/// From a coordinate, but for its scale, to equal cells.
+#[derive(Debug, Clone, Copy, Default)]
+struct Cells {
+    number: Pair,
+    /// The same, just short of the end.
+    inside: Pair,
+}
+
+impl Cells {
+    fn new(scale: f64, number: f64) -> Self {
+        Self { number: Pair::both(scale * number), inside: Pair::both(scale * number * INSIDE) }
+    }
+
+    /// Cell and the place in it, without the checks of a conversion. Where two cells meet it may be either.
+    #[inline]
+    #[expect(clippy::cast_possible_truncation, reason = "the low bits are the number of the cell")]
+    fn at(&self, q: Pair) -> (usize, Pair) {
+        let whole = Pair::both(WHOLE);
+        let cell = (q * self.inside - Pair::both(0.5)) + whole;
+        (cell.0[0].to_bits() as u32 as usize, q * self.number - (cell - whole))
+    }
+}
+
+/// Four coefficients of outputs `2 i` and `2 i + 1` (or the last one twice) from the bytes of a row.
 #[inline]
-fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
+fn four<N: Number, const O: usize>(row: &[u8], i: usize) -> [Pair; 4] {
+    let outputs = [2 * i, (2 * i + 1).min(O - 1)];
+    let at = |k: usize| Pair(outputs.map(|o| N::read(&row[(k * O + o) * N::BYTES..])));
+    [at(0), at(1), at(2), at(3)]
+}
+
+/// An output of a pair's values and derivatives.
+#[inline]
+fn sample<const A: usize>(found: &[Pair; 3], o: usize) -> Sample<A> {
+    let mut gradient = [0.0; A];
+    [gradient[0], gradient[1]] = [found[1].0[o], found[2].0[o]];
+    Sample { value: found[0].0[o], gradient }
 }
 
 impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     /// [`Lookup::at`] of splines where A is 2.
     #[inline]
     pub(crate) fn in_plane<N: Number>(&self, point: [f64; A]) -> Option<[Sample<A>; O]> {
-        let [first, second] = [&self.axes[0], &self.axes[1]];
-        let [x, y] = [point[0], point[1]];
-        let distance = x - first.low;
-        if !(y >= second.low && y <= second.high && distance >= self.least) {
-            return None;
+        if O > 2 {
+            return self.all_in_plane::<N>(point);
         }
-        // The second coordinate; its derivative later.
-        let (v, v_by) = second.coordinate(y - second.low);
-        let v = smaller(v, 1.0);
-        let (s, s_by) = if self.is_root {
-            let r = reciprocal_root(distance);
-            (distance * r, 0.5 * r)
-        } else {
-            (distance, 1.0)
-        };
-        // The first one, with what it takes from the second.
-        let (u, u_by, shift);
-        if self.is_fitted {
-            let cells = self.edge_cells[1];
-            let (cell, t) = cell(v, cells);
-            let edge = on_line(self.edge, cell, &Basis::at(t))?;
-            let [scale, pole] = edge.0;
-            let below = 1.0 / (s + pole);
-            let q = s * below;
-            u = q * scale;
-            u_by = scale * pole * below * below;
-            shift = q * cells * (edge.1[0] - scale * below * edge.1[1]);
-        } else {
-            if x > first.high {
-                return None;
+        let found = self.two_in_plane::<N>(point[0], point[1], 0)?;
+        Some(array::from_fn(|o| sample(&found, o)))
+    }
+
+    fn all_in_plane<N: Number>(&self, point: [f64; A]) -> Option<[Sample<A>; O]> {
+        let mut samples = [Sample { value: 0.0, gradient: [0.0; A] }; O];
+        for (i, samples) in samples.chunks_mut(2).enumerate() {
+            let found = self.two_in_plane::<N>(point[0], point[1], i)?;
+            for (o, to) in samples.iter_mut().enumerate() {
+                *to = sample(&found, o);
             }
-            (u, u_by) = first.coordinate(s);
-            shift = 0.0;
         }
-        if !(u <= 1.0 + 4.0 * f64::EPSILON && u >= self.least_u) {
+        Some(samples)
+    }
+
+    /// Values and derivatives of a pair of outputs. A function of its own, since pairs that are returned in memory stay pairs.
+    #[inline(never)]
+    fn two_in_plane<N: Number>(&self, x: f64, y: f64, i: usize) -> Option<[Pair; 3]> {
+        let plane = &self.plane;
+        let i = if O > 2 { i } else { 0 };
+        let distance = Pair::both(x) - plane.low[0];
+        let is_inside = y >= plane.low[1].0[0] && y <= plane.high[1];
+        if !(is_inside && distance.0[0] >= self.least && x <= plane.high[0]) {
             return None;
         }
-        let u = smaller(u, 1.0);
-        let [across_cells, along_cells] = [self.cells[0], self.cells[1]];
-        let (row, t) = cell(u, across_cells);
-        let (column, w) = cell(v, along_cells);
-        let (across, along) = (Basis::at(t), Basis::at(w));
+        // The second coordinate, but for its scale.
+        let mut q = Pair::both(y) - plane.low[1];
+        let mut own_v = plane.own;
+        if !plane.is_linear {
+            let below = (q + plane.pole).reciprocal();
+            q = q * below;
+            own_v = own_v * below * below;
+        }
+        let (mut s, mut s_by) = (distance, Pair::both(1.0));
+        if self.is_root {
+            let r = distance.reciprocal_root();
+            (s, s_by) = (distance * r, r * Pair::both(0.5));
+        }
+        // The first one, with what it takes from the second.
+        let (mut edge, mut edge_by) = (plane.first, Pair::default());
+        if self.is_fitted {
+            let (cell, t) = plane.edge.at(q);
+            let knots: &[[u8; 16]; 4] = self.edge.as_chunks().0.get(cell..)?.first_chunk()?;
+            let knot = |k: &[u8; 16]| Pair([Double::read(&k[..8]), Double::read(&k[8..])]);
+            let weights = Weights::at(t);
+            let ends = weights.ends(&[knot(&knots[0]), knot(&knots[1]), knot(&knots[2]), knot(&knots[3])]);
+            (edge, edge_by) = (weights.mean(ends), (ends[1] - ends[0]) * plane.edge_by);
+        }
+        let [scale, pole] = edge.0.map(Pair::both);
+        let [scale_by, pole_by] = edge_by.0.map(Pair::both);
+        let below = (s * plane.factor + pole).reciprocal();
+        let part = scale * below;
+        let u = part * s;
+        let own_u = part * (pole * below) * s_by;
+        let shift = (s * below) * (scale_by - part * pole_by);
+        if !(u.0[0] <= 1.0 + 4.0 * f64::EPSILON && u.0[0] >= self.least_u) {
+            return None;
+        }
+        // The patch.
+        let (row, t) = plane.across.at(u);
+        let (column, w) = plane.along.at(q);
+        let (across, along) = (Weights::at(t), Weights::at(w));
         let each = O * N::BYTES;
-        let stride = each * self.nodes[1];
+        let stride = each * plane.nodes as usize;
         let start = row * stride + column * each;
-        let row = |i: usize| {
-            let knots = self.data.get(start + i * stride..start + i * stride + 4 * each)?;
-            let at = |k: usize| array::from_fn(|o| N::read(&knots[k * each + o * N::BYTES..]));
-            let four: [[f64; O]; 4] = [at(0), at(1), at(2), at(3)];
-            Some((weighted(along.value, &four), weighted(along.slope, &four)))
-        };
-        let ((v0, s0), (v1, s1), (v2, s2), (v3, s3)) = (row(0)?, row(1)?, row(2)?, row(3)?);
-        let (values, slopes) = ([v0, v1, v2, v3], [s0, s1, s2, s3]);
-        let g = weighted(across.value, &values);
-        let g_u = weighted(across.slope, &values);
-        let g_v = weighted(across.value, &slopes);
-        let over = if self.least_u > 0.0 { 1.0 / u } else { 1.0 };
-        let [own_u, own_v] = [u_by * s_by, v_by];
-        Some(array::from_fn(|o| {
-            // (1 - u)^j/u^k and its derivative.
-            let (rest, inverse) = (1.0 - self.vanishing[o] * u, 1.0 + self.singular[o] * (over - 1.0));
-            let factor = rest * inverse;
-            let factor_u = -inverse * (self.vanishing[o] + self.singular[o] * rest * over);
-            let by_u = g_u[o] * (factor * across_cells) + g[o] * factor_u;
-            let by_v = g_v[o] * (factor * along_cells) + by_u * shift;
-            let mut gradient = [0.0; A];
-            gradient[0] = by_u * own_u;
-            gradient[1] = by_v * own_v;
-            Sample { value: g[o] * factor, gradient }
-        }))
+        let patch = self.data.get(start..start + (3 * stride + 4 * each))?;
+        let rows = [0, 1, 2, 3].map(|k| patch.get(k * stride..k * stride + 4 * each));
+        let (fourth, third, second, first) = (rows[3]?, rows[2]?, rows[1]?, rows[0]?);
+        let [l0, h0] = along.ends(&four::<N, O>(first, i));
+        let [l1, h1] = along.ends(&four::<N, O>(second, i));
+        let [l2, h2] = along.ends(&four::<N, O>(third, i));
+        let [l3, h3] = along.ends(&four::<N, O>(fourth, i));
+        let low = across.ends(&[l0, l1, l2, l3]);
+        let high = across.ends(&[h0, h1, h2, h3]);
+        let ends = [along.mean([low[0], high[0]]), along.mean([low[1], high[1]])];
+        let g = across.mean(ends);
+        let g_u = ends[1] - ends[0];
+        let g_v = across.mean([high[0] - low[0], high[1] - low[1]]);
+        // The factors, and the chain rule.
+        let u = u.at_most(1.0);
+        let over = if self.least_u > 0.0 { u.reciprocal() } else { Pair::both(1.0) };
+        let [factor, fall] = plane.factors[i].at(u, over);
+        let by_u = g_u * (factor * plane.across_by) - g * fall;
+        let by_v = g_v * (factor * (plane.along_by * own_v)) + by_u * (shift * own_v);
+        Some([g * factor, by_u * own_u, by_v])
     }
 }

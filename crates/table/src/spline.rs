@@ -1,7 +1,5 @@
 //! Cubic B-splines on equal cells: value and gradient per cell width from the 4^A coefficients about a cell.
 
-use core::array;
-
 /// The four basis functions that are not zero in a cell, at t in \[0, 1\] of it, and their derivatives.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Basis {
@@ -136,18 +134,4 @@ impl<const A: usize> Spline<'_, A> {
         }
         sum
     }
-}
-
-/// Two numbers along a single axis, in double precision, and their derivatives per cell: what an edge is for two axes.
-#[inline]
-pub(crate) fn on_line(data: &[u8], cell: usize, basis: &Basis) -> Option<([f64; 2], [f64; 2])> {
-    let knots: &[u8; 64] = data.get(16 * cell..)?.first_chunk()?;
-    let four: [[f64; 2]; 4] = array::from_fn(|k| array::from_fn(|o| Double::read(&knots[16 * k + 8 * o..])));
-    Some((weighted(basis.value, &four), weighted(basis.slope, &four)))
-}
-
-/// The sum of four coefficients of each output with weights.
-#[inline]
-pub(crate) fn weighted<const O: usize>(w: [f64; 4], four: &[[f64; O]; 4]) -> [f64; O] {
-    array::from_fn(|o| (w[0] * four[0][o] + w[1] * four[1][o]) + (w[2] * four[2][o] + w[3] * four[3][o]))
 }

@@ -11,6 +11,7 @@ use crate::format::{
     f64_at, output_at, u16_at, u32_at, u64_at,
 };
 use crate::lookup::Lookup;
+use crate::plane::Plane;
 use crate::sqrt::reciprocal_root;
 
 /// Bytes of the checksum.
@@ -271,6 +272,7 @@ impl<'a> Table<'a> {
             least_u: 0.0,
             singular: [0.0; O],
             vanishing: [0.0; O],
+            plane: Plane::default(),
         };
         for i in 0..A {
             let axis = axis_at(self.bytes, HEADER + i * AXIS)?;
@@ -287,6 +289,7 @@ impl<'a> Table<'a> {
                 lookup.least_u = LEAST_SINGULAR;
             }
         }
+        lookup.plane = Plane::new(&lookup);
         Ok(lookup)
     }
 

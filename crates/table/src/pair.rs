@@ -1,0 +1,130 @@
+//! Two numbers that take the same steps: the compiler makes packed instructions of them.
+
+use core::array;
+use core::ops::{Add, Mul, Sub};
+
+use crate::sqrt::reciprocal_root;
+
+/// Two numbers, aligned so that an instruction takes them from memory.
+#[derive(Debug, Clone, Copy, Default)]
+#[repr(align(16))]
+pub(crate) struct Pair(pub(crate) [f64; 2]);
+
+impl Pair {
+    /// The same number twice.
+    #[inline]
+    pub(crate) const fn both(x: f64) -> Self {
+        Self([x, x])
+    }
+
+    #[inline]
+    pub(crate) fn reciprocal(self) -> Self {
+        Self(self.0.map(|x| 1.0 / x))
+    }
+
+    #[inline]
+    pub(crate) fn reciprocal_root(self) -> Self {
+        Self(self.0.map(reciprocal_root))
+    }
+
+    /// The smaller of each and a number, none of which is a NaN.
+    #[inline]
+    pub(crate) fn at_most(self, most: f64) -> Self {
+        Self(self.0.map(|x| if x < most { x } else { most }))
+    }
+}
+
+impl Add for Pair {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self([self.0[0] + other.0[0], self.0[1] + other.0[1]])
+    }
+}
+
+impl Sub for Pair {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self([self.0[0] - other.0[0], self.0[1] - other.0[1]])
+    }
+}
+
+impl Mul for Pair {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        Self([self.0[0] * other.0[0], self.0[1] * other.0[1]])
+    }
+}
+
+/// Of the four coefficients about a cell, in two steps: six times de Boor's two numbers L and H of the step before the last, then their mean
+/// with the weights 1 - t and t. The slope is half of H - L.
+///
+/// ```text
+/// L = (1 - t)^2 k0 + (4 - 2 t^2) k1 + (1 + t)^2 k2      H = (2 - t)^2 k1 + (4 - 2 (1 - t)^2) k2 + t^2 k3
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Weights {
+    low: [Pair; 3],
+    high: [Pair; 3],
+    rest: Pair,
+    t: Pair,
+}
+
+impl Weights {
+    #[inline]
+    pub(crate) fn at(t: Pair) -> Self {
+        let [one, four] = [1.0, 4.0].map(Pair::both);
+        let rest = one - t;
+        let (below, above) = (rest * rest, t * t);
+        let (next, last) = (one + t, one + rest);
+        Self {
+            low: [below, four - (above + above), next * next],
+            high: [last * last, four - (below + below), above],
+            rest,
+            t,
+        }
+    }
+
+    /// L and H.
+    #[inline]
+    pub(crate) fn ends(&self, four: &[Pair; 4]) -> [Pair; 2] {
+        let sum = |w: &[Pair; 3], at: usize| (w[0] * four[at] + w[1] * four[at + 1]) + w[2] * four[at + 2];
+        [sum(&self.low, 0), sum(&self.high, 1)]
+    }
+
+    /// The mean of two ends.
+    #[inline]
+    pub(crate) fn mean(&self, [low, high]: [Pair; 2]) -> Pair {
+        self.rest * low + self.t * high
+    }
+}
+
+/// The factors (1 - u)^j/u^k of two outputs, over 36, as a + b u + c/u.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Factors {
+    constant: Pair,
+    linear: Pair,
+    inverse: Pair,
+}
+
+impl Factors {
+    /// From k and j of both: 0 or 1.
+    pub(crate) fn new(singular: [f64; 2], vanishing: [f64; 2]) -> Self {
+        let each =
+            |number: fn(f64, f64) -> f64| Pair(array::from_fn(|o| number(singular[o], vanishing[o]) / 36.0));
+        Self {
+            constant: each(|k, j| 1.0 - k - j * k),
+            linear: each(|k, j| j * (k - 1.0)),
+            inverse: each(|k, _| k),
+        }
+    }
+
+    /// At u and 1/u: the factors, and by how much they fall with u.
+    #[inline]
+    pub(crate) fn at(&self, u: Pair, over: Pair) -> [Pair; 2] {
+        let inverse = self.inverse * over;
+        [(self.constant + self.linear * u) + inverse, inverse * over - self.linear]
+    }
+}
