@@ -1,6 +1,6 @@
-//! One muscle of a table: the other axes fixed, so that a lookup along axis 0 costs a third.
+//! One muscle of a table: the other axes fixed, so that a lookup along axis 0 needs neither the table nor the edge.
 
-use crate::coordinate::{cell, rooted};
+use crate::coordinate::{cell, near, rooted};
 use crate::format::Form;
 use crate::lookup::{Lookup, Sample};
 use crate::spline::{Basis, Double, Number, Single, Spline};
@@ -31,7 +31,6 @@ pub struct Curve<const A: usize, const O: usize, const N: usize> {
     scale_by: [f64; A],
     pole_by: [f64; A],
     cells: f64,
-    nodes: usize,
     /// Of each coefficient along axis 0: the outputs, then their derivatives by the axes 1..
     knots: [[[f64; O]; A]; N],
     singular: [f64; O],
@@ -59,7 +58,6 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
             scale_by: [0.0; A],
             pole_by: [0.0; A],
             cells: self.cells[0],
-            nodes: self.nodes[0],
             knots: [[[0.0; O]; A]; N],
             singular: self.singular,
             vanishing: self.vanishing,
@@ -131,7 +129,7 @@ impl<const A: usize, const O: usize, const N: usize> Curve<A, O, N> {
         if !(u <= 1.0 + 4.0 * f64::EPSILON && u >= self.least_u) {
             return None;
         }
-        let (cell, t) = cell(u.min(1.0), self.nodes);
+        let (cell, t) = near(u, self.cells);
         let basis = Basis::at(t);
         let knots: &[[[f64; O]; A]; 4] = self.knots.get(cell..)?.first_chunk()?;
         let over = if self.least_u > 0.0 { 1.0 / u } else { 1.0 };

@@ -4,15 +4,11 @@
 
 use core::array;
 
-use crate::coordinate::Fixed;
+use crate::coordinate::{Fixed, INSIDE, WHOLE};
 use crate::lookup::{Lookup, Sample};
 use crate::pair::{Factors, Pair, Weights};
 use crate::spline::{Double, Number};
 
-/// 1.5 2^52: added to a small number, the sum is a whole number whose low bits are its own.
-const WHOLE: f64 = 6_755_399_441_055_744.0;
-/// Keeps a coordinate of 1 and the rounding above it in the last cell.
-const INSIDE: f64 = 1.0 - 8.0 * f64::EPSILON;
 /// Most pairs of outputs.
 const PAIRS: usize = crate::format::MOST_OUTPUTS / 2;
 
