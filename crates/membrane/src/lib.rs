@@ -1,6 +1,7 @@
 //! Membrane finite elements for pressurised fibre-reinforced membranes: from a mesh to converged equilibrium states.
 
 mod assembly;
+pub mod case;
 mod dofs;
 mod element;
 mod error;
@@ -21,5 +22,5 @@ pub use error::MembraneError;
 pub use fields::{Fields, GroupFields, SheetField, Summary, ThreadField};
 pub use load::{Gas, Inflation, Load};
 pub use material::{Cloth, Law, Orthotropic, Sheet, Tension, Thread};
-pub use solver::{Effort, Solver, State, Tolerance};
+pub use solver::{Copies, Effort, Solver, State, Tolerance};
 pub use structure::{Fitting, Part, Structure, Support};

@@ -1,6 +1,9 @@
 //! A mesh: nodes, and blocks of cells with the names by which a case gives them material, load and support.
 
+mod any_format;
 mod error;
+mod msh;
+mod vtu;
 
 pub use error::MeshError;
 

@@ -100,7 +100,7 @@ impl Solver {
 
 impl Load {
     /// The load at a share of the way to another.
-    fn towards(&self, other: &Self, share: f64) -> Self {
+    pub(crate) fn towards(&self, other: &Self, share: f64) -> Self {
         let mix = |a: f64, b: f64| if share >= 1.0 { b } else { a + share * (b - a) };
         let inflation = match (self.inflation, other.inflation) {
             (Inflation::Pressure(a), Inflation::Pressure(b)) => Inflation::Pressure(mix(a, b)),

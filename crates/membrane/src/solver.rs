@@ -62,6 +62,24 @@ pub struct State {
     pub iterations: usize,
 }
 
+/// How often the structure stands in the whole muscle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Copies {
+    /// Round the z axis, side by side: their forces on a fitting add up.
+    pub around: f64,
+    /// Along it, one behind the other: 2 for half a muscle on its middle plane. Their lengths add up, and the force goes through all.
+    pub along: f64,
+}
+
+impl Copies {
+    /// The whole.
+    pub const ONE: Self = Self { around: 1.0, along: 1.0 };
+
+    fn all(self) -> f64 {
+        self.around * self.along
+    }
+}
+
 /// What has been spent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Effort {
@@ -80,7 +98,7 @@ pub struct Effort {
 /// Finds equilibria of a structure.
 pub struct Solver {
     pub(crate) structure: Structure,
-    pub(crate) copies: f64,
+    pub(crate) copies: Copies,
     tolerance: Tolerance,
     assembly: Assembly,
     factor: Factor,
@@ -134,11 +152,11 @@ const HOLDS: usize = 40;
 const STIFF: f64 = 3e2;
 
 impl Solver {
-    /// For a structure that stands for `copies` of itself (1; 2 n for half a lobe of n).
+    /// For a structure that stands for `copies` of itself: half a lobe of n over half the length for 2 n around and 2 along.
     ///
     /// # Errors
     /// [`MembraneError::Memory`].
-    pub fn new(structure: Structure, copies: f64, tolerance: Tolerance) -> Result<Self, MembraneError> {
+    pub fn new(structure: Structure, copies: Copies, tolerance: Tolerance) -> Result<Self, MembraneError> {
         let sets = sets(&structure);
         let assembly = Assembly::new(&sets, &structure.dofs);
         // One thread for the factors: a second one brings little on a surface, and would change the last digits.
@@ -186,8 +204,8 @@ impl Solver {
         let [energy, volume] = self.measure(&y);
         State {
             pressure: 0.0,
-            volume: volume * self.copies,
-            energy: energy * self.copies,
+            volume: volume * self.copies.all(),
+            energy: energy * self.copies.all(),
             fittings: vec![0.0; self.structure.fittings.len()],
             forces: vec![0.0; self.structure.fittings.len()],
             residual: 0.0,
@@ -215,7 +233,7 @@ impl Solver {
         for _ in 0..HOLDS {
             let (residual, unstable) = match load.inflation {
                 Inflation::Volume(volume) => {
-                    self.with_volume(load, volume / self.copies, &mut y, &mut pressure)?
+                    self.with_volume(load, volume / self.copies.all(), &mut y, &mut pressure)?
                 }
                 Inflation::Pressure(_) | Inflation::Gas(_) => self.downhill(load, &mut y, &mut pressure)?,
             };
@@ -246,9 +264,9 @@ impl Solver {
             Inflation::Volume(_) => start.pressure,
         };
         let area = (self.size * self.size).min(4.0 * start.volume.abs().powf(2.0 / 3.0).max(1e-3 * self.size.powi(2)));
-        let threads = self.structure.threads() / self.copies;
+        let threads = self.structure.threads();
         let force = pressure.abs() * area + load.fittings_force(&self.structure.fittings);
-        self.penalty = STIFF * force.max(f64::MIN_POSITIVE) / self.copies / threads.max(1.0);
+        self.penalty = STIFF * force.max(f64::MIN_POSITIVE) / self.copies.around / threads.max(1.0);
     }
 
     fn measure(&mut self, y: &[f64]) -> [f64; 2] {
@@ -294,7 +312,7 @@ impl Solver {
         fittings
             .zip(&load.fittings)
             .filter(|((kind, _), _)| **kind == Fitting::Loaded)
-            .map(|((_, dof), force)| (*dof as usize, force / self.copies))
+            .map(|((_, dof), force)| (*dof as usize, force / self.copies.around))
             .collect()
     }
 
@@ -302,7 +320,7 @@ impl Solver {
     fn potential(&self, load: &Load, y: &[f64], energy: f64, volume: f64) -> f64 {
         let inside = match load.inflation {
             Inflation::Pressure(p) => -p * volume,
-            Inflation::Gas(gas) => gas.energy(volume * self.copies) / self.copies,
+            Inflation::Gas(gas) => gas.energy(volume * self.copies.all()) / self.copies.all(),
             Inflation::Volume(_) => 0.0,
         };
         energy + inside - self.outside(load).iter().map(|(dof, force)| force * y[*dof]).sum::<f64>()
@@ -416,8 +434,8 @@ impl Solver {
             let (p, closure) = match load.inflation {
                 Inflation::Gas(gas) => {
                     let [_, volume] = self.measure(y);
-                    let (p, slope) = gas.pressure(volume * self.copies);
-                    (p, Closure::Gas { slope: -slope * self.copies })
+                    let (p, slope) = gas.pressure(volume * self.copies.all());
+                    (p, Closure::Gas { slope: -slope * self.copies.all() })
                 }
                 Inflation::Pressure(p) => (p, Closure::Pressure),
                 Inflation::Volume(_) => (*pressure, Closure::Pressure),
@@ -583,14 +601,14 @@ impl Solver {
         let dofs = &self.structure.dofs.fittings;
         State {
             pressure,
-            volume: self.totals.volume * self.copies,
-            energy: self.totals.energy * self.copies,
+            volume: self.totals.volume * self.copies.all(),
+            energy: self.totals.energy * self.copies.all(),
             fittings: dofs.iter().map(|dof| y[*dof as usize]).collect(),
             forces: dofs
                 .iter()
                 .map(|dof| {
                     let dof = *dof as usize;
-                    self.copies * (self.totals.force[dof] - pressure * self.totals.sweep[dof])
+                    self.copies.around * (self.totals.force[dof] - pressure * self.totals.sweep[dof])
                 })
                 .collect(),
             residual,

@@ -2,7 +2,7 @@
 
 use bulge_membrane::mesher::{Grading, revolved};
 use bulge_membrane::{
-    Cloth, Fitting, Inflation, Law, Load, Mesh, Part, RingLayer, Sheet, Solver, State, Structure, Support, Thread, Tolerance,
+    Cloth, Copies, Fitting, Inflation, Law, Load, Mesh, Part, RingLayer, Sheet, Solver, State, Structure, Support, Thread, Tolerance,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -20,7 +20,7 @@ fn clamped(mesh: &Mesh, layers: Vec<RingLayer>) -> Solver {
     let parts = [("wall".to_owned(), Part::Revolved { layers })];
     let structure =
         Structure::new(mesh, &parts, &supports, &[Fitting::Placed, Fitting::Placed]).unwrap();
-    Solver::new(structure, 1.0, Tolerance::default()).unwrap()
+    Solver::new(structure, Copies::ONE, Tolerance::default()).unwrap()
 }
 
 fn at(solver: &mut Solver, pressure: f64, place: f64, from: &State) -> State {
@@ -92,7 +92,7 @@ fn a_sphere_of_rubber() {
     ];
     let parts = [("wall".to_owned(), Part::Revolved { layers: vec![rubber(law)] })];
     let structure = Structure::new(&mesh, &parts, &supports, &[]).unwrap();
-    let mut solver = Solver::new(structure, 2.0, Tolerance::default()).unwrap();
+    let mut solver = Solver::new(structure, Copies { around: 1.0, along: 2.0 }, Tolerance::default()).unwrap();
     let rest = solver.at_rest();
     let mut state = rest;
     for (stretch, pressure) in [(1.1_f64, 0.791_865_581_720_405), (1.5, 1.216_278_006_401_46), (2.0, 0.984_375), (3.0, 0.665_752_171_925_011)] {

@@ -1,7 +1,10 @@
 //! Settings files: tables of TOML with the place of every key, values with units, and a cure for each mistake.
 
 use crate::dimension::Dimension;
+use crate::file::read;
 use crate::file_error::FileError;
+use crate::muscle::Muscle;
+use crate::presets::{PRESETS, PresetError, preset};
 use crate::units::{self, Quantity};
 use std::borrow::Cow;
 use std::fmt::Display;
@@ -187,11 +190,18 @@ impl<'a> Settings<'a> {
     /// # Errors
     /// If the value is no such quantity.
     pub fn quantity(&self, name: &str, dimension: Dimension) -> Result<Option<f64>, FileError> {
-        let Some(value) = self.get(name) else { return Ok(None) };
+        self.get(name).map(|value| self.quantity_of(name, value, dimension)).transpose()
+    }
+
+    /// The same of a value within that of a key.
+    ///
+    /// # Errors
+    /// If the value is no such quantity.
+    pub fn quantity_of(&self, name: &str, value: Setting<'a>, dimension: Dimension) -> Result<f64, FileError> {
         let found =
             units::any(self.number(name, value)?).map_err(|error| self.unreadable(name, value, error))?;
         if found.dimension == dimension {
-            return Ok(Some(found.si));
+            return Ok(found.si);
         }
         let what =
             format!("`{name}` is {}, but must be {}", found.dimension.describe(), dimension.describe());
@@ -211,6 +221,18 @@ impl<'a> Settings<'a> {
         let refused = || self.wrong_type(name, value, "a whole number, 1 or more");
         let number = value.whole().and_then(|number| N::try_from(number).ok());
         number.map(Some).ok_or_else(refused)
+    }
+
+    /// Yes or no: `true` or `false`.
+    ///
+    /// # Errors
+    /// If the value is something else.
+    pub fn flag(&self, name: &str) -> Result<Option<bool>, FileError> {
+        let Some(value) = self.get(name) else { return Ok(None) };
+        match value.value.get_ref() {
+            DeValue::Boolean(flag) => Ok(Some(*flag)),
+            _ => Err(self.wrong_type(name, value, "`true` or `false`")),
+        }
     }
 
     /// Text in quotes.
@@ -235,6 +257,27 @@ impl<'a> Settings<'a> {
         let near = nearest(text, words.iter().copied()).or(words.first().copied()).unwrap_or_default();
         let what = format!("`{name}` is \"{}\", but must be one of: {}", shortened(text), words.join(", "));
         Err(self.error(value.span(), what, format!("write `{name} = \"{near}\"`")))
+    }
+
+    /// The muscle that a key names: a muscle file in `folder`, or a shipped muscle where no file of that name exists.
+    ///
+    /// # Errors
+    /// If the key is absent, or names no muscle, or its file can't be read.
+    pub fn muscle(&self, name: &str, folder: Option<&Path>) -> Result<Muscle, FileError> {
+        let named = self.text(name)?.ok_or_else(|| self.missing(name))?;
+        let path = folder.map_or_else(|| named.into(), |folder| folder.join(named));
+        let is_shipped = PRESETS.iter().any(|preset| preset.name == named);
+        let looks_like_a_name = !named.contains(['/', '.', '\\']);
+        if !(is_shipped || looks_like_a_name) || (path.exists() && !named.is_empty()) {
+            return read(path);
+        }
+        preset(named).map_err(|error| match error {
+            PresetError::File(error) => error,
+            PresetError::Unknown { name: unknown, instead } => {
+                let what = format!("`{unknown}` is neither a muscle file nor a shipped muscle");
+                self.error(self.value_span(name), what, instead)
+            }
+        })
     }
 
     /// A table within this one: what messages call it, and the keys that it may have.
@@ -322,8 +365,13 @@ impl<'a> Settings<'a> {
     }
 
     fn write(&self, name: &str) -> String {
-        let example = self.keys.iter().find(|(key, _)| *key == name).map_or("", |(_, example)| example);
-        format!("write such as `{example}`")
+        format!("write such as `{}`", self.example(name))
+    }
+
+    /// The line that shows how a key is written.
+    #[must_use]
+    pub fn example(&self, name: &str) -> &'static str {
+        self.keys.iter().find(|(key, _)| *key == name).map_or("", |(_, example)| example)
     }
 }
 

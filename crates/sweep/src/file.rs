@@ -10,7 +10,7 @@ pub(crate) mod wish;
 
 use bulge_fibre::Approach;
 use bulge_muscles::settings::{Document, FileKind, Keys, Settings};
-use bulge_muscles::{Dimension, FileError, Muscle, PRESETS, PresetError, preset, read};
+use bulge_muscles::{Dimension, FileError, Muscle};
 use std::path::Path;
 
 use axes::Placed;
@@ -123,7 +123,7 @@ impl Plan {
 
 fn plan(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Plan, FileError> {
     settings.check_keys()?;
-    let muscle = muscle(settings, "muscle", folder)?;
+    let muscle = settings.muscle("muscle", folder)?;
     let axes = axes::axes(settings, &muscle)?;
     let pressure_pa = pressure(settings, &axes)?;
     let family = Family { muscle: &muscle, pressure: pressure_pa, axes: &axes };
@@ -161,24 +161,6 @@ fn name(settings: &Settings<'_>, muscle: &Muscle) -> Result<String, FileError> {
         return Err(settings.error(settings.value_span("name"), "`name` is empty", instead));
     }
     Ok(name.to_owned())
-}
-
-/// The muscle that a key names: a muscle file, or a shipped muscle where no file of that name exists.
-pub(crate) fn muscle(settings: &Settings<'_>, key: &str, folder: Option<&Path>) -> Result<Muscle, FileError> {
-    let name = settings.text(key)?.ok_or_else(|| settings.missing(key))?;
-    let path = folder.map_or_else(|| name.into(), |folder| folder.join(name));
-    let shipped = PRESETS.iter().any(|preset| preset.name == name);
-    let looks_like_a_name = !name.contains(['/', '.', '\\']);
-    if !(shipped || looks_like_a_name) || (path.exists() && !name.is_empty()) {
-        return read(path);
-    }
-    preset(name).map_err(|error| match error {
-        PresetError::File(error) => error,
-        PresetError::Unknown { name, instead } => {
-            let what = format!("`{name}` is neither a muscle file nor a shipped muscle");
-            settings.error(settings.value_span(key), what, instead)
-        }
-    })
 }
 
 fn pressure(settings: &Settings<'_>, axes: &[Placed<'_>]) -> Result<f64, FileError> {

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::{Joint, JointMuscle, JointOutput, Linkage, Side};
 use crate::file::scale::Scale;
-use crate::file::{muscle, wish};
+use crate::file::wish;
 
 /// What messages call the file.
 const KIND: FileKind = FileKind { name: "joint", file: "joint.toml", line: "radius = \"40 mm\"" };
@@ -116,7 +116,7 @@ fn muscles(settings: &Settings<'_>, folder: Option<&Path>) -> Result<[JointMuscl
     let [agonist, antagonist] = each(settings, "muscle", ["agonist", "antagonist"])?;
     let contractions = each(settings, "contraction", ["agonist_contraction", "antagonist_contraction"])?;
     let one = |side: Side, key: &'static str, contraction: &'static str| {
-        let muscle = muscle(settings, key, folder)?;
+        let muscle = settings.muscle(key, folder)?;
         let value = settings.quantity(contraction, Dimension::NONE)?;
         let value = value.ok_or_else(|| settings.missing(contraction))?;
         if value.abs() >= 1.0 {

@@ -1,0 +1,147 @@
+//! The loads of a case.
+
+use bulge_muscles::settings::{Keys, Settings};
+use bulge_muscles::{Dimension, FileError};
+
+use super::read::{in_range, positive};
+use super::source::Source;
+use super::{Filling, Step};
+use crate::structure::Fitting;
+
+const KEYS: Keys = &[
+    ("pressure", "pressure = \"3 bar\""),
+    ("volume", "volume = \"34 ml\""),
+    ("gas", "gas = \"isothermal\""),
+    ("ambient", "ambient = \"1.013 bar\""),
+    ("places", "places = { top = \"-5 mm\" }"),
+    ("forces", "forces = { top = \"-5 N\" }"),
+    ("contraction", "contraction = \"10 %\""),
+    ("states", "states = 4"),
+];
+
+const GASES: &[(&str, f64)] = &[("isothermal", 1.0), ("adiabatic", 1.4)];
+/// Pressure of the air around, Pa.
+const AMBIENT: f64 = 101_325.0;
+/// Most states of a step.
+const MOST_STATES: u32 = 100_000;
+
+pub(super) fn read(
+    settings: &Settings<'_>,
+    source: &Source,
+    fittings: &[(String, Fitting)],
+) -> Result<Vec<Step>, FileError> {
+    let tables = settings.tables("step", "a `[[step]]`", KEYS)?.unwrap_or_default();
+    if tables.is_empty() {
+        return Err(settings.missing("step"));
+    }
+    let mut steps: Vec<Step> = Vec::new();
+    for table in &tables {
+        table.check_keys()?;
+        let step = step(table, source, fittings, steps.last())?;
+        steps.push(step);
+    }
+    Ok(steps)
+}
+
+fn step(
+    table: &Settings<'_>,
+    source: &Source,
+    fittings: &[(String, Fitting)],
+    before: Option<&Step>,
+) -> Result<Step, FileError> {
+    let states = match table.count::<u32>("states")? {
+        None => 1,
+        Some(states) if (1..=MOST_STATES).contains(&states) => states as usize,
+        Some(states) => {
+            let what = format!("{states} states are not possible: 1 to {MOST_STATES} are");
+            return Err(table.error(table.value_span("states"), what, "write such as `states = 10`"));
+        }
+    };
+    Ok(Step { filling: filling(table, before)?, fittings: ends(table, source, fittings)?, states })
+}
+
+fn filling(table: &Settings<'_>, before: Option<&Step>) -> Result<Filling, FileError> {
+    let keys = ["pressure", "volume", "gas"];
+    let given: Vec<&str> = keys.into_iter().filter(|key| table.get(key).is_some()).collect();
+    if table.get("ambient").is_some() && given != ["gas"] {
+        let what = "`ambient` is the pressure around a closed amount of gas";
+        return Err(table.error(table.key_span("ambient"), what, "leave it out, or write `gas = \"isothermal\"`"));
+    }
+    match given[..] {
+        ["pressure"] => {
+            let at = in_range(table, "pressure", Dimension::PRESSURE, |p| p >= 0.0, "at least 0 (a gauge pressure)")?;
+            Ok(Filling::Pressure(at.unwrap_or_default()))
+        }
+        ["volume"] => Ok(Filling::Volume(positive(table, "volume", Dimension::VOLUME)?.unwrap_or_default())),
+        ["gas"] => {
+            let gamma = table.word("gas", GASES)?.unwrap_or(1.0);
+            if before.is_none() {
+                let what = "the first step has no gas in it yet";
+                return Err(table.error(table.key_span("gas"), what, "write a step with a `pressure` before it"));
+            }
+            let ambient = in_range(table, "ambient", Dimension::PRESSURE, |p| p >= 0.0, "at least 0")?;
+            Ok(Filling::Closed { gamma, ambient: ambient.unwrap_or(AMBIENT) })
+        }
+        [] => match before {
+            // As before, with other fittings.
+            Some(step) => Ok(step.filling),
+            None => Err(table.missing("pressure")),
+        },
+        [first, second, ..] => {
+            let what = format!("a step can't prescribe `{first}` and `{second}`");
+            Err(table.error(table.key_span(second), what, "keep one of them"))
+        }
+        [_] => Err(table.missing("pressure")),
+    }
+}
+
+/// What each fitting does.
+fn ends(
+    table: &Settings<'_>,
+    source: &Source,
+    fittings: &[(String, Fitting)],
+) -> Result<Vec<Option<f64>>, FileError> {
+    let mut ends = vec![None; fittings.len()];
+    for (key, kind, dimension) in
+        [("places", Fitting::Placed, Dimension::LENGTH), ("forces", Fitting::Loaded, Dimension::FORCE)]
+    {
+        let Some(value) = table.get(key) else { continue };
+        let entries = value.entries().ok_or_else(|| table.wrong_type(key, value, "a table of fittings"))?;
+        for (name, value) in entries {
+            let Some(fitting) = fittings.iter().position(|(known, _)| known == name) else {
+                let known: Vec<&str> = fittings.iter().map(|(name, _)| name.as_str()).collect();
+                let instead = if known.is_empty() { "add a support of the kind `fitting`".to_owned() } else { format!("there is {}", known.join(", ")) };
+                return Err(table.error(value.span(), format!("there is no fitting `{name}`"), instead));
+            };
+            if fittings[fitting].1 != kind {
+                let (what, instead) = match kind {
+                    Fitting::Placed => ("the force on this fitting is prescribed, not its place", "write `forces`, or `motion = \"placed\"` at its support"),
+                    Fitting::Loaded => ("the place of this fitting is prescribed, not its force", "write `places`, or `motion = \"loaded\"` at its support"),
+                };
+                return Err(table.error(value.span(), what, instead));
+            }
+            ends[fitting] = Some(table.quantity_of(key, value, dimension)?);
+        }
+    }
+    if let Some(contraction) = table.quantity("contraction", Dimension::NONE)? {
+        let Some(length) = source.length else {
+            let what = "a contraction needs the length between the fittings";
+            return Err(table.error(table.key_span("contraction"), what, "add `length` to `[scale]`, or write `places`"));
+        };
+        let top = fittings.iter().rposition(|(_, kind)| *kind == Fitting::Placed);
+        let Some(top) = top else {
+            let what = "a contraction needs a fitting whose place is prescribed";
+            return Err(table.error(table.key_span("contraction"), what, "add a support of the kind `fitting`"));
+        };
+        if !(-1.0..1.0).contains(&contraction) {
+            let what = "the contraction is not possible: it must be above -100 % and below 100 %";
+            return Err(table.error(table.value_span("contraction"), what, "write such as `contraction = \"20 %\"`"));
+        }
+        if ends[top].is_some() {
+            let what = "a step can't prescribe the place of a fitting and a contraction";
+            return Err(table.error(table.key_span("contraction"), what, "keep one of them"));
+        }
+        ends[top] = Some(-contraction * length / source.copies.along);
+    }
+    Ok(ends)
+}

@@ -1,0 +1,63 @@
+//! The XML of a VTK file, and the data appended to it, which may be bytes that no XML allows.
+
+use super::super::MeshError;
+use super::super::msh::{find, quoted};
+use std::borrow::Cow;
+
+const BEGIN: &[u8] = b"<AppendedData";
+const END: &[u8] = b"</AppendedData>";
+
+/// What to do about a file that is shorter than it should be.
+pub(super) const CUT: &str =
+    "the file is cut or damaged: copy it again, or save it again with the program that wrote it";
+
+/// The two parts of a file.
+pub(super) struct Parts<'a> {
+    /// Everything but the appended data.
+    pub(super) xml: Cow<'a, str>,
+    /// What follows the underscore of the appended data.
+    pub(super) appended: &'a [u8],
+}
+
+/// Cuts the appended data out of a file.
+pub(super) fn parts<'a>(bytes: &'a [u8], origin: &str) -> Result<Parts<'a>, MeshError> {
+    let error = |what: String, instead: &str| MeshError {
+        file: origin.to_owned(),
+        what,
+        instead: instead.to_owned(),
+    };
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let start = bytes.trim_ascii_start();
+    if start.starts_with(b"# vtk DataFile") {
+        let instead = "open it with ParaView and save it as an unstructured grid of the XML kind (.vtu)";
+        return Err(error("the file is of the legacy kind of VTK".to_owned(), instead));
+    }
+    if !start.starts_with(b"<") {
+        let what = format!("the file begins with `{}`, not as XML does", quoted(start));
+        return Err(error(what, "give an unstructured grid of VTK (.vtu)"));
+    }
+    let text = |bytes: &'a [u8]| {
+        std::str::from_utf8(bytes).map_err(|bad| {
+            let before = bytes.get(..bad.valid_up_to()).unwrap_or_default();
+            let line = before.split(|byte| *byte == b'\n').count();
+            let what = "the XML isn't UTF-8".to_owned();
+            MeshError { file: format!("{origin}:{line}"), what, instead: CUT.to_owned() }
+        })
+    };
+    let Some(begin) = find(bytes, BEGIN) else {
+        return Ok(Parts { xml: Cow::Borrowed(text(bytes)?), appended: &[] });
+    };
+    let cut = || error("the file ends inside the appended data".to_owned(), CUT);
+    let inside = begin + bytes.get(begin..).and_then(|tag| find(tag, b">")).ok_or_else(cut)? + 1;
+    let (head, rest) = bytes.split_at_checked(inside).ok_or_else(cut)?;
+    if head.ends_with(b"/>") {
+        return Ok(Parts { xml: Cow::Borrowed(text(bytes)?), appended: &[] });
+    }
+    // The last one: raw data may contain anything.
+    let end = rest.windows(END.len()).rposition(|window| window == END).ok_or_else(cut)?;
+    let (data, tail) = rest.split_at_checked(end).ok_or_else(cut)?;
+    let Some(appended) = data.trim_ascii_start().strip_prefix(b"_") else {
+        return Err(error("the appended data don't begin with an underscore".to_owned(), CUT));
+    };
+    Ok(Parts { xml: Cow::Owned(text(head)?.to_owned() + text(tail)?), appended })
+}
