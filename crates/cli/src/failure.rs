@@ -5,6 +5,8 @@ use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
 use bulge_inference::InferenceError;
 use bulge_measurements::MeasurementError;
+use bulge_membrane::MembraneError;
+use bulge_membrane::case::CaseError;
 use bulge_model::{ExtendedError, ModelError};
 use bulge_muscles::{FileError, PresetError, UnitError};
 use bulge_report::PlotError;
@@ -59,6 +61,8 @@ pub(crate) enum Failure {
     Table(#[from] TableError),
     #[error("{0}")]
     Outside(String),
+    #[error("{origin}: {source}{kept}")]
+    Membrane { origin: String, source: Box<CaseError>, kept: String },
     #[error("the result cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
     #[error("{failed} of {all} checks failed:\n{table}")]
@@ -89,6 +93,11 @@ impl Failure {
             Self::Tabulate(error) => match error.as_ref() {
                 TabulateError::Build(BuildError::NoValue(_)) => 3,
                 _ => 1,
+            },
+            Self::Membrane { source, .. } => match source.as_ref() {
+                CaseError::State { source: MembraneError::LimitPoint { .. }, .. } => 3,
+                CaseError::State { .. } => 4,
+                CaseError::Structure(_) => 1,
             },
             Self::NotConverged(_) => 4,
             _ => 1,

@@ -10,6 +10,7 @@ mod effects;
 mod failure;
 mod files;
 mod fit;
+mod membrane;
 mod muscle;
 mod next;
 mod plan;
@@ -48,6 +49,8 @@ enum Command {
     Shape(shape::ShapeCommand),
     /// Isobaric characteristics: force and volume over the contraction
     Curve(curve::CurveCommand),
+    /// A finite-element membrane case: from a mesh to shape, force, wrinkles and VTK
+    Membrane(membrane::MembraneCommand),
     /// A parallel, resumable sweep of a family of muscles, into Parquet files and a certified table
     Sweep(sweep::SweepCommand),
     /// Look into a table: values, gradients, certified errors
@@ -90,6 +93,7 @@ fn main() -> ExitCode {
         Command::Demo(command) => command.run(),
         Command::Shape(command) => command.run(),
         Command::Curve(command) => command.run(),
+        Command::Membrane(command) => command.run(),
         Command::Sweep(command) => command.run(),
         Command::Table(command) => command.run(),
         Command::Compare(command) => command.run(),

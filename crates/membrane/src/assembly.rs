@@ -3,8 +3,7 @@
 //! Where each number of each element goes is found once. A sum then runs over the sources of one entry, in the order of the elements: the
 //! result doesn't depend on who computed what when.
 
-use crate::dofs::{Dofs, NONE, NodeDofs};
-use crate::element::Vector;
+use crate::dofs::{Dofs, NONE};
 use crate::set::{Elements, Parts, Place, packed};
 use rayon::prelude::*;
 
@@ -27,6 +26,10 @@ impl Gather {
             starts[i + 1] += starts[i];
         }
         Self { starts, sources: pairs.into_iter().map(|(_, source)| source).collect() }
+    }
+
+    fn entries(&self) -> usize {
+        self.starts.len() - 1
     }
 
     fn sum(&self, buffer: &[f64], out: &mut [f64]) {
@@ -147,22 +150,12 @@ impl Assembly {
         }
     }
 
-    fn place<'a>(x: &'a [Vector], dofs: &'a [NodeDofs], penalty: f64, pressure: f64) -> Place<'a> {
-        Place { x, dofs, penalty, pressure }
-    }
-
     /// Energy and volume.
-    pub(crate) fn measure(
-        &mut self,
-        sets: &[&dyn Elements],
-        dofs: &Dofs,
-        x: &[Vector],
-        penalty: f64,
-    ) -> [f64; 2] {
+    pub(crate) fn measure(&mut self, sets: &[&dyn Elements], place: Place<'_>) -> [f64; 2] {
         let mut left = &mut self.measures[..];
         for (set, (count, _)) in sets.iter().zip(&self.sizes) {
             let (own, rest) = left.split_at_mut(2 * count);
-            set.measure(Self::place(x, &dofs.nodes, penalty, 0.0), own);
+            set.measure(place, own);
             left = rest;
         }
         self.summed()
@@ -181,10 +174,8 @@ impl Assembly {
     pub(crate) fn work(
         &mut self,
         sets: &[&dyn Elements],
-        dofs: &Dofs,
-        x: &[Vector],
-        penalty: f64,
-        pressure: f64,
+        place: Place<'_>,
+        free: usize,
         totals: &mut Totals,
         matrix: &mut [f64],
     ) {
@@ -194,23 +185,22 @@ impl Assembly {
             let (m, m_rest) = measures.split_at_mut(2 * count);
             let (g, g_rest) = gradients.split_at_mut(6 * each * count);
             let (k, k_rest) = stiffness.split_at_mut(packed(3 * each) * count);
-            let out = Parts { measures: m, gradients: g, stiffness: k };
-            set.work(Self::place(x, &dofs.nodes, penalty, pressure), out);
+            set.work(place, Parts { measures: m, gradients: g, stiffness: k });
             (measures, gradients, stiffness) = (m_rest, g_rest, k_rest);
         }
         [totals.energy, totals.volume] = self.summed();
-        totals.force.resize(dofs.all, 0.0);
-        totals.sweep.resize(dofs.all, 0.0);
+        totals.force.resize(self.force.entries(), 0.0);
+        totals.sweep.resize(self.force.entries(), 0.0);
         self.force.sum(&self.gradients, &mut totals.force);
         self.sweep.sum(&self.gradients, &mut totals.sweep);
         self.stiffness.sum(&self.packed, matrix);
-        totals.scale = self.scale(dofs, pressure);
+        totals.scale = self.scale(free, place.pressure);
     }
 
     /// The mean over the free degrees of freedom of the sum of the sizes of their forces.
-    fn scale(&self, dofs: &Dofs, pressure: f64) -> f64 {
+    fn scale(&self, free: usize, pressure: f64) -> f64 {
         let mut sum = 0.0;
-        for dof in 0..dofs.free {
+        for dof in 0..free {
             for (gather, weight) in [(&self.force, 1.0), (&self.sweep, pressure)] {
                 let range = gather.starts[dof] as usize..gather.starts[dof + 1] as usize;
                 for source in &gather.sources[range] {
@@ -218,11 +208,14 @@ impl Assembly {
                 }
             }
         }
-        sum / dofs.free.max(1) as f64
+        sum / free.max(1) as f64
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "checked when the structure is built: fewer than 2^32 numbers")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "checked when the structure is built: fewer than 2^32 numbers"
+)]
 fn short(count: usize) -> u32 {
     count as u32
 }

@@ -14,7 +14,7 @@ pub use run::{CaseError, CaseRun, Row};
 
 use crate::material::Sheet;
 use crate::mesh::Mesh;
-use crate::solver::{Copies, Tolerance};
+use crate::state::{Copies, Tolerance};
 use crate::structure::{Fitting, Part, Support};
 use serde::Serialize;
 

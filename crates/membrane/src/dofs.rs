@@ -196,7 +196,10 @@ impl Dofs {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "a structure has at most 2^31 numbers: checked where it is built")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a structure has at most 2^31 numbers: checked where it is built"
+)]
 fn index(count: usize) -> u32 {
     count as u32
 }

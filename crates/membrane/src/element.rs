@@ -1,5 +1,10 @@
 //! Elements: the stored energy of each and the volume under it, with forces and stiffness from them.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "an index runs over the nodes or directions of several arrays at once"
+)]
+
 mod cable;
 mod ring;
 mod shape;

@@ -7,7 +7,8 @@ use crate::error::MembraneError;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::{LdltParams, LdltRegularization};
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side, Spec};
@@ -32,11 +33,7 @@ pub(crate) enum Inertia {
 
 impl Factor {
     /// For matrices with these places in their upper triangle, by columns, the diagonal among them.
-    pub(crate) fn new(
-        columns: Vec<usize>,
-        rows: Vec<usize>,
-        par: Par,
-    ) -> Result<Self, MembraneError> {
+    pub(crate) fn new(columns: Vec<usize>, rows: Vec<usize>, par: Par) -> Result<Self, MembraneError> {
         let n = columns.len() - 1;
         let pattern = SymbolicSparseColMat::new_checked(n, n, columns, None, rows);
         let memory_short = |_| MembraneError::Memory { unknowns: n };

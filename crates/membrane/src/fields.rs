@@ -4,7 +4,8 @@ use crate::element::{Carried, CarriedByRing, Vector, norm};
 use crate::material::Tension;
 use crate::mesh::CellKind;
 use crate::set::{Element, Set};
-use crate::solver::{Solver, State};
+use crate::solver::Solver;
+use crate::state::State;
 use crate::structure::Group;
 use serde::Serialize;
 
@@ -88,7 +89,8 @@ impl Solver {
             .zip(&self.structure.places)
             .map(|(now, before)| [now[0] - before[0], now[1] - before[1], now[2] - before[2]])
             .collect();
-        let groups = self.structure.groups.iter().map(|(name, group)| self.group(name, group, &places)).collect();
+        let groups =
+            self.structure.groups.iter().map(|(name, group)| self.group(name, group, &places)).collect();
         Fields { places, displacements, groups }
     }
 
@@ -163,15 +165,15 @@ impl Solver {
     }
 }
 
-fn triangles<const N: usize>(
-    set: &Set<crate::element::Triangle<N>, N>,
-    x: &[Vector],
-    out: &mut GroupFields,
-) {
+fn triangles<const N: usize>(set: &Set<crate::element::Triangle<N>, N>, x: &[Vector], out: &mut GroupFields) {
     for (element, at) in each(set, x, out) {
         out.areas.push(element.area());
         if let Some(Carried { force, stretch, direction, tension }) = element.carried(&at) {
-            put(&mut out.sheets, 0, SheetField { force, stretch, direction, tension, folded: folded(stretch) });
+            put(
+                &mut out.sheets,
+                0,
+                SheetField { force, stretch, direction, tension, folded: folded(stretch) },
+            );
         }
     }
 }
@@ -195,7 +197,11 @@ fn each<'a, E: Element<N>, const N: usize>(
     out: &mut GroupFields,
 ) -> Vec<(&'a E, [Vector; N])> {
     out.cells = set.nodes.as_flattened().to_vec();
-    set.elements.iter().zip(&set.nodes).map(|(element, nodes)| (element, nodes.map(|node| x[node as usize]))).collect()
+    set.elements
+        .iter()
+        .zip(&set.nodes)
+        .map(|(element, nodes)| (element, nodes.map(|node| x[node as usize])))
+        .collect()
 }
 
 impl Fields {

@@ -13,5 +13,5 @@ pub use tension_field::Tension;
 pub use thread::Thread;
 
 pub(crate) use sheet::Plane;
-pub(crate) use thread::pull;
 pub(crate) use tension_field::Principal;
+pub(crate) use thread::pull;

@@ -92,7 +92,8 @@ impl Mesh {
     ) -> Result<Vec<(usize, usize)>, MembraneError> {
         let size = nodes.iter().flat_map(|node| self.nodes[*node]).fold(0.0_f64, |a, x| a.max(x.abs()));
         // By z, so that only a few are looked at.
-        let mut sorted: Vec<(f64, usize)> = partners.iter().map(|node| (self.nodes[*node][2], *node)).collect();
+        let mut sorted: Vec<(f64, usize)> =
+            partners.iter().map(|node| (self.nodes[*node][2], *node)).collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let close = 1e-6 * size;
         nodes

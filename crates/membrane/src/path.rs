@@ -2,7 +2,8 @@
 
 use crate::error::MembraneError;
 use crate::load::{Inflation, Load};
-use crate::solver::{Solver, State};
+use crate::solver::Solver;
+use crate::state::State;
 
 /// The smallest step, over the whole path.
 const SMALLEST: f64 = 1.0 / 4096.0;

@@ -105,6 +105,9 @@ pub(crate) trait Elements: Send + Sync + core::fmt::Debug {
     fn hold(&mut self, place: Place<'_>) -> f64;
 }
 
+/// Measures, gradients and stiffness of one element.
+type Slices<'a> = ((&'a mut [f64], &'a mut [f64]), &'a mut [f64]);
+
 /// Below so many elements threads cost more than they bring.
 const ALONE: usize = 256;
 /// Elements that a thread takes at a time.
@@ -125,7 +128,7 @@ impl<E: Element<N>, const N: usize> Set<E, N> {
         self.nodes[element].map(|node| x[node as usize])
     }
 
-    fn one(&self, element: usize, place: Place<'_>, out: Parts<'_>) {
+    fn one(&self, element: usize, place: Place<'_>, out: &mut Parts<'_>) {
         let x = self.at(element, place.x);
         let local = self.elements[element].local(&x, place.penalty, place.pressure, &self.rule);
         (out.measures[0], out.measures[1]) = (local.energy, local.volume);
@@ -191,8 +194,8 @@ impl<E: Element<N>, const N: usize> Elements for Set<E, N> {
 
     fn work(&self, place: Place<'_>, out: Parts<'_>) {
         let size = packed(3 * N);
-        let one = |(e, ((measures, gradients), stiffness)): (usize, ((&mut [f64], &mut [f64]), &mut [f64]))| {
-            self.one(e, place, Parts { measures, gradients, stiffness });
+        let one = |(e, ((measures, gradients), stiffness)): (usize, Slices<'_>)| {
+            self.one(e, place, &mut Parts { measures, gradients, stiffness });
         };
         if self.count() < ALONE {
             let each = out.measures.chunks_exact_mut(2);

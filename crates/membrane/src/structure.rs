@@ -5,7 +5,8 @@ use crate::element::{Cable, Ring, RingLayer, Triangle, Vector};
 use crate::error::MembraneError;
 use crate::material::{Sheet, Thread};
 use crate::mesh::{Block, CellKind, Mesh};
-use crate::set::{Elements, Set};
+use crate::set::{Element, Elements, Set};
+use crate::surface::{Turned, backwards, oriented};
 use serde::Serialize;
 
 /// What the cells of a group are.
@@ -125,17 +126,19 @@ impl Structure {
         supports: &[(String, Support)],
         fittings: &[Fitting],
     ) -> Result<Self, MembraneError> {
+        let turned = turned(mesh, parts, supports)?;
         let mut groups = Vec::new();
         let mut is_used = vec![false; mesh.nodes.len()];
         let mut is_flat = vec![false; mesh.nodes.len()];
         for (name, part) in parts {
             let mut is_known = false;
-            for block in mesh.blocks.iter().filter(|block| block.group == *name) {
+            for (b, block) in mesh.blocks.iter().enumerate().filter(|(_, block)| block.group == *name) {
                 is_known = true;
                 if block.kind == CellKind::Point {
                     continue;
                 }
-                groups.push((name.clone(), group(mesh, block, part)?));
+                let source = Source { mesh, block, is_turned: &|cell| turned.is_turned(b, cell) };
+                groups.push((name.clone(), source.group(part)?));
                 for node in &block.cells {
                     is_used[*node] = true;
                     is_flat[*node] |= matches!(part, Part::Revolved { .. });
@@ -191,7 +194,9 @@ impl Structure {
 
     /// Threads that pull side by side, at most.
     pub(crate) fn threads(&self) -> f64 {
-        let count = |layers: &[crate::element::Layer]| layers.iter().map(crate::element::Layer::count).fold(0.0, f64::max);
+        let count = |layers: &[crate::element::Layer]| {
+            layers.iter().map(crate::element::Layer::count).fold(0.0, f64::max)
+        };
         let groups = self.groups.iter().map(|(_, group)| match group {
             Group::Ring2(set) => set.elements.first().map_or(0.0, |ring| count(&ring.layers)),
             Group::Ring3(set) => set.elements.first().map_or(0.0, |ring| count(&ring.layers)),
@@ -222,7 +227,8 @@ fn support_group(
     let nodes = mesh.nodes_of(name).ok_or_else(|| MembraneError::unknown_group(name, mesh))?;
     match support {
         Support::Cyclic { partner, angle } => {
-            let partners = mesh.nodes_of(partner).ok_or_else(|| MembraneError::unknown_group(partner, mesh))?;
+            let partners =
+                mesh.nodes_of(partner).ok_or_else(|| MembraneError::unknown_group(partner, mesh))?;
             for (node, partner) in mesh.partners(name, &nodes, partner, &partners, *angle)? {
                 held.follow(node, partner, *angle);
             }
@@ -253,59 +259,111 @@ fn support_group(
     Ok(())
 }
 
-/// The places where the nodes of a cell are free of stress.
-fn stress_free<const N: usize>(mesh: &Mesh, block: &Block, cell: usize) -> [Vector; N] {
-    core::array::from_fn(|i| match &block.pattern {
-        Some(pattern) => {
-            let [u, v] = pattern[cell * N + i];
-            [u, v, 0.0]
-        }
-        None => mesh.nodes[block.cells[cell * N + i]],
-    })
-}
-
-#[expect(clippy::cast_possible_truncation, reason = "a mesh has fewer than 2^31 nodes: checked when it is read")]
-fn built<E: crate::set::Element<N>, const N: usize>(
+/// Which cells of the membranes face the wrong way, after the check that they close a volume.
+fn turned(
     mesh: &Mesh,
-    block: &Block,
-    what: &'static str,
-    element: impl Fn(&[Vector; N]) -> Option<E>,
-) -> Result<Set<E, N>, MembraneError> {
-    let (cells, _) = block.cells.as_chunks::<N>();
-    let mut nodes = Vec::with_capacity(cells.len());
-    let mut elements = Vec::with_capacity(cells.len());
-    for (i, cell) in cells.iter().enumerate() {
-        let made = element(&stress_free(mesh, block, i));
-        elements.push(made.ok_or_else(|| MembraneError::Element {
-            element: block.numbers.get(i).copied().unwrap_or(i as u64 + 1),
-            group: block.group.clone(),
-            what,
-        })?);
-        nodes.push(cell.map(|node| node as u32));
+    parts: &[(String, Part)],
+    supports: &[(String, Support)],
+) -> Result<Turned, MembraneError> {
+    let mut is_held = vec![false; mesh.nodes.len()];
+    let mut hold = |name: &str| -> Result<(), MembraneError> {
+        let nodes = mesh.nodes_of(name).ok_or_else(|| MembraneError::unknown_group(name, mesh))?;
+        for node in nodes {
+            is_held[node] = true;
+        }
+        Ok(())
+    };
+    for (name, support) in supports {
+        hold(name)?;
+        if let Support::Cyclic { partner, .. } = support {
+            hold(partner)?;
+        }
     }
-    Ok(Set::new(nodes, elements))
+    let mut blocks = Vec::new();
+    for (name, part) in parts {
+        if matches!(part, Part::Cable { .. }) {
+            continue;
+        }
+        for (b, block) in mesh.blocks.iter().enumerate() {
+            if block.group == *name && block.kind != CellKind::Point {
+                if blocks.contains(&b) {
+                    return Err(MembraneError::TwoParts { group: name.clone() });
+                }
+                blocks.push(b);
+            }
+        }
+    }
+    oriented(mesh, &blocks, &is_held)
 }
 
-fn group(mesh: &Mesh, block: &Block, part: &Part) -> Result<Group, MembraneError> {
-    match (part, block.kind) {
-        (Part::Membrane { sheet, warp }, CellKind::Triangle3) => {
-            Ok(Group::Triangle3(built(mesh, block, "area", |x| Triangle::new(x, *warp, *sheet))?))
+/// A block on its way to elements.
+struct Source<'a> {
+    mesh: &'a Mesh,
+    block: &'a Block,
+    is_turned: &'a dyn Fn(usize) -> bool,
+}
+
+impl Source<'_> {
+    /// The places where the nodes of a cell are free of stress.
+    fn stress_free<const N: usize>(&self, cell: usize) -> [Vector; N] {
+        core::array::from_fn(|i| match &self.block.pattern {
+            Some(pattern) => {
+                let [u, v] = pattern[cell * N + i];
+                [u, v, 0.0]
+            }
+            None => self.mesh.nodes[self.block.cells[cell * N + i]],
+        })
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a mesh has fewer than 2^31 nodes: checked when it is read"
+    )]
+    fn built<E: Element<N>, const N: usize>(
+        &self,
+        what: &'static str,
+        element: impl Fn(&[Vector; N]) -> Option<E>,
+    ) -> Result<Set<E, N>, MembraneError> {
+        let (cells, _) = self.block.cells.as_chunks::<N>();
+        let mut nodes = Vec::with_capacity(cells.len());
+        let mut elements = Vec::with_capacity(cells.len());
+        for (i, cell) in cells.iter().enumerate() {
+            let (mut places, mut cell) = (self.stress_free(i), cell.map(|node| node as u32));
+            if (self.is_turned)(i) {
+                (places, cell) = (backwards(self.block.kind, places), backwards(self.block.kind, cell));
+            }
+            elements.push(element(&places).ok_or_else(|| MembraneError::Element {
+                element: self.block.numbers.get(i).copied().unwrap_or(i as u64 + 1),
+                group: self.block.group.clone(),
+                what,
+            })?);
+            nodes.push(cell);
         }
-        (Part::Membrane { sheet, warp }, CellKind::Triangle6) => {
-            Ok(Group::Triangle6(built(mesh, block, "area", |x| Triangle::new(x, *warp, *sheet))?))
+        Ok(Set::new(nodes, elements))
+    }
+
+    fn group(&self, part: &Part) -> Result<Group, MembraneError> {
+        const OFF_AXIS: &str = "length off the axis";
+        match (part, self.block.kind) {
+            (Part::Membrane { sheet, warp }, CellKind::Triangle3) => {
+                Ok(Group::Triangle3(self.built("area", |x| Triangle::new(x, *warp, *sheet))?))
+            }
+            (Part::Membrane { sheet, warp }, CellKind::Triangle6) => {
+                Ok(Group::Triangle6(self.built("area", |x| Triangle::new(x, *warp, *sheet))?))
+            }
+            (Part::Revolved { layers }, CellKind::Line2) => {
+                Ok(Group::Ring2(self.built(OFF_AXIS, |x| Ring::new(x, layers))?))
+            }
+            (Part::Revolved { layers }, CellKind::Line3) => {
+                Ok(Group::Ring3(self.built(OFF_AXIS, |x| Ring::new(x, layers))?))
+            }
+            (Part::Cable { thread, share }, CellKind::Line2) => {
+                Ok(Group::Cable2(self.built("length", |x| Cable::new(x, *thread, *share))?))
+            }
+            (Part::Cable { thread, share }, CellKind::Line3) => {
+                Ok(Group::Cable3(self.built("length", |x| Cable::new(x, *thread, *share))?))
+            }
+            (_, kind) => Err(MembraneError::WrongCells { group: self.block.group.clone(), kind }),
         }
-        (Part::Revolved { layers }, CellKind::Line2) => {
-            Ok(Group::Ring2(built(mesh, block, "length off the axis", |x| Ring::new(x, layers))?))
-        }
-        (Part::Revolved { layers }, CellKind::Line3) => {
-            Ok(Group::Ring3(built(mesh, block, "length off the axis", |x| Ring::new(x, layers))?))
-        }
-        (Part::Cable { thread, share }, CellKind::Line2) => {
-            Ok(Group::Cable2(built(mesh, block, "length", |x| Cable::new(x, *thread, *share))?))
-        }
-        (Part::Cable { thread, share }, CellKind::Line3) => {
-            Ok(Group::Cable3(built(mesh, block, "length", |x| Cable::new(x, *thread, *share))?))
-        }
-        (_, kind) => Err(MembraneError::WrongCells { group: block.group.clone(), kind }),
     }
 }

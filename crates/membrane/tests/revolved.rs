@@ -2,7 +2,8 @@
 
 use bulge_membrane::mesher::{Grading, revolved};
 use bulge_membrane::{
-    Cloth, Copies, Fitting, Inflation, Law, Load, Mesh, Part, RingLayer, Sheet, Solver, State, Structure, Support, Thread, Tolerance,
+    Cloth, Copies, Fitting, Inflation, Law, Load, Mesh, Part, RingLayer, Sheet, Solver, State, Structure,
+    Support, Thread, Tolerance,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -18,8 +19,7 @@ fn clamped(mesh: &Mesh, layers: Vec<RingLayer>) -> Solver {
         ("last".to_owned(), Support::Fitting { fitting: 1 }),
     ];
     let parts = [("wall".to_owned(), Part::Revolved { layers })];
-    let structure =
-        Structure::new(mesh, &parts, &supports, &[Fitting::Placed, Fitting::Placed]).unwrap();
+    let structure = Structure::new(mesh, &parts, &supports, &[Fitting::Placed, Fitting::Placed]).unwrap();
     Solver::new(structure, Copies::ONE, Tolerance::default()).unwrap()
 }
 
@@ -50,7 +50,13 @@ fn a_clamped_tube_of_rubber() {
     for (pressure, force, volume) in exact {
         let rest = solver.at_rest();
         let state = at(&mut solver, pressure, 0.0, &rest);
-        println!("{pressure} {} {} {:?} {}", state.forces[1] - force, state.volume / volume - 1.0, state.iterations, state.unstable);
+        println!(
+            "{pressure} {} {} {:?} {}",
+            state.forces[1] - force,
+            state.volume / volume - 1.0,
+            state.iterations,
+            state.unstable
+        );
         assert!((state.forces[1] / force - 1.0).abs() < 1e-7);
         assert!((state.volume / volume - 1.0).abs() < 1e-8);
         assert_eq!(state.unstable, 0);
@@ -65,11 +71,19 @@ fn a_clamped_tube_of_rubber() {
     println!("{:?}", solver.effort());
     // Beyond the limit point.
     let mut state = at(&mut solver, 0.034, 0.0, &rest);
-    for (volume, pressure, force) in [(68_311.883_8, 0.032_353_062_0, -12.533_616_51), (123_737.522_1, 0.025_797_586_0, f64::NAN)] {
+    for (volume, pressure, force) in
+        [(68_311.883_8, 0.032_353_062_0, -12.533_616_51), (123_737.522_1, 0.025_797_586_0, f64::NAN)]
+    {
         let load = Load { inflation: Inflation::Volume(volume), fittings: vec![0.0, 0.0] };
         let before = Load { inflation: Inflation::Volume(state.volume), fittings: vec![0.0, 0.0] };
         state = solver.follow(&before, &state, &load, |_, _| ()).unwrap();
-        println!("{volume} {} {} {} {}", state.pressure / pressure - 1.0, state.forces[1] / force - 1.0, state.unstable, state.iterations);
+        println!(
+            "{volume} {} {} {} {}",
+            state.pressure / pressure - 1.0,
+            state.forces[1] / force - 1.0,
+            state.unstable,
+            state.iterations
+        );
     }
 }
 
@@ -85,17 +99,26 @@ fn a_sphere_of_rubber() {
         true,
         Grading::Even,
     );
-    let mesh = Mesh { nodes: mesh.nodes.iter().map(|x| [(1.0 - x[2] * x[2]).max(0.0).sqrt(), 0.0, x[2]]).collect(), ..mesh };
+    let mesh = Mesh {
+        nodes: mesh.nodes.iter().map(|x| [(1.0 - x[2] * x[2]).max(0.0).sqrt(), 0.0, x[2]]).collect(),
+        ..mesh
+    };
     let supports = [
         ("first".to_owned(), Support::Plane { normal: [0.0, 0.0, 1.0] }),
         ("last".to_owned(), Support::Axis),
     ];
     let parts = [("wall".to_owned(), Part::Revolved { layers: vec![rubber(law)] })];
     let structure = Structure::new(&mesh, &parts, &supports, &[]).unwrap();
-    let mut solver = Solver::new(structure, Copies { around: 1.0, along: 2.0 }, Tolerance::default()).unwrap();
+    let mut solver =
+        Solver::new(structure, Copies { around: 1.0, along: 2.0 }, Tolerance::default()).unwrap();
     let rest = solver.at_rest();
     let mut state = rest;
-    for (stretch, pressure) in [(1.1_f64, 0.791_865_581_720_405), (1.5, 1.216_278_006_401_46), (2.0, 0.984_375), (3.0, 0.665_752_171_925_011)] {
+    for (stretch, pressure) in [
+        (1.1_f64, 0.791_865_581_720_405),
+        (1.5, 1.216_278_006_401_46),
+        (2.0, 0.984_375),
+        (3.0, 0.665_752_171_925_011),
+    ] {
         let volume = 4.0 / 3.0 * PI * stretch.powi(3);
         let load = Load { inflation: Inflation::Volume(volume), fittings: vec![] };
         state = solver.solve(&load, &state).unwrap();
@@ -116,9 +139,16 @@ fn a_pleated_muscle() {
         let mesh = revolved(|t| [16.0, 110.0 * t], elements, is_quadratic, Grading::Ends(3.0));
         let mut solver = clamped(&mesh, vec![net(0.0)]);
         let mut state = solver.at_rest();
-        for (contraction, force) in [(0.05, 4331.924053), (0.1, 2995.946796), (0.2, 1638.791111), (0.3, 765.032377)] {
+        for (contraction, force) in
+            [(0.05, 4331.924053), (0.1, 2995.946796), (0.2, 1638.791111), (0.3, 765.032377)]
+        {
             state = at(&mut solver, p, -110.0 * contraction, &state);
-            println!("{elements} {is_quadratic} {contraction} {:e} {} {}", state.forces[1] / force - 1.0, state.iterations, state.unstable);
+            println!(
+                "{elements} {is_quadratic} {contraction} {:e} {} {}",
+                state.forces[1] / force - 1.0,
+                state.iterations,
+                state.unstable
+            );
         }
         println!("{:?}", solver.effort());
     }
@@ -132,9 +162,19 @@ fn a_clamped_net() {
         let mesh = revolved(|t| [10.0, 60.0 * t], elements, is_quadratic, Grading::Ends(3.0));
         let mut solver = clamped(&mesh, vec![net(angle)]);
         let mut state = solver.at_rest();
-        for (contraction, force, volume) in [(0.05, 495.731541949, 24980.660684), (0.2, 159.339674897, 34092.237545), (0.35, -19.963369759, 35964.454839)] {
+        for (contraction, force, volume) in [
+            (0.05, 495.731541949, 24980.660684),
+            (0.2, 159.339674897, 34092.237545),
+            (0.35, -19.963369759, 35964.454839),
+        ] {
             state = at(&mut solver, p, -60.0 * contraction, &state);
-            println!("{elements} {is_quadratic} {contraction} {:e} {:e} {} {}", state.forces[1] / force - 1.0, state.volume / volume - 1.0, state.iterations, state.unstable);
+            println!(
+                "{elements} {is_quadratic} {contraction} {:e} {:e} {} {}",
+                state.forces[1] / force - 1.0,
+                state.volume / volume - 1.0,
+                state.iterations,
+                state.unstable
+            );
         }
         println!("{:?}", solver.effort());
     }

@@ -2,7 +2,8 @@
 
 use bulge_membrane::mesher::{Pleated, Surface, grid};
 use bulge_membrane::{
-    Cloth, Copies, Fitting, Inflation, Law, Load, Mesh, Part, Sheet, Solver, State, Structure, Support, Thread, Tolerance,
+    Cloth, Copies, Fitting, Inflation, Law, Load, Mesh, Part, Sheet, Solver, State, Structure, Support,
+    Thread, Tolerance,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -19,7 +20,13 @@ fn plane(x: f64, y: f64, z: f64) -> Support {
     Support::Plane { normal: [x, y, z] }
 }
 
-fn solver(mesh: &Mesh, parts: &[(&str, Part)], supports: &[(&str, Support)], fittings: &[Fitting], copies: [f64; 2]) -> Solver {
+fn solver(
+    mesh: &Mesh,
+    parts: &[(&str, Part)],
+    supports: &[(&str, Support)],
+    fittings: &[Fitting],
+    copies: [f64; 2],
+) -> Solver {
     let structure = Structure::new(mesh, &named(parts), &named(supports), fittings).unwrap();
     Solver::new(structure, Copies { around: copies[0], along: copies[1] }, Tolerance::default()).unwrap()
 }
@@ -35,7 +42,15 @@ fn follow(solver: &mut Solver, from: &State, pressure: f64, fittings: Vec<f64>) 
 fn fibres_and_facets() {
     for (n, force) in [(6, 1355.26934), (12, 1564.93024), (24, 1620.13500)] {
         for elements in [20, 40] {
-            let muscle = Pleated { fibres: n, radius: 16.0, length: 110.0, circumference: 2.0 * PI * 16.0, depth: 0.0, cells: [1, elements], is_quadratic: false };
+            let muscle = Pleated {
+                fibres: n,
+                radius: 16.0,
+                length: 110.0,
+                circumference: 2.0 * PI * 16.0,
+                depth: 0.0,
+                cells: [1, elements],
+                is_quadratic: false,
+            };
             let mut mesh = muscle.lobe();
             for block in &mut mesh.blocks {
                 block.pattern = None;
@@ -57,7 +72,13 @@ fn fibres_and_facets() {
             );
             let rest = solver.at_rest();
             let state = follow(&mut solver, &rest, 0.3, vec![-11.0]);
-            println!("{n} {elements} {:e} it {} unstable {} {:?}", state.forces[0] / force - 1.0, state.iterations, state.unstable, solver.effort());
+            println!(
+                "{n} {elements} {:e} it {} unstable {} {:?}",
+                state.forces[0] / force - 1.0,
+                state.iterations,
+                state.unstable,
+                solver.effort()
+            );
         }
     }
 }
@@ -65,7 +86,15 @@ fn fibres_and_facets() {
 #[test]
 fn a_sector_of_cloth() {
     for (n, force, volume) in [(8, 884.25, 479_439.0), (12, 1064.44, 456_851.0), (24, 1320.17, 422_513.0)] {
-        let muscle = Pleated { fibres: n, radius: 16.0, length: 110.0, circumference: 288.0, depth: 0.0, cells: [40, 12], is_quadratic: false };
+        let muscle = Pleated {
+            fibres: n,
+            radius: 16.0,
+            length: 110.0,
+            circumference: 288.0,
+            depth: 0.0,
+            cells: [40, 12],
+            is_quadratic: false,
+        };
         let muscle = Pleated { cells: [12, 40], ..muscle };
         let mesh = muscle.half_lobe();
         let a = PI / n as f64;
@@ -87,7 +116,15 @@ fn a_sector_of_cloth() {
         let clock = std::time::Instant::now();
         let rest = solver.at_rest();
         let state = follow(&mut solver, &rest, 0.3, vec![-11.0]);
-        println!("{n} {:.3e} {:.3e} it {} unstable {} {:?} {:?}", state.forces[0] / force - 1.0, state.volume / volume - 1.0, state.iterations, state.unstable, solver.effort(), clock.elapsed());
+        println!(
+            "{n} {:.3e} {:.3e} it {} unstable {} {:?} {:?}",
+            state.forces[0] / force - 1.0,
+            state.volume / volume - 1.0,
+            state.iterations,
+            state.unstable,
+            solver.effort(),
+            clock.elapsed()
+        );
     }
 }
 
@@ -95,7 +132,12 @@ fn a_sector_of_cloth() {
 fn a_square_airbag() {
     let half = 848.53 / 2.0;
     for n in [10, 20, 40] {
-        let mesh = grid(&Surface { place: &|u, v| [half * u, half * v, 0.0], pattern: None, cells: [n, n], is_quadratic: false });
+        let mesh = grid(&Surface {
+            place: &|u, v| [half * u, half * v, 0.0],
+            pattern: None,
+            cells: [n, n],
+            is_quadratic: false,
+        });
         let mut solver = solver(
             &mesh,
             &[("cloth", Part::Membrane { sheet: Some(cloth(588.0 * 0.6, 0.4)), warp: [1.0, 0.0, 0.0] })],
@@ -111,7 +153,14 @@ fn a_square_airbag() {
         let clock = std::time::Instant::now();
         let rest = solver.at_rest();
         let state = follow(&mut solver, &rest, 5e-3, vec![]);
-        println!("{n} {:.6e} it {} unstable {} {:?} {:?}", state.volume, state.iterations, state.unstable, solver.effort(), clock.elapsed());
+        println!(
+            "{n} {:.6e} it {} unstable {} {:?} {:?}",
+            state.volume,
+            state.iterations,
+            state.unstable,
+            solver.effort(),
+            clock.elapsed()
+        );
     }
     let _ = FRAC_PI_2;
 }

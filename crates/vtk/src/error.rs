@@ -93,6 +93,46 @@ pub enum VtkError {
         /// File that was to be written.
         path: PathBuf,
     },
+    /// ParaView chooses its reader by the end of the name.
+    #[error("{}: the name of the file must end in .vtu", path.display())]
+    GridExtension {
+        /// File that was to be written.
+        path: PathBuf,
+    },
+    /// A value of a membrane is infinite or not a number.
+    #[error("{quantity} is {value} at {place}: only finite values can be written")]
+    FieldNotFinite {
+        /// Name of the array, with its unit.
+        quantity: &'static str,
+        /// Node or cell.
+        place: String,
+        /// The value found.
+        value: f64,
+    },
+    /// The fields of a membrane don't belong together.
+    #[error("the fields of the membrane don't fit together: {what}")]
+    Fields {
+        /// What is wrong.
+        what: String,
+    },
+    /// The part that was meshed can't be completed as asked.
+    #[error("the whole can't be drawn: {what}")]
+    Whole {
+        /// Why not.
+        what: String,
+    },
+    /// More points than the format counts.
+    #[error(
+        "{copies} copies of {points} points are more than a file holds ({most}): draw fewer facets or copies"
+    )]
+    TooManyPoints {
+        /// Copies of the mesh, or facets.
+        copies: usize,
+        /// Points of each.
+        points: usize,
+        /// Largest number of points.
+        most: u32,
+    },
     /// The stem of a series is no file name.
     #[error("{stem:?} can't begin the file names of a series: use a name without folders")]
     Stem {

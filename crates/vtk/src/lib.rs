@@ -12,11 +12,16 @@
 //! | cells | `part` (0 cloth, 1 fibre), `area_m2` (0 for a fibre), `membrane_force_N_per_m` |
 //! | field data | `pressure_Pa`, `force_N`, `length_m`, `contraction`, `volume_m3` |
 //!
-//! This crate solves nothing and reads nothing: every file is a function of a [`bulge_fibre::Shape`].
+//! States of the membrane finite elements are unstructured grids in their own coordinates, the axis along z: [`MembranePicture`],
+//! [`write_vtu`], [`MembraneSeries`].
+//!
+//! This crate solves nothing and reads nothing: every file is a function of a [`bulge_fibre::Shape`], or of a [`bulge_membrane::State`] and its
+//! fields.
 #[cfg(test)]
 mod analytic;
 mod bulge;
 mod error;
+mod membrane;
 mod mesh;
 mod panel;
 mod series;
@@ -25,5 +30,6 @@ mod whole_file;
 
 pub use bulge::{Bulge, Style};
 pub use error::VtkError;
+pub use membrane::{MembranePicture, MembraneSeries, Whole, write_vtu};
 pub use series::write_series;
 pub use vtp::write_vtp;

@@ -18,24 +18,33 @@ pub fn write_series(
 ) -> Result<PathBuf, VtkError> {
     let dir = dir.as_ref();
     check(stem, members)?;
+    create(dir)?;
+    for (index, (_, bulge)) in members.iter().enumerate() {
+        write_vtp(dir.join(member_name(stem, index, "vtp")), bulge)?;
+    }
+    let path = dir.join(format!("{stem}.pvd"));
+    let xml = collection(stem, "vtp", members.iter().map(|(value, _)| *value));
+    whole_file::write(&path, xml.as_bytes())?;
+    Ok(path)
+}
+
+/// The folder of a series, and those above it.
+pub(crate) fn create(dir: &Path) -> Result<(), VtkError> {
     fs::create_dir_all(dir).map_err(|source| VtkError::File {
         path: dir.to_path_buf(),
         action: "create the folder",
         source,
-    })?;
-    for (index, (_, bulge)) in members.iter().enumerate() {
-        write_vtp(dir.join(member_name(stem, index)), bulge)?;
-    }
-    let path = dir.join(format!("{stem}.pvd"));
-    whole_file::write(&path, collection(stem, members.iter().map(|(value, _)| *value)).as_bytes())?;
-    Ok(path)
+    })
+}
+
+/// A stem is part of file names.
+pub(crate) fn check_stem(stem: &str) -> Result<(), VtkError> {
+    let is_name = !stem.is_empty() && !stem.contains(['/', '\\']) && !stem.contains(char::is_control);
+    if is_name { Ok(()) } else { Err(VtkError::Stem { stem: stem.to_owned() }) }
 }
 
 fn check(stem: &str, members: &[(f64, Bulge)]) -> Result<(), VtkError> {
-    let is_name = !stem.is_empty() && !stem.contains(['/', '\\']) && !stem.contains(char::is_control);
-    if !is_name {
-        return Err(VtkError::Stem { stem: stem.to_owned() });
-    }
+    check_stem(stem)?;
     if members.is_empty() {
         return Err(VtkError::EmptySeries);
     }
@@ -45,19 +54,19 @@ fn check(stem: &str, members: &[(f64, Bulge)]) -> Result<(), VtkError> {
     }
 }
 
-fn member_name(stem: &str, index: usize) -> String {
-    format!("{stem}_{index:04}.vtp")
+pub(crate) fn member_name(stem: &str, index: usize, extension: &str) -> String {
+    format!("{stem}_{index:04}.{extension}")
 }
 
 /// The `.pvd` file: names are relative to it.
-fn collection(stem: &str, values: impl Iterator<Item = f64>) -> String {
+pub(crate) fn collection(stem: &str, extension: &str, values: impl Iterator<Item = f64>) -> String {
     let mut xml = String::from(concat!(
         "<?xml version=\"1.0\"?>\n",
         "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n",
         "  <Collection>\n",
     ));
     for (index, value) in values.enumerate() {
-        let file = escape(&member_name(stem, index));
+        let file = escape(&member_name(stem, index, extension));
         // Writing to a String can't fail.
         let _ = writeln!(xml, "    <DataSet timestep=\"{value}\" part=\"0\" file=\"{file}\"/>");
     }

@@ -17,10 +17,10 @@ cells = [60]                    # along; a triangle mesh takes two numbers: roun
 order = 2                       # 1 or 2
 grading = 3.0                   # how much finer at the ends
 
-[scale]                         # for a mesh from a file
-unit = \"mm\"                     # of its coordinates
-around = 1                      # how often it stands round the z axis in the whole
-along = 1                       # and one behind the other
+# [scale]                       # for a mesh from a file
+# unit = \"mm\"                   # of its coordinates
+# around = 1                    # how often it stands round the z axis in the whole
+# along = 1                     # and one behind the other
 # length = \"60 mm\"              # between the fittings of the whole, for `contraction`
 
 [[material]]

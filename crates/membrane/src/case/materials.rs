@@ -81,8 +81,10 @@ fn sheet(table: &Settings<'_>) -> Result<Sheet, FileError> {
     let cloth = match kind {
         Kind::NeoHooke => Cloth::Isotropic(Law::NeoHooke { shear: modulus("shear")? }),
         Kind::MooneyRivlin => {
-            let c1 = h * in_range(table, "c1", Dimension::PRESSURE, |c| c >= 0.0, "at least 0")?.unwrap_or(0.0);
-            let c2 = h * in_range(table, "c2", Dimension::PRESSURE, |c| c >= 0.0, "at least 0")?.unwrap_or(0.0);
+            let c1 =
+                h * in_range(table, "c1", Dimension::PRESSURE, |c| c >= 0.0, "at least 0")?.unwrap_or(0.0);
+            let c2 =
+                h * in_range(table, "c2", Dimension::PRESSURE, |c| c >= 0.0, "at least 0")?.unwrap_or(0.0);
             if c1 + c2 <= 0.0 {
                 return Err(table.missing("c1"));
             }

@@ -1,7 +1,7 @@
 //! What the groups of a case's mesh are made of.
 
 use bulge_muscles::settings::{Keys, Setting, Settings};
-use bulge_muscles::{Construction, Dimension, FileError, Parameter};
+use bulge_muscles::{Construction, Dimension, FileError, Muscle, Parameter};
 use std::collections::BTreeSet;
 
 use super::read::{direction, in_range, name, number, positive};
@@ -113,15 +113,28 @@ fn check_cells(table: &Settings<'_>, source: &Source, group: &str, kind: Kind) -
     for block in source.mesh.blocks.iter().filter(|block| block.group == group) {
         let is_line = matches!(block.kind, CellKind::Line2 | CellKind::Line3);
         if block.kind != CellKind::Point && is_line != wants_lines {
-            let (are, made) = if is_line { ("lines", "a cable, or threads and sheets that are revolved") } else { ("triangles", "a membrane or a facet") };
+            let (are, made) = if is_line {
+                ("lines", "a cable, or threads and sheets that are revolved")
+            } else {
+                ("triangles", "a membrane or a facet")
+            };
             let what = format!("the cells of `{group}` are {are}, of which this part can't be made");
             return Err(table.error(table.value_span("kind"), what, format!("of {are} make {made}")));
         }
         if matches!(kind, Kind::Sheet | Kind::Threads) {
-            let off = block.cells.iter().map(|node| source.mesh.nodes[*node]).find(|[x, y, _]| *x < 0.0 || y.abs() > 1e-9 * x.abs().max(1e-9));
+            let off = block
+                .cells
+                .iter()
+                .map(|node| source.mesh.nodes[*node])
+                .find(|[x, y, _]| *x < 0.0 || y.abs() > 1e-9 * x.abs().max(1e-9));
             if let Some([x, y, z]) = off {
-                let what = format!("`{group}` is to be revolved about z, but has a node at ({x:e}, {y:e}, {z:e}) m");
-                return Err(table.error(table.value_span("group"), what, "put the line into the half-plane y = 0, x >= 0"));
+                let what =
+                    format!("`{group}` is to be revolved about z, but has a node at ({x:e}, {y:e}, {z:e}) m");
+                return Err(table.error(
+                    table.value_span("group"),
+                    what,
+                    "put the line into the half-plane y = 0, x >= 0",
+                ));
             }
         }
     }
@@ -136,7 +149,7 @@ fn part(
 ) -> Result<Part, FileError> {
     let stiffness = || -> Result<Thread, FileError> {
         let stated = positive(table, "stiffness", Dimension::FORCE)?;
-        let known = source.muscle.as_ref().and_then(|muscle| muscle.fibre()).map(|f| f.stiffness().to_n());
+        let known = source.muscle.as_ref().and_then(Muscle::fibre).map(|f| f.stiffness().to_n());
         Ok(stated.or(known).map_or(Thread::Inextensible, |stiffness| Thread::Elastic { stiffness }))
     };
     Ok(match kind {
@@ -146,7 +159,7 @@ fn part(
         }
         Kind::Threads => {
             let muscle = source.muscle.as_ref();
-            let count = match (table.count::<u32>("fibres")?, muscle.and_then(bulge_muscles::Muscle::fibres)) {
+            let count = match (table.count::<u32>("fibres")?, muscle.and_then(Muscle::fibres)) {
                 (Some(0), _) => {
                     let what = "0 threads are none";
                     return Err(table.error(table.value_span("fibres"), what, "leave the part out"));
@@ -177,7 +190,15 @@ fn part(
         Kind::Cable => {
             let share = number(table, "share", |x| x > 0.0 && x <= 1.0, "above 0 and at most 1")?;
             // On a plane of symmetry of our own mesher lies half a fibre.
-            let usual = if source.supports.iter().any(|(name, _)| Some(name.as_str()) == table.get("group").and_then(Setting::text)) { 0.5 } else { 1.0 };
+            let usual = if source
+                .supports
+                .iter()
+                .any(|(name, _)| Some(name.as_str()) == table.get("group").and_then(Setting::text))
+            {
+                0.5
+            } else {
+                1.0
+            };
             Part::Cable { thread: stiffness()?, share: share.unwrap_or(usual) }
         }
     })
@@ -189,6 +210,10 @@ fn material(table: &Settings<'_>, materials: &[(String, Sheet)]) -> Result<Sheet
         return Ok(*sheet);
     }
     let known: Vec<&str> = materials.iter().map(|(name, _)| name.as_str()).collect();
-    let instead = if known.is_empty() { "add a `[[material]]`".to_owned() } else { format!("there is {}", known.join(", ")) };
+    let instead = if known.is_empty() {
+        "add a `[[material]]`".to_owned()
+    } else {
+        format!("there is {}", known.join(", "))
+    };
     Err(table.error(table.value_span("material"), format!("there is no material `{wanted}`"), instead))
 }

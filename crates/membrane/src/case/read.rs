@@ -5,7 +5,7 @@ use bulge_muscles::{Dimension, FileError};
 use std::path::Path;
 
 use super::{Case, materials, parts, source, steps, supports};
-use crate::solver::{Copies, Tolerance};
+use crate::state::{Copies, Tolerance};
 
 /// What messages call the file.
 const KIND: FileKind = FileKind { name: "membrane case", file: "case.toml", line: "pressure = \"3 bar\"" };
@@ -78,7 +78,8 @@ fn tolerance(settings: &Settings<'_>) -> Result<Tolerance, FileError> {
     let mut tolerance = Tolerance::default();
     let Some(table) = settings.table("solver", "`[solver]`", SOLVER)? else { return Ok(tolerance) };
     table.check_keys()?;
-    if let Some(residual) = number(&table, "residual", |x| x >= 1e-14 && x <= 1e-3, "from 1e-14 to 1e-3")? {
+    if let Some(residual) = number(&table, "residual", |x| (1e-14..=1e-3).contains(&x), "from 1e-14 to 1e-3")?
+    {
         tolerance.residual = residual;
     }
     if let Some(iterations) = table.count::<u32>("iterations")? {
@@ -115,7 +116,11 @@ pub(super) fn in_range(
 }
 
 /// A quantity > 0, in SI.
-pub(super) fn positive(settings: &Settings<'_>, key: &str, dimension: Dimension) -> Result<Option<f64>, FileError> {
+pub(super) fn positive(
+    settings: &Settings<'_>,
+    key: &str,
+    dimension: Dimension,
+) -> Result<Option<f64>, FileError> {
     in_range(settings, key, dimension, |x| x > 0.0, "> 0")
 }
 
@@ -128,8 +133,11 @@ pub(super) fn needed(settings: &Settings<'_>, key: &str, dimension: Dimension) -
 pub(super) fn direction(settings: &Settings<'_>, key: &str) -> Result<Option<[f64; 3]>, FileError> {
     let Some(value) = settings.get(key) else { return Ok(None) };
     let items = value.items().unwrap_or_default();
-    let numbers: Vec<f64> =
-        items.iter().filter_map(|item| item.number()?.parse::<f64>().ok()).filter(|x| x.is_finite()).collect();
+    let numbers: Vec<f64> = items
+        .iter()
+        .filter_map(|item| item.number()?.parse::<f64>().ok())
+        .filter(|x| x.is_finite())
+        .collect();
     match numbers[..] {
         [x, y, z] if items.len() == 3 && x.abs() + y.abs() + z.abs() > 0.0 => Ok(Some([x, y, z])),
         _ => Err(settings.error(
@@ -153,7 +161,12 @@ pub(super) fn name<'a>(settings: &Settings<'a>, key: &str) -> Result<&'a str, Fi
 /// How many copies of a mesh from a file make the whole.
 pub(super) fn copies(settings: &Settings<'_>) -> Result<Copies, FileError> {
     let one = |key: &str| {
-        let count = number(settings, key, |x| x >= 1.0 && x <= 1e5 && x.fract() == 0.0, "a whole number from 1 on")?;
+        let count = number(
+            settings,
+            key,
+            |x| (1.0..=1e5).contains(&x) && x.fract() == 0.0,
+            "a whole number from 1 on",
+        )?;
         Ok::<f64, FileError>(count.unwrap_or(1.0))
     };
     Ok(Copies { around: one("around")?, along: one("along")? })

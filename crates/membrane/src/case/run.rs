@@ -8,7 +8,8 @@ use super::{Case, Filling, Step};
 use crate::error::MembraneError;
 use crate::fields::Fields;
 use crate::load::{Gas, Inflation, Load};
-use crate::solver::{Effort, Solver, State};
+use crate::solver::Solver;
+use crate::state::{Effort, State};
 use crate::structure::{Fitting, Structure};
 
 /// Why a case gives no next state.
@@ -211,10 +212,7 @@ impl CaseRun<'_> {
         };
         let fittings =
             self.fittings.iter().zip(&step.fittings).map(|(before, now)| now.unwrap_or(*before)).collect();
-        (
-            Load { inflation: begin, fittings: self.fittings.clone() },
-            Load { inflation: end, fittings },
-        )
+        (Load { inflation: begin, fittings: self.fittings.clone() }, Load { inflation: end, fittings })
     }
 
     fn row(&self, step: usize, state: &State, fields: &Fields) -> Row {

@@ -2,15 +2,14 @@
 
 use bulge_muscles::settings::{Keys, Settings};
 use bulge_muscles::{Construction, Dimension, FileError, Length, Muscle};
-use core::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
 use super::read::{copies, in_range, name, needed, number, positive};
 use crate::mesh::Mesh;
 use crate::mesher::{Grading, Pleated, Surface, grid, revolved};
-use crate::solver::Copies;
+use crate::state::Copies;
 use crate::structure::{Fitting, Support};
-use core::f64::consts::PI;
+use core::f64::consts::{FRAC_PI_2, PI};
 
 const KEYS: Keys = &[
     ("kind", "kind = \"tube\""),
@@ -79,7 +78,8 @@ pub(super) fn read(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Sou
         (Some(_), None) => from_file(settings, folder),
         (None, Some(table)) => {
             if settings.get("scale").is_some() {
-                let what = "`[scale]` is for a mesh from a file: our own meshes know their size and their symmetry";
+                let what =
+                    "`[scale]` is for a mesh from a file: our own meshes know their size and their symmetry";
                 return Err(settings.error(settings.key_span("scale"), what, "leave it out"));
             }
             table.check_keys()?;
@@ -92,13 +92,19 @@ fn from_file(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Source, F
     let named = name(settings, "mesh")?;
     let path = folder.map_or_else(|| named.into(), |folder| folder.join(named));
     let refused = |what: String| {
-        settings.error(settings.value_span("mesh"), what, "name a Gmsh (.msh) or VTK (.vtu) mesh beside the case")
+        settings.error(
+            settings.value_span("mesh"),
+            what,
+            "name a Gmsh (.msh) or VTK (.vtu) mesh beside the case",
+        )
     };
-    let size = std::fs::metadata(&path).map_err(|error| refused(format!("cannot read {}: {error}", path.display())))?;
+    let size = std::fs::metadata(&path)
+        .map_err(|error| refused(format!("cannot read {}: {error}", path.display())))?;
     if size.len() > MOST_BYTES {
         return Err(refused(format!("{} is larger than 2 GiB", path.display())));
     }
-    let bytes = std::fs::read(&path).map_err(|error| refused(format!("cannot read {}: {error}", path.display())))?;
+    let bytes =
+        std::fs::read(&path).map_err(|error| refused(format!("cannot read {}: {error}", path.display())))?;
     let mut mesh = Mesh::from_bytes(&bytes, &path.display().to_string())
         .map_err(|error| FileError::whole(&error.file, error.what.clone(), error.instead.clone()))?;
     let scale = settings.table("scale", "`[scale]`", SCALE)?.ok_or_else(|| settings.missing("scale"))?;
@@ -135,6 +141,14 @@ fn known(kind: Kind) -> &'static [&'static str] {
     }
 }
 
+/// What `[mesher]` says of any mesh.
+struct Wish<'a, 't> {
+    table: &'a Settings<'t>,
+    cells: Vec<usize>,
+    is_quadratic: bool,
+    muscle: Option<Muscle>,
+}
+
 fn made(table: &Settings<'_>, folder: Option<&Path>) -> Result<Source, FileError> {
     let kind = table.word("kind", KINDS)?.ok_or_else(|| table.missing("kind"))?;
     for (key, _) in KEYS {
@@ -144,106 +158,140 @@ fn made(table: &Settings<'_>, folder: Option<&Path>) -> Result<Source, FileError
             return Err(table.error(table.key_span(key), what, format!("it has {}", known(kind).join(", "))));
         }
     }
+    let is_quadratic = match table.count::<u8>("order")? {
+        None | Some(1) => false,
+        Some(2) => true,
+        Some(_) => {
+            let what = "`order` is 1 (straight edges) or 2 (a node on each edge)";
+            return Err(table.error(table.value_span("order"), what, "write `order = 1` or `order = 2`"));
+        }
+    };
     let muscle = table.get("muscle").map(|_| table.muscle("muscle", folder)).transpose()?;
-    let of_muscle = |key: &str, value: Option<f64>| -> Result<f64, FileError> {
-        match positive(table, key, Dimension::LENGTH)?.or(value) {
-            Some(value) => Ok(value),
-            None => Err(table.missing(key)),
-        }
-    };
-    let order = number(table, "order", |x| x == 1.0 || x == 2.0, "1 or 2")?.unwrap_or(1.0);
-    let is_quadratic = order > 1.0;
-    let fitting = |name: &str| (name.to_owned(), Fitting::Placed);
-    let held = |group: &str, support: Support| (group.to_owned(), support);
-    let plane = |normal: [f64; 3]| Support::Plane { normal };
-    let single = |cells: &[usize]| -> Result<usize, FileError> {
-        match cells {
-            [one] => Ok(*one),
-            _ => Err(table.error(table.value_span("cells"), "this mesh is a line: it takes one number of cells", "write such as `cells = [60]`")),
-        }
-    };
-    let pair = |cells: &[usize]| -> Result<[usize; 2], FileError> {
-        match cells {
-            [u, v] => Ok([*u, *v]),
-            _ => Err(table.error(table.value_span("cells"), "this mesh is a surface: it takes two numbers of cells", "write such as `cells = [18, 60]`: round, and along")),
-        }
-    };
-    let cells = cells(table)?;
-    let mut source = Source {
-        mesh: Mesh::default(),
-        copies: Copies::ONE,
-        length: None,
-        supports: Vec::new(),
-        fittings: Vec::new(),
-        muscle: None,
-    };
-    match kind {
-        Kind::Tube => {
-            let radius = of_muscle("radius", muscle.as_ref().map(|m| m.end_radius().to_m()))?;
-            let length = of_muscle("length", muscle.as_ref().map(|m| m.length().to_m()))?;
-            let grading = number(table, "grading", |x| (1.0..=1e4).contains(&x), "from 1 to 10000")?.unwrap_or(1.0);
-            source.mesh =
-                revolved(|t| [radius, length * t], single(&cells)?, is_quadratic, Grading::Ends(grading));
-            source.length = Some(length);
-            source.fittings = vec![fitting("bottom"), fitting("top")];
-            source.supports = vec![
-                held("first", Support::Fitting { fitting: 0 }),
-                held("last", Support::Fitting { fitting: 1 }),
-            ];
-        }
-        Kind::Disc => {
-            let radius = needed(table, "radius", Dimension::LENGTH)?;
-            source.mesh =
-                revolved(|t| [radius * (1.0 - t), 0.0], single(&cells)?, is_quadratic, Grading::Even);
-            source.supports = vec![held("first", Support::Fixed), held("last", Support::Axis)];
-        }
-        Kind::Sphere => {
-            let radius = needed(table, "radius", Dimension::LENGTH)?;
-            let arc = |t: f64| {
-                let angle = FRAC_PI_2 * t;
-                [if t >= 1.0 { 0.0 } else { radius * angle.cos() }, radius * angle.sin()]
-            };
-            source.mesh = revolved(arc, single(&cells)?, is_quadratic, Grading::Even);
-            source.supports = vec![held("first", plane([0.0, 0.0, 1.0])), held("last", Support::Axis)];
-            source.copies = Copies { around: 1.0, along: 2.0 };
-        }
-        Kind::Square => {
-            let half = 0.5 * needed(table, "side", Dimension::LENGTH)?;
-            let place = |u: f64, v: f64| [half * u, half * v, 0.0];
-            source.mesh = grid(&Surface { place: &place, pattern: None, cells: pair(&cells)?, is_quadratic });
-            source.supports = vec![
-                held("u0", plane([1.0, 0.0, 0.0])),
-                held("v0", plane([0.0, 1.0, 0.0])),
-                held("u1", plane([0.0, 0.0, 1.0])),
-                held("v1", plane([0.0, 0.0, 1.0])),
-            ];
-            source.copies = Copies { around: 4.0, along: 2.0 };
-        }
-        Kind::Pleated => {
-            let pleated = pleated(table, muscle.as_ref(), pair(&cells)?, is_quadratic)?;
-            source.mesh = pleated.half_lobe();
-            let angle = PI / pleated.fibres as f64;
-            source.supports = vec![
-                held("fibre", plane([0.0, 1.0, 0.0])),
-                held("top", plane([-angle.sin(), angle.cos(), 0.0])),
-                held("middle", plane([0.0, 0.0, 1.0])),
-                held("end", Support::Fitting { fitting: 0 }),
-            ];
-            source.fittings = vec![fitting("top")];
-            source.copies = Copies { around: 2.0 * pleated.fibres as f64, along: 2.0 };
-            source.length = Some(pleated.length);
-        }
-    }
-    source.muscle = muscle;
+    let wish = Wish { table, cells: cells(table)?, is_quadratic, muscle };
+    let mut source = match kind {
+        Kind::Tube => wish.tube(),
+        Kind::Disc => wish.disc(),
+        Kind::Sphere => wish.sphere(),
+        Kind::Square => wish.square(),
+        Kind::Pleated => wish.pleated(),
+    }?;
+    source.muscle = wish.muscle;
     Ok(source)
 }
 
-fn pleated(
-    table: &Settings<'_>,
-    muscle: Option<&Muscle>,
-    cells: [usize; 2],
-    is_quadratic: bool,
-) -> Result<Pleated, FileError> {
+fn placed(name: &str) -> (String, Fitting) {
+    (name.to_owned(), Fitting::Placed)
+}
+
+fn held(group: &str, support: Support) -> (String, Support) {
+    (group.to_owned(), support)
+}
+
+fn plane(normal: [f64; 3]) -> Support {
+    Support::Plane { normal }
+}
+
+fn source(mesh: Mesh, copies: Copies, supports: Vec<(String, Support)>) -> Source {
+    Source { mesh, copies, supports, length: None, fittings: Vec::new(), muscle: None }
+}
+
+impl Wish<'_, '_> {
+    /// Elements of a line.
+    fn line(&self) -> Result<usize, FileError> {
+        let [one] = self.cells[..] else {
+            let what = "this mesh is a line: it takes one number of cells";
+            return Err(self.table.error(
+                self.table.value_span("cells"),
+                what,
+                "write such as `cells = [60]`",
+            ));
+        };
+        Ok(one)
+    }
+
+    /// Cells of a surface.
+    fn surface(&self) -> Result<[usize; 2], FileError> {
+        let [u, v] = self.cells[..] else {
+            let what = "this mesh is a surface: it takes two numbers of cells";
+            let instead = "write such as `cells = [18, 60]`: round, and along";
+            return Err(self.table.error(self.table.value_span("cells"), what, instead));
+        };
+        Ok([u, v])
+    }
+
+    /// A length of the table, or else of the muscle.
+    fn length(&self, key: &str, of_muscle: impl Fn(&Muscle) -> Option<Length>) -> Result<f64, FileError> {
+        let stated = positive(self.table, key, Dimension::LENGTH)?;
+        let known = || self.muscle.as_ref().and_then(of_muscle).map(Length::to_m);
+        stated.or_else(known).ok_or_else(|| self.table.missing(key))
+    }
+
+    fn tube(&self) -> Result<Source, FileError> {
+        let radius = self.length("radius", |muscle| Some(muscle.end_radius()))?;
+        let length = self.length("length", |muscle| Some(muscle.length()))?;
+        let range = |ratio: f64| (1.0..=1e4).contains(&ratio);
+        let grading = number(self.table, "grading", range, "from 1 to 10000")?.unwrap_or(1.0);
+        let mesh =
+            revolved(|t| [radius, length * t], self.line()?, self.is_quadratic, Grading::Ends(grading));
+        let supports = vec![
+            held("first", Support::Fitting { fitting: 0 }),
+            held("last", Support::Fitting { fitting: 1 }),
+        ];
+        let fittings = vec![placed("bottom"), placed("top")];
+        Ok(Source { fittings, length: Some(length), ..source(mesh, Copies::ONE, supports) })
+    }
+
+    fn disc(&self) -> Result<Source, FileError> {
+        let radius = needed(self.table, "radius", Dimension::LENGTH)?;
+        // From the rim inwards: z grows along the line as it is inflated.
+        let line = |t: f64| [radius * (1.0 - t), 0.0];
+        let mesh = revolved(line, self.line()?, self.is_quadratic, Grading::Even);
+        let supports = vec![held("first", Support::Fixed), held("last", Support::Axis)];
+        Ok(source(mesh, Copies::ONE, supports))
+    }
+
+    fn sphere(&self) -> Result<Source, FileError> {
+        let radius = needed(self.table, "radius", Dimension::LENGTH)?;
+        let arc = |t: f64| {
+            let angle = FRAC_PI_2 * t;
+            [if t >= 1.0 { 0.0 } else { radius * angle.cos() }, radius * angle.sin()]
+        };
+        let mesh = revolved(arc, self.line()?, self.is_quadratic, Grading::Even);
+        let supports = vec![held("first", plane([0.0, 0.0, 1.0])), held("last", Support::Axis)];
+        Ok(source(mesh, Copies { around: 1.0, along: 2.0 }, supports))
+    }
+
+    fn square(&self) -> Result<Source, FileError> {
+        let half = 0.5 * needed(self.table, "side", Dimension::LENGTH)?;
+        let place = |u: f64, v: f64| [half * u, half * v, 0.0];
+        let (cells, is_quadratic) = (self.surface()?, self.is_quadratic);
+        let mesh = grid(&Surface { place: &place, pattern: None, cells, is_quadratic });
+        let supports = vec![
+            held("u0", plane([1.0, 0.0, 0.0])),
+            held("v0", plane([0.0, 1.0, 0.0])),
+            held("u1", plane([0.0, 0.0, 1.0])),
+            held("v1", plane([0.0, 0.0, 1.0])),
+        ];
+        Ok(source(mesh, Copies { around: 4.0, along: 2.0 }, supports))
+    }
+
+    fn pleated(&self) -> Result<Source, FileError> {
+        let pleated = pleated(self)?;
+        let angle = PI / pleated.fibres as f64;
+        let supports = vec![
+            held("fibre", plane([0.0, 1.0, 0.0])),
+            held("top", plane([-angle.sin(), angle.cos(), 0.0])),
+            held("middle", plane([0.0, 0.0, 1.0])),
+            held("end", Support::Fitting { fitting: 0 }),
+        ];
+        let copies = Copies { around: 2.0 * pleated.fibres as f64, along: 2.0 };
+        let whole = source(pleated.half_lobe(), copies, supports);
+        Ok(Source { fittings: vec![placed("top")], length: Some(pleated.length), ..whole })
+    }
+}
+
+fn pleated(wish: &Wish<'_, '_>) -> Result<Pleated, FileError> {
+    let (table, muscle) = (wish.table, wish.muscle.as_ref());
     let own = muscle.and_then(|muscle| match muscle.construction() {
         Construction::Pleated(pleated) => Some(*pleated),
         Construction::Braided(_) => None,
@@ -252,21 +300,14 @@ fn pleated(
         let what = "a pleated mesh needs a pleated muscle, and this one is braided";
         return Err(table.error(table.value_span("muscle"), what, "write `kind = \"tube\"`"));
     }
-    let fibres = match (table.count::<u32>("fibres")?, muscle.and_then(Muscle::fibres)) {
-        (Some(count), _) | (None, Some(count)) => count,
-        (None, None) => return Err(table.missing("fibres")),
-    };
+    let stated = table.count::<u32>("fibres")?;
+    let fibres = stated.or(muscle.and_then(Muscle::fibres)).ok_or_else(|| table.missing("fibres"))?;
     if !(3..=10_000).contains(&fibres) {
         let what = format!("{fibres} fibres are not possible: 3 to 10000 are");
         return Err(table.error(table.value_span("fibres"), what, "write such as `fibres = 40`"));
     }
-    let length = |key: &str, value: Option<f64>| -> Result<f64, FileError> {
-        let stated = positive(table, key, Dimension::LENGTH)?;
-        stated.or(value).ok_or_else(|| table.missing(key))
-    };
-    let radius = length("radius", own.map(|p| p.radius().to_m()))?;
-    let circumference =
-        length("circumference", own.and_then(|p| p.cloth_circumference()).map(|c| c.to_m()))?;
+    let radius = wish.length("radius", |_| own.map(|own| own.radius()))?;
+    let circumference = wish.length("circumference", |_| own.and_then(|own| own.cloth_circumference()))?;
     if circumference < 2.0 * PI * radius {
         let what = format!(
             "a cloth of {:.4} mm doesn't reach round the fibres' circle of {:.4} mm",
@@ -279,11 +320,11 @@ fn pleated(
     Ok(Pleated {
         fibres: fibres as usize,
         radius,
-        length: length("length", muscle.map(|m| m.length().to_m()))?,
+        length: wish.length("length", |muscle| Some(muscle.length()))?,
         circumference,
-        depth: depth.or(own.map(|p| p.pleat_depth().to_m())).unwrap_or(0.0),
-        cells,
-        is_quadratic,
+        depth: depth.or(own.map(|own| own.pleat_depth().to_m())).unwrap_or(0.0),
+        cells: wish.surface()?,
+        is_quadratic: wish.is_quadratic,
     })
 }
 
@@ -297,11 +338,10 @@ fn cells(table: &Settings<'_>) -> Result<Vec<usize>, FileError> {
         && numbers.iter().all(|n| (1..=MOST_CELLS).contains(n))
         && 2 * numbers.iter().product::<u64>() <= MOST_ELEMENTS;
     if !is_good {
-        let what = format!("`cells` must be one or two whole numbers from 1 to {MOST_CELLS}, for at most {MOST_ELEMENTS} elements");
+        let what = format!(
+            "`cells` must be one or two whole numbers from 1 to {MOST_CELLS}, for at most {MOST_ELEMENTS} elements"
+        );
         return Err(table.error(value.span(), what, "write such as `cells = [60]` or `cells = [18, 60]`"));
     }
-    numbers
-        .into_iter()
-        .map(|n| usize::try_from(n).map_err(|_| table.missing("cells")))
-        .collect()
+    numbers.into_iter().map(|n| usize::try_from(n).map_err(|_| table.missing("cells"))).collect()
 }

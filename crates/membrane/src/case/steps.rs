@@ -65,11 +65,21 @@ fn filling(table: &Settings<'_>, before: Option<&Step>) -> Result<Filling, FileE
     let given: Vec<&str> = keys.into_iter().filter(|key| table.get(key).is_some()).collect();
     if table.get("ambient").is_some() && given != ["gas"] {
         let what = "`ambient` is the pressure around a closed amount of gas";
-        return Err(table.error(table.key_span("ambient"), what, "leave it out, or write `gas = \"isothermal\"`"));
+        return Err(table.error(
+            table.key_span("ambient"),
+            what,
+            "leave it out, or write `gas = \"isothermal\"`",
+        ));
     }
     match given[..] {
         ["pressure"] => {
-            let at = in_range(table, "pressure", Dimension::PRESSURE, |p| p >= 0.0, "at least 0 (a gauge pressure)")?;
+            let at = in_range(
+                table,
+                "pressure",
+                Dimension::PRESSURE,
+                |p| p >= 0.0,
+                "at least 0 (a gauge pressure)",
+            )?;
             Ok(Filling::Pressure(at.unwrap_or_default()))
         }
         ["volume"] => Ok(Filling::Volume(positive(table, "volume", Dimension::VOLUME)?.unwrap_or_default())),
@@ -77,7 +87,11 @@ fn filling(table: &Settings<'_>, before: Option<&Step>) -> Result<Filling, FileE
             let gamma = table.word("gas", GASES)?.unwrap_or(1.0);
             if before.is_none() {
                 let what = "the first step has no gas in it yet";
-                return Err(table.error(table.key_span("gas"), what, "write a step with a `pressure` before it"));
+                return Err(table.error(
+                    table.key_span("gas"),
+                    what,
+                    "write a step with a `pressure` before it",
+                ));
             }
             let ambient = in_range(table, "ambient", Dimension::PRESSURE, |p| p >= 0.0, "at least 0")?;
             Ok(Filling::Closed { gamma, ambient: ambient.unwrap_or(AMBIENT) })
@@ -110,13 +124,23 @@ fn ends(
         for (name, value) in entries {
             let Some(fitting) = fittings.iter().position(|(known, _)| known == name) else {
                 let known: Vec<&str> = fittings.iter().map(|(name, _)| name.as_str()).collect();
-                let instead = if known.is_empty() { "add a support of the kind `fitting`".to_owned() } else { format!("there is {}", known.join(", ")) };
+                let instead = if known.is_empty() {
+                    "add a support of the kind `fitting`".to_owned()
+                } else {
+                    format!("there is {}", known.join(", "))
+                };
                 return Err(table.error(value.span(), format!("there is no fitting `{name}`"), instead));
             };
             if fittings[fitting].1 != kind {
                 let (what, instead) = match kind {
-                    Fitting::Placed => ("the force on this fitting is prescribed, not its place", "write `forces`, or `motion = \"placed\"` at its support"),
-                    Fitting::Loaded => ("the place of this fitting is prescribed, not its force", "write `places`, or `motion = \"loaded\"` at its support"),
+                    Fitting::Placed => (
+                        "the force on this fitting is prescribed, not its place",
+                        "write `forces`, or `motion = \"placed\"` at its support",
+                    ),
+                    Fitting::Loaded => (
+                        "the place of this fitting is prescribed, not its force",
+                        "write `places`, or `motion = \"loaded\"` at its support",
+                    ),
                 };
                 return Err(table.error(value.span(), what, instead));
             }
@@ -126,16 +150,28 @@ fn ends(
     if let Some(contraction) = table.quantity("contraction", Dimension::NONE)? {
         let Some(length) = source.length else {
             let what = "a contraction needs the length between the fittings";
-            return Err(table.error(table.key_span("contraction"), what, "add `length` to `[scale]`, or write `places`"));
+            return Err(table.error(
+                table.key_span("contraction"),
+                what,
+                "add `length` to `[scale]`, or write `places`",
+            ));
         };
         let top = fittings.iter().rposition(|(_, kind)| *kind == Fitting::Placed);
         let Some(top) = top else {
             let what = "a contraction needs a fitting whose place is prescribed";
-            return Err(table.error(table.key_span("contraction"), what, "add a support of the kind `fitting`"));
+            return Err(table.error(
+                table.key_span("contraction"),
+                what,
+                "add a support of the kind `fitting`",
+            ));
         };
         if !(-1.0..1.0).contains(&contraction) {
             let what = "the contraction is not possible: it must be above -100 % and below 100 %";
-            return Err(table.error(table.value_span("contraction"), what, "write such as `contraction = \"20 %\"`"));
+            return Err(table.error(
+                table.value_span("contraction"),
+                what,
+                "write such as `contraction = \"20 %\"`",
+            ));
         }
         if ends[top].is_some() {
             let what = "a step can't prescribe the place of a fitting and a contraction";

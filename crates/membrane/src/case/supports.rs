@@ -86,25 +86,25 @@ fn support(
             let (along, across) = (normal[2].abs() / size, normal[0].hypot(normal[1]) / size);
             if along > 1e-6 && across > 1e-6 {
                 let what = "a plane of symmetry must be level or contain the z axis: the volume is measured from there";
-                return Err(table.error(table.value_span("normal"), what, "turn the mesh, or hold it otherwise"));
+                return Err(table.error(
+                    table.value_span("normal"),
+                    what,
+                    "turn the mesh, or hold it otherwise",
+                ));
             }
             Support::Plane { normal }
         }
         Kind::Fitting => {
             let name = name(table, "fitting")?;
             let motion = table.word("motion", MOTIONS)?;
-            match fittings.iter().position(|(known, _)| known == name) {
-                Some(fitting) => {
-                    if let Some(motion) = motion {
-                        fittings[fitting].1 = motion;
-                    }
-                    Support::Fitting { fitting }
-                }
-                None => {
-                    fittings.push((name.to_owned(), motion.unwrap_or(Fitting::Placed)));
-                    Support::Fitting { fitting: fittings.len() - 1 }
-                }
+            let fitting = fittings.iter().position(|(known, _)| known == name).unwrap_or_else(|| {
+                fittings.push((name.to_owned(), Fitting::Placed));
+                fittings.len() - 1
+            });
+            if let Some(motion) = motion {
+                fittings[fitting].1 = motion;
             }
+            Support::Fitting { fitting }
         }
         Kind::Cyclic => {
             let partner = group(table, "partner", source)?.to_owned();

@@ -52,8 +52,9 @@ impl<const N: usize> Cable<N> {
     pub(crate) fn energy(&self, x: &[Vector; N], penalty: f64) -> f64 {
         let stiffness = self.stiffness(penalty);
         let each = self.points.iter().zip(&self.held);
-        let sum: f64 =
-            each.map(|(point, t0)| point.length * pull(stiffness, *t0, norm(mixed(x, &point.by))).energy).sum();
+        let sum: f64 = each
+            .map(|(point, t0)| point.length * pull(stiffness, *t0, norm(mixed(x, &point.by))).energy)
+            .sum();
         self.share * sum
     }
 
@@ -118,10 +119,5 @@ impl<const N: usize> Cable<N> {
             }
         }
         worst
-    }
-
-    /// Unstretched length.
-    pub(crate) fn length(&self) -> f64 {
-        self.points.iter().map(|point| point.length).sum()
     }
 }

@@ -148,8 +148,7 @@ impl<const N: usize> Ring<N> {
                     let each = count / cos;
                     // dl/dc = a/(2 l).
                     let first = each * pull.tension / (2.0 * stretch);
-                    let second =
-                        each * (pull.stiffness - pull.tension / stretch) / (4.0 * stretch * stretch);
+                    let second = each * (pull.stiffness - pull.tension / stretch) / (4.0 * stretch * stretch);
                     sum.w += each * pull.energy;
                     sum.w1 += first * a;
                     sum.w2 += first * b;

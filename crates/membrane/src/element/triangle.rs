@@ -143,8 +143,7 @@ impl<const N: usize> Triangle<N> {
             let [a0, a1] = point.by[a];
             for b in a..N {
                 let [b0, b1] = point.by[b];
-                let bend =
-                    point.area * (s[0] * a0 * b0 + s[1] * a1 * b1 + s[2] * (a0 * b1 + a1 * b0));
+                let bend = point.area * (s[0] * a0 * b0 + s[1] * a1 * b1 + s[2] * (a0 * b1 + a1 * b0));
                 let k = &mut out.stiffness[a][b];
                 for i in 0..3 {
                     for j in 0..3 {
@@ -160,7 +159,8 @@ impl<const N: usize> Triangle<N> {
     pub(crate) fn carried(&self, x: &[Vector; N]) -> Option<Carried> {
         let sheet = self.sheet.as_ref()?;
         let share = 1.0 / self.points.len() as f64;
-        let mut sum = Carried { force: [0.0; 2], stretch: [0.0; 2], direction: [0.0; 3], tension: Tension::Taut };
+        let mut sum =
+            Carried { force: [0.0; 2], stretch: [0.0; 2], direction: [0.0; 3], tension: Tension::Taut };
         for point in &self.points {
             let f = Self::gradient(point, x);
             let plane = Self::plane(sheet, &f);

@@ -130,8 +130,9 @@ impl Law {
         }
     }
 
-    /// Stiffness against small strains, N/m: the scale of its numbers.
-    pub(crate) fn stiffness(&self) -> f64 {
+    /// Stiffness against small strains, N/m.
+    #[cfg(test)]
+    fn stiffness(&self) -> f64 {
         match *self {
             Self::Hencky { stiffness, .. } | Self::SaintVenantKirchhoff { stiffness, .. } => stiffness,
             Self::NeoHooke { shear } | Self::Gent { shear, .. } => 3.0 * shear,

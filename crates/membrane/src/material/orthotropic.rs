@@ -55,74 +55,75 @@ impl Orthotropic {
         match full.tension {
             Tension::Taut => full,
             Tension::Slack => Plane { w: 0.0, s: [0.0; 3], d: [[0.0; 3]; 3], ..full },
-            Tension::Wrinkled => self.wrinkled(e, full),
+            Tension::Wrinkled => wrinkled(e, full),
         }
     }
+}
 
-    fn wrinkled(&self, e: [f64; 3], full: Plane) -> Plane {
-        let d = full.d;
-        let angle = self.across(&d, full.s);
-        let Across { m, m1, m2 } = Across::at(angle);
-        let (dm, dm1) = (times(&d, m), times(&d, m1));
-        let (q, curvature) = (-dot(m, full.s), dot(m, dm));
-        let g = (q / curvature).max(0.0);
-        let z = [e[0] + g * m[0], e[1] + g * m[1], e[2] + g * m[2]];
-        let s = times(&d, z);
-        // Second derivatives by (g, angle) and mixed with E: D* = D - B H^-1 B'.
-        let h11 = curvature;
-        let h12 = dot(m1, s) + g * dot(m, dm1);
-        let h22 = g * dot(m2, s) + g * g * dot(m1, dm1);
-        let b1 = dm;
-        let b2 = [g * dm1[0], g * dm1[1], g * dm1[2]];
-        let det = h11 * h22 - h12 * h12;
-        let mut tangent = d;
-        for i in 0..3 {
-            for j in 0..3 {
-                tangent[i][j] -= if det > 1e-14 * h11 * h11 {
-                    (h22 * b1[i] * b1[j] - h12 * (b1[i] * b2[j] + b2[i] * b1[j]) + h11 * b2[i] * b2[j]) / det
-                } else {
-                    b1[i] * b1[j] / h11
-                };
-            }
-        }
-        Plane { w: 0.5 * dot(s, z), s, d: tangent, tension: Tension::Wrinkled }
-    }
-
-    /// The angle of n: where the energy that a wrinkle can take, (m.S)^2/(m.D m)/2 with m.S < 0, is largest.
-    fn across(&self, d: &[[f64; 3]; 3], s: [f64; 3]) -> f64 {
-        let gain = |angle: f64| {
-            let m = Across::at(angle).m;
-            let q = (-dot(m, s)).max(0.0);
-            q * q / dot(m, times(d, m))
-        };
-        let step = core::f64::consts::PI / DIRECTIONS as f64;
-        let best = (0..DIRECTIONS)
-            .map(|i| (gain(i as f64 * step), i as f64 * step))
-            .fold((f64::MIN, 0.0), |a, b| if b.0 > a.0 { b } else { a });
-        let mut angle = best.1;
-        let (mut low, mut high) = (angle - step, angle + step);
-        // Newton on d/da ln gain = 2 q'/q - k'/k, kept within the bracket by halving it.
-        for _ in 0..STEPS {
-            let Across { m, m1, m2 } = Across::at(angle);
-            let (dm, dm1) = (times(d, m), times(d, m1));
-            let (q, q1, q2) = (dot(m, s), dot(m1, s), dot(m2, s));
-            let (k, k1, k2) = (dot(m, dm), 2.0 * dot(m1, dm), 2.0 * (dot(m2, dm) + dot(m1, dm1)));
-            let slope = 2.0 * q1 / q - k1 / k;
-            let bend = 2.0 * (q2 / q - (q1 / q) * (q1 / q)) - (k2 / k - (k1 / k) * (k1 / k));
-            if slope > 0.0 {
-                low = angle;
+/// Relaxed along one direction.
+fn wrinkled(e: [f64; 3], full: Plane) -> Plane {
+    let d = full.d;
+    let angle = across(&d, full.s);
+    let Across { m, m1, m2 } = Across::at(angle);
+    let (dm, dm1) = (times(&d, m), times(&d, m1));
+    let (q, curvature) = (-dot(m, full.s), dot(m, dm));
+    let g = (q / curvature).max(0.0);
+    let z = [e[0] + g * m[0], e[1] + g * m[1], e[2] + g * m[2]];
+    let s = times(&d, z);
+    // Second derivatives by (g, angle) and mixed with E: D* = D - B H^-1 B'.
+    let h11 = curvature;
+    let h12 = dot(m1, s) + g * dot(m, dm1);
+    let h22 = g * dot(m2, s) + g * g * dot(m1, dm1);
+    let b1 = dm;
+    let b2 = [g * dm1[0], g * dm1[1], g * dm1[2]];
+    let det = h11 * h22 - h12 * h12;
+    let mut tangent = d;
+    for i in 0..3 {
+        for j in 0..3 {
+            tangent[i][j] -= if det > 1e-14 * h11 * h11 {
+                (h22 * b1[i] * b1[j] - h12 * (b1[i] * b2[j] + b2[i] * b1[j]) + h11 * b2[i] * b2[j]) / det
             } else {
-                high = angle;
-            }
-            let newton = angle - slope / bend;
-            let next = if bend < 0.0 && newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if (next - angle).abs() < 1e-15 {
-                break;
-            }
-            angle = next;
+                b1[i] * b1[j] / h11
+            };
         }
-        angle
     }
+    Plane { w: 0.5 * dot(s, z), s, d: tangent, tension: Tension::Wrinkled }
+}
+
+/// The angle of n: where the energy that a wrinkle can take, (m.S)^2/(m.D m)/2 with m.S < 0, is largest.
+fn across(d: &[[f64; 3]; 3], s: [f64; 3]) -> f64 {
+    let gain = |angle: f64| {
+        let m = Across::at(angle).m;
+        let q = (-dot(m, s)).max(0.0);
+        q * q / dot(m, times(d, m))
+    };
+    let step = core::f64::consts::PI / DIRECTIONS as f64;
+    let best = (0..DIRECTIONS)
+        .map(|i| (gain(i as f64 * step), i as f64 * step))
+        .fold((f64::MIN, 0.0), |a, b| if b.0 > a.0 { b } else { a });
+    let mut angle = best.1;
+    let (mut low, mut high) = (angle - step, angle + step);
+    // Newton on d/da ln gain = 2 q'/q - k'/k, kept within the bracket by halving it.
+    for _ in 0..STEPS {
+        let Across { m, m1, m2 } = Across::at(angle);
+        let (dm, dm1) = (times(d, m), times(d, m1));
+        let (q, q1, q2) = (dot(m, s), dot(m1, s), dot(m2, s));
+        let (k, k1, k2) = (dot(m, dm), 2.0 * dot(m1, dm), 2.0 * (dot(m2, dm) + dot(m1, dm1)));
+        let slope = 2.0 * q1 / q - k1 / k;
+        let bend = 2.0 * (q2 / q - (q1 / q) * (q1 / q)) - (k2 / k - (k1 / k) * (k1 / k));
+        if slope > 0.0 {
+            low = angle;
+        } else {
+            high = angle;
+        }
+        let newton = angle - slope / bend;
+        let next = if bend < 0.0 && newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        if (next - angle).abs() < 1e-15 {
+            break;
+        }
+        angle = next;
+    }
+    angle
 }
 
 /// n n over the strains (11, 22, 2 x 12), and its derivatives by the angle of n.

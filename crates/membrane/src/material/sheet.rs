@@ -97,7 +97,6 @@ impl Sheet {
         };
         Principal { energy, tension }
     }
-
 }
 
 fn mixed(mut relaxed: Plane, full: &Plane, residual: f64) -> Plane {

@@ -66,7 +66,15 @@ mod tests {
     /// Slack, wrinkled, taut, and either side of each border.
     fn places(law: &Law) -> Vec<(f64, f64)> {
         let n = law.natural_width(1.4);
-        vec![(0.9, 0.7), (1.4, 0.5), (0.4, 1.3), (1.5, 1.2), (1.4, n - 1e-4), (1.4, n + 1e-4), (1.0 + 1e-4, 0.4)]
+        vec![
+            (0.9, 0.7),
+            (1.4, 0.5),
+            (0.4, 1.3),
+            (1.5, 1.2),
+            (1.4, n - 1e-4),
+            (1.4, n + 1e-4),
+            (1.0 + 1e-4, 0.4),
+        ]
     }
 
     #[test]
@@ -96,7 +104,9 @@ mod tests {
             for (c1, c2) in [(1.4, n), (1.0, 0.6)] {
                 let (a, b) = (relaxed(&law, c1 - 1e-9, c2 - 1e-9), relaxed(&law, c1 + 1e-9, c2 + 1e-9));
                 assert_ne!(a.tension, b.tension);
-                for (x, y) in [(a.energy.w, b.energy.w), (a.energy.w1, b.energy.w1), (a.energy.w2, b.energy.w2)] {
+                for (x, y) in
+                    [(a.energy.w, b.energy.w), (a.energy.w1, b.energy.w1), (a.energy.w2, b.energy.w2)]
+                {
                     assert!((x - y).abs() < 1e-7, "{law:?} {c1} {c2}");
                 }
             }

@@ -1,0 +1,311 @@
+//! Whether the membranes of a mesh close a volume, and which way they face.
+//!
+//! The pressure acts along the normals, and the volume is the flux through the elements: neighbours must face the same side, and an open edge
+//! must lie on something that closes it without elements (a fitting, a fixed rim, a plane of symmetry, the other edge of a cyclic sector).
+
+use crate::element::{Vector, cross, dot, sub};
+use crate::error::MembraneError;
+use crate::mesh::{Block, CellKind, Mesh};
+use std::collections::HashMap;
+
+/// One cell: block and number in it.
+type Cell = (usize, usize);
+
+/// Cells whose nodes are to be taken in the opposite sense.
+pub(crate) struct Turned {
+    is_turned: HashMap<Cell, bool>,
+}
+
+/// A side of a cell by its two end nodes, in order of their numbers.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    cell: Cell,
+    /// Whether the cell goes from the smaller to the larger number.
+    is_forward: bool,
+    middle: Option<usize>,
+}
+
+impl Turned {
+    pub(crate) fn is_turned(&self, block: usize, cell: usize) -> bool {
+        self.is_turned.get(&(block, cell)).copied().unwrap_or(false)
+    }
+}
+
+/// Checks the membranes of the blocks, and finds which cells face the wrong way. `is_held`: nodes with a support.
+pub(crate) fn oriented(mesh: &Mesh, blocks: &[usize], is_held: &[bool]) -> Result<Turned, MembraneError> {
+    let (triangles, lines): (Vec<usize>, Vec<usize>) = blocks
+        .iter()
+        .copied()
+        .partition(|b| matches!(mesh.blocks[*b].kind, CellKind::Triangle3 | CellKind::Triangle6));
+    let mut is_turned = HashMap::new();
+    let sides = sides(mesh, &triangles);
+    check_sides(mesh, &sides, is_held)?;
+    spread(mesh, &triangles, &sides, &mut is_turned)?;
+    chain(mesh, &lines, is_held, &mut is_turned)?;
+    Ok(Turned { is_turned })
+}
+
+fn sides(mesh: &Mesh, blocks: &[usize]) -> Vec<((usize, usize), Vec<Side>)> {
+    let mut sides: HashMap<(usize, usize), Vec<Side>> = HashMap::new();
+    for b in blocks {
+        let block = &mesh.blocks[*b];
+        for (c, cell) in block.cells.chunks_exact(block.kind.nodes()).enumerate() {
+            for k in 0..3 {
+                let (from, to) = (cell[k], cell[(k + 1) % 3]);
+                let side = Side { cell: (*b, c), is_forward: from < to, middle: cell.get(3 + k).copied() };
+                sides.entry((from.min(to), from.max(to))).or_default().push(side);
+            }
+        }
+    }
+    let mut all: Vec<_> = sides.into_iter().collect();
+    // The first one to complain about is the same every time.
+    all.sort_by_key(|(nodes, _)| *nodes);
+    all
+}
+
+fn check_sides(
+    mesh: &Mesh,
+    sides: &[((usize, usize), Vec<Side>)],
+    is_held: &[bool],
+) -> Result<(), MembraneError> {
+    let named = |side: &Side| name(mesh, side.cell);
+    let node = |node: usize| mesh.numbers.get(node).copied().unwrap_or(node as u64 + 1);
+    for ((a, b), found) in sides {
+        let Some(first) = found.first() else { continue };
+        let (element, group) = named(first);
+        let nodes = [node(*a), node(*b)];
+        match found.len() {
+            1 if !(is_held[*a] && is_held[*b]) => {
+                return Err(MembraneError::Hole { element, group, nodes });
+            }
+            2 if found[0].middle != found[1].middle => {
+                let (other, _) = named(&found[1]);
+                return Err(MembraneError::MixedOrders { element, other, group, nodes });
+            }
+            1 | 2 => (),
+            count => return Err(MembraneError::Branch { element, group, nodes, count }),
+        }
+    }
+    Ok(())
+}
+
+/// Lets each connected surface face one way: outwards, if its volume says where that is.
+fn spread(
+    mesh: &Mesh,
+    blocks: &[usize],
+    sides: &[((usize, usize), Vec<Side>)],
+    is_turned: &mut HashMap<Cell, bool>,
+) -> Result<(), MembraneError> {
+    let mut neighbours: HashMap<Cell, Vec<(Cell, bool)>> = HashMap::new();
+    for (_, found) in sides {
+        if let [a, b] = found[..] {
+            // Neighbours that face the same side go along their common side in opposite senses.
+            let is_same = a.is_forward != b.is_forward;
+            neighbours.entry(a.cell).or_default().push((b.cell, is_same));
+            neighbours.entry(b.cell).or_default().push((a.cell, is_same));
+        }
+    }
+    for b in blocks {
+        let block = &mesh.blocks[*b];
+        for c in 0..block.cells.len() / block.kind.nodes() {
+            if is_turned.contains_key(&(*b, c)) {
+                continue;
+            }
+            let mut surface = vec![(*b, c)];
+            is_turned.insert((*b, c), false);
+            let (mut next, mut volume, mut size) = (0, 0.0, 0.0);
+            while let Some(cell) = surface.get(next).copied() {
+                next += 1;
+                let turned = is_turned[&cell];
+                let own = flux(mesh, cell);
+                volume += if turned { -own } else { own };
+                size += own.abs();
+                for (other, is_same) in neighbours.get(&cell).into_iter().flatten() {
+                    let wanted = turned == *is_same;
+                    match is_turned.get(other) {
+                        Some(there) if *there == wanted => (),
+                        Some(_) => {
+                            let (element, group) = name(mesh, *other);
+                            return Err(MembraneError::Twisted { element, group });
+                        }
+                        None => {
+                            is_turned.insert(*other, wanted);
+                            surface.push(*other);
+                        }
+                    }
+                }
+            }
+            if volume < -1e-9 * size {
+                for cell in surface {
+                    is_turned.entry(cell).and_modify(|turned| *turned = !*turned);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The volume between a triangle's corners and the axis.
+fn flux(mesh: &Mesh, (b, c): Cell) -> f64 {
+    let block = &mesh.blocks[b];
+    let cell = &block.cells[c * block.kind.nodes()..];
+    let [p, q, r]: [Vector; 3] = [0, 1, 2].map(|k| mesh.nodes[cell[k]]);
+    let mean = [(p[0] + q[0] + r[0]) / 3.0, (p[1] + q[1] + r[1]) / 3.0, 0.0];
+    0.25 * dot(mean, cross(sub(q, p), sub(r, p)))
+}
+
+/// Lines of revolution: every node joins two of them, or is an end that is held or lies on the axis.
+fn chain(
+    mesh: &Mesh,
+    blocks: &[usize],
+    is_held: &[bool],
+    is_turned: &mut HashMap<Cell, bool>,
+) -> Result<(), MembraneError> {
+    let mut at: HashMap<usize, Vec<(Cell, bool)>> = HashMap::new();
+    for b in blocks {
+        let block = &mesh.blocks[*b];
+        for (c, cell) in block.cells.chunks_exact(block.kind.nodes()).enumerate() {
+            at.entry(cell[0]).or_default().push(((*b, c), true));
+            at.entry(cell[1]).or_default().push(((*b, c), false));
+        }
+    }
+    let size = mesh.nodes.iter().fold(0.0_f64, |a, x| a.max(x[0].abs()));
+    let mut nodes: Vec<_> = at.iter().collect();
+    nodes.sort_by_key(|(node, _)| **node);
+    for (node, ends) in &nodes {
+        let number = mesh.numbers.get(**node).copied().unwrap_or(**node as u64 + 1);
+        let (element, group) = name(mesh, ends[0].0);
+        let is_closed = is_held[**node] || mesh.nodes[**node][0] <= 1e-9 * size;
+        match ends.len() {
+            1 if !is_closed => return Err(MembraneError::Hole { element, group, nodes: [number; 2] }),
+            1 | 2 => (),
+            count => return Err(MembraneError::Branch { element, group, nodes: [number; 2], count }),
+        }
+    }
+    // From one element to the next, all in one sense; upwards where that can be told.
+    for (_, ends) in &nodes {
+        let first = ends[0].0;
+        if is_turned.contains_key(&first) {
+            continue;
+        }
+        let mut line = vec![first];
+        is_turned.insert(first, false);
+        let (mut next, mut rise) = (0, 0.0);
+        while let Some((b, c)) = line.get(next).copied() {
+            next += 1;
+            let block = &mesh.blocks[b];
+            let cell = &block.cells[c * block.kind.nodes()..];
+            let turned = is_turned[&(b, c)];
+            let (p, q) = (mesh.nodes[cell[0]], mesh.nodes[cell[1]]);
+            let own = (p[0] * p[0] + p[0] * q[0] + q[0] * q[0]) * (q[2] - p[2]);
+            rise += if turned { -own } else { own };
+            for (node, is_start) in [(cell[0], true), (cell[1], false)] {
+                for (other, other_is_start) in &at[&node] {
+                    is_turned.entry(*other).or_insert_with(|| {
+                        line.push(*other);
+                        // One ends where the next begins.
+                        turned ^ (is_start == *other_is_start)
+                    });
+                }
+            }
+        }
+        if rise < 0.0 {
+            for cell in line {
+                is_turned.entry(cell).and_modify(|turned| *turned = !*turned);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Number and group of a cell, for messages.
+fn name(mesh: &Mesh, (b, c): Cell) -> (u64, String) {
+    let Block { numbers, group, .. } = &mesh.blocks[b];
+    (numbers.get(c).copied().unwrap_or(c as u64 + 1), group.clone())
+}
+
+/// The nodes of a cell in the opposite sense.
+pub(crate) fn backwards<T, const N: usize>(kind: CellKind, mut nodes: [T; N]) -> [T; N] {
+    match kind {
+        CellKind::Point => (),
+        CellKind::Line2 | CellKind::Line3 => nodes.swap(0, 1),
+        CellKind::Triangle3 => nodes.swap(1, 2),
+        CellKind::Triangle6 => {
+            nodes.swap(1, 2);
+            nodes.swap(3, 5);
+        }
+    }
+    nodes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tetrahedron's surface, some of its faces inside out.
+    fn tetrahedron() -> Mesh {
+        let faces = [[0, 1, 2], [0, 1, 3], [1, 2, 3], [0, 2, 3]];
+        Mesh {
+            nodes: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            numbers: vec![11, 12, 13, 14],
+            blocks: vec![Block {
+                group: "skin".to_owned(),
+                kind: CellKind::Triangle3,
+                cells: faces.concat(),
+                numbers: vec![21, 22, 23, 24],
+                pattern: None,
+            }],
+        }
+    }
+
+    #[test]
+    fn a_closed_surface_faces_outwards() {
+        let mesh = tetrahedron();
+        let turned = oriented(&mesh, &[0], &[false; 4]).unwrap();
+        let volume: f64 =
+            (0..4).map(|c| flux(&mesh, (0, c)) * if turned.is_turned(0, c) { -1.0 } else { 1.0 }).sum();
+        assert!((volume - 1.0 / 6.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_hole_a_branch_and_a_twist_are_named() {
+        let mut mesh = tetrahedron();
+        let face = mesh.blocks[0].cells.split_off(9);
+        let error = oriented(&mesh, &[0], &[false; 4]).err().unwrap();
+        assert!(matches!(error, MembraneError::Hole { nodes: [11, 13], .. }), "{error}");
+        // Held at its rim it closes.
+        assert!(oriented(&mesh, &[0], &[true, false, true, true]).is_ok());
+        mesh.blocks[0].cells.extend(face.iter().chain(&face));
+        mesh.blocks[0].numbers.push(25);
+        let error = oriented(&mesh, &[0], &[false; 4]).err().unwrap();
+        assert!(matches!(error, MembraneError::Branch { count: 3, .. }), "{error}");
+        // A strip of triangles with a half twist, held at its edge.
+        let strip = [[0, 1, 2], [1, 2, 3], [2, 3, 4], [3, 4, 0], [4, 0, 1]];
+        mesh.nodes = (0..5).map(|i| [f64::from(i).cos(), f64::from(i).sin(), f64::from(i * i)]).collect();
+        mesh.blocks[0].cells = strip.concat();
+        let error = oriented(&mesh, &[0], &[true; 5]).err().unwrap();
+        assert!(matches!(error, MembraneError::Twisted { .. }), "{error}");
+    }
+
+    #[test]
+    fn a_line_has_two_ends() {
+        let line = |z: [f64; 3], cells: Vec<usize>| Mesh {
+            nodes: z.map(|z| [1.0, 0.0, z]).to_vec(),
+            numbers: vec![1, 2, 3],
+            blocks: vec![Block {
+                group: "wall".to_owned(),
+                kind: CellKind::Line2,
+                cells,
+                numbers: vec![1, 2],
+                pattern: None,
+            }],
+        };
+        let mesh = line([0.0, 1.0, 2.0], vec![0, 1, 2, 1]);
+        let turned = oriented(&mesh, &[0], &[true, false, true]).unwrap();
+        assert_eq!([turned.is_turned(0, 0), turned.is_turned(0, 1)], [false, true]);
+        let down = line([2.0, 1.0, 0.0], vec![0, 1, 1, 2]);
+        assert!(oriented(&down, &[0], &[true, false, true]).unwrap().is_turned(0, 1));
+        let error = oriented(&mesh, &[0], &[true, false, false]).err().unwrap();
+        assert!(matches!(error, MembraneError::Hole { nodes: [3, 3], .. }), "{error}");
+    }
+}

@@ -1,0 +1,102 @@
+//! What the cells of a drawing show of their elements.
+
+use super::drawing::{Cell, Drawing};
+use super::map::Vector;
+use bulge_membrane::{Fields, SheetField, Tension, ThreadField};
+use vtkio::model::Attribute;
+
+/// State of a cell that is no sheet.
+const NO_SHEET: i32 = -1;
+
+/// Names of the groups, each once, and the index there of each group of the fields.
+pub(super) fn group_names(fields: &Fields) -> (Vec<&str>, Vec<i32>) {
+    let mut names: Vec<&str> = Vec::new();
+    let mut indices = Vec::new();
+    for group in &fields.groups {
+        let index = names.iter().position(|name| *name == group.name).unwrap_or_else(|| {
+            names.push(&group.name);
+            names.len() - 1
+        });
+        indices.push(i32::try_from(index).unwrap_or(i32::MAX));
+    }
+    (names, indices)
+}
+
+/// All arrays of the cells.
+pub(super) fn of_cells(drawing: &Drawing, fields: &Fields) -> Vec<Attribute> {
+    let (_, indices) = group_names(fields);
+    let group: Vec<i32> = drawing.cells.iter().map(|cell| indices[cell.group]).collect();
+    let mut arrays = vec![Attribute::generic("group", 1).with_data(group)];
+    let layers = |count: fn(&bulge_membrane::GroupFields) -> usize| {
+        // The first layer's arrays are there in every file, so that a reader can rely on them.
+        fields.groups.iter().map(count).fold(1, usize::max)
+    };
+    for layer in 0..layers(|group| group.sheets.len()) {
+        arrays.extend(sheets(drawing, fields, layer));
+    }
+    for layer in 0..layers(|group| group.threads.len()) {
+        arrays.extend(threads(drawing, fields, layer));
+    }
+    arrays
+}
+
+/// A name in a layer.
+fn name(base: &str, layer: usize) -> String {
+    if layer == 0 { base.to_owned() } else { format!("{base}_{}", layer + 1) }
+}
+
+fn sheets(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Attribute> {
+    let sheet = |cell: &Cell| fields.groups[cell.group].sheets.get(layer)?.get(cell.element);
+    let readers: [(&str, fn(&SheetField) -> f64); 5] = [
+        ("membrane_force_1_N_per_m", |sheet| sheet.force[0]),
+        ("membrane_force_2_N_per_m", |sheet| sheet.force[1]),
+        ("stretch_1", |sheet| sheet.stretch[0]),
+        ("stretch_2", |sheet| sheet.stretch[1]),
+        ("folded", |sheet| sheet.folded),
+    ];
+    let mut arrays: Vec<Attribute> = readers
+        .into_iter()
+        .map(|(base, read)| {
+            let values: Vec<f64> = drawing.cells.iter().map(|cell| sheet(cell).map_or(0.0, read)).collect();
+            Attribute::generic(name(base, layer), 1).with_data(values)
+        })
+        .collect();
+    let direction = |cell: &Cell| -> Vector {
+        let Some(sheet) = sheet(cell) else { return [0.0; 3] };
+        let own = if fields.groups[cell.group].is_revolved { cell.meridian } else { sheet.direction };
+        drawing.maps[cell.map].of(own)
+    };
+    let directions: Vec<f64> = drawing.cells.iter().flat_map(direction).collect();
+    arrays.push(Attribute::generic(name("direction_1", layer), 3).with_data(directions));
+    let states: Vec<i32> = drawing
+        .cells
+        .iter()
+        .map(|cell| sheet(cell).map_or(NO_SHEET, |sheet| number(sheet.tension)))
+        .collect();
+    arrays.push(Attribute::generic(name("wrinkle_state", layer), 1).with_data(states));
+    arrays
+}
+
+fn number(tension: Tension) -> i32 {
+    match tension {
+        Tension::Slack => 0,
+        Tension::Wrinkled => 1,
+        Tension::Taut => 2,
+    }
+}
+
+fn threads(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Attribute> {
+    let thread = |cell: &Cell| fields.groups[cell.group].threads.get(layer)?.get(cell.element);
+    let readers: [(&str, fn(&ThreadField) -> f64); 3] = [
+        ("fibre_tension_N", |thread| thread.tension),
+        ("fibre_strain", |thread| thread.stretch - 1.0),
+        ("fibre_angle_rad", |thread| thread.angle),
+    ];
+    readers
+        .into_iter()
+        .map(|(base, read)| {
+            let values: Vec<f64> = drawing.cells.iter().map(|cell| thread(cell).map_or(0.0, read)).collect();
+            Attribute::generic(name(base, layer), 1).with_data(values)
+        })
+        .collect()
+}
