@@ -107,3 +107,11 @@ pub fn random_points<const O: usize>(lookup: &Lookup<'_, 2, O>, count: usize) ->
     }
     points
 }
+
+/// Peak of the resident memory \[MiB\].
+#[must_use]
+pub fn peak() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? / 1024)
+}

@@ -3,7 +3,7 @@
 //! One line per question: name, seconds. The last line is the peak of the resident memory in MiB, where the system tells it.
 
 use bulge_benches::measured::{columns, csv};
-use bulge_benches::{Failure, parquet};
+use bulge_benches::{Failure, parquet, peak};
 use bulge_measurements::{Columns, Data, QualityOptions};
 use std::path::Path;
 use std::time::Instant;
@@ -25,13 +25,6 @@ fn ask(path: &Path) -> Result<(), Failure> {
     timed("history", || Ok(data.history(0.11)))?;
     println!("findings\t{}\ngroups of repeats\t{}", quality.findings.len(), repeats.groups().len());
     Ok(())
-}
-
-/// Peak of the resident memory \[MiB\].
-fn peak() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? / 1024)
 }
 
 fn write(folder: &Path) -> Result<(), Failure> {

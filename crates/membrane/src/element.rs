@@ -82,3 +82,6 @@ pub(crate) fn mixed<const N: usize>(x: &[Vector; N], weights: &[f64; N]) -> Vect
     }
     sum
 }
+
+#[cfg(test)]
+mod tests;

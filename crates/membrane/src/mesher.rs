@@ -5,7 +5,9 @@
 mod grid;
 mod pleated;
 mod revolved;
+mod tube;
 
 pub use grid::{Surface, grid};
 pub use pleated::Pleated;
 pub use revolved::{Grading, revolved};
+pub use tube::tube;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::read::{copies, in_range, name, needed, number, positive};
 use crate::mesh::Mesh;
-use crate::mesher::{Grading, Pleated, Surface, grid, revolved};
+use crate::mesher::{Grading, Pleated, Surface, grid, revolved, tube};
 use crate::state::Copies;
 use crate::structure::{Fitting, Support};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -231,14 +231,21 @@ impl Wish<'_, '_> {
         let length = self.length("length", |muscle| Some(muscle.length()))?;
         let range = |ratio: f64| (1.0..=1e4).contains(&ratio);
         let grading = number(self.table, "grading", range, "from 1 to 10000")?.unwrap_or(1.0);
-        let mesh =
-            revolved(|t| [radius, length * t], self.line()?, self.is_quadratic, Grading::Ends(grading));
-        let supports = vec![
+        let fittings = vec![placed("bottom"), placed("top")];
+        let mut supports = vec![
             held("first", Support::Fitting { fitting: 0 }),
             held("last", Support::Fitting { fitting: 1 }),
         ];
-        let fittings = vec![placed("bottom"), placed("top")];
-        Ok(Source { fittings, length: Some(length), ..source(mesh, Copies::ONE, supports) })
+        let made = if let [round, along] = self.cells[..] {
+            let mesh = tube(radius, length, [round, along], self.is_quadratic, Grading::Ends(grading));
+            supports.extend([held("left", plane([0.0, 1.0, 0.0])), held("right", plane([1.0, 0.0, 0.0]))]);
+            source(mesh, Copies { around: 4.0, along: 1.0 }, supports)
+        } else {
+            let line = |t: f64| [radius, length * t];
+            let mesh = revolved(line, self.line()?, self.is_quadratic, Grading::Ends(grading));
+            source(mesh, Copies::ONE, supports)
+        };
+        Ok(Source { fittings, length: Some(length), ..made })
     }
 
     fn disc(&self) -> Result<Source, FileError> {

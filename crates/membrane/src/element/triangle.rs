@@ -169,8 +169,14 @@ impl<const N: usize> Triangle<N> {
                 sum.force[i] += share * at.force[i];
                 sum.stretch[i] += share * at.stretch[i];
             }
-            sum.direction = add(sum.direction, scaled(at.direction, share));
+            // A direction is the same with its sign changed.
+            let sign = if dot(sum.direction, at.direction) < 0.0 { -1.0 } else { 1.0 };
+            sum.direction = add(sum.direction, scaled(at.direction, sign));
             sum.tension = sum.tension.min(at.tension);
+        }
+        let size = norm(sum.direction);
+        if size > 0.0 {
+            sum.direction = scaled(sum.direction, 1.0 / size);
         }
         Some(sum)
     }

@@ -148,3 +148,188 @@ fn spectral(c: [f64; 3], energy: impl Fn(f64, f64) -> Principal) -> Plane {
     }
     Plane { w: e.w, s, d, tension }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::law::tests::LAWS;
+    use super::*;
+
+    const WOVEN: Orthotropic = Orthotropic { warp: 4.0, weft: 2.5, poisson: 0.35, shear: 0.4 };
+
+    fn isotropic(law: Law, wrinkles: bool, residual: f64) -> Sheet {
+        Sheet { cloth: Cloth::Isotropic(law), wrinkles, residual }
+    }
+
+    /// C with these eigenvalues, the first at `angle` to the first axis.
+    fn tensor(c1: f64, c2: f64, angle: f64) -> [f64; 3] {
+        let (sin, cos) = angle.sin_cos();
+        [c1 * cos * cos + c2 * sin * sin, c1 * sin * sin + c2 * cos * cos, (c1 - c2) * sin * cos]
+    }
+
+    /// Stress and tangent against differences of fourth order in each component of C. With E = (C - 1)/2 over (11, 22, 2 x 12), a step of
+    /// C11 is half as large a step of E11, one of C12 as large a one of 2 E12.
+    fn check(sheet: &Sheet, c: [f64; 3], what: &str) {
+        let now = sheet.plane(c);
+        let h = 1e-4;
+        for j in 0..3 {
+            let [a, b, d, e] = [-2.0, -1.0, 1.0, 2.0].map(|steps| {
+                let mut c = c;
+                c[j] += steps * h;
+                sheet.plane(c)
+            });
+            let over = if j < 2 { 2.0 } else { 1.0 };
+            let slope =
+                |f: &dyn Fn(&Plane) -> f64| over * (8.0 * (f(&d) - f(&b)) - (f(&e) - f(&a))) / (12.0 * h);
+            let stress = slope(&|plane| plane.w);
+            assert!((stress - now.s[j]).abs() < 1e-9, "{what}: S {j} {} {stress}", now.s[j]);
+            for i in 0..3 {
+                let tangent = slope(&|plane| plane.s[i]);
+                assert!((tangent - now.d[i][j]).abs() < 1e-8, "{what}: D {i} {j} {} {tangent}", now.d[i][j]);
+                assert!((now.d[i][j] - now.d[j][i]).abs() < 1e-14, "{what}: {i} {j}");
+            }
+        }
+    }
+
+    #[test]
+    fn stress_and_tangent_are_those_of_the_energy() {
+        for law in LAWS {
+            let n = law.natural_width(1.4);
+            for (wrinkles, residual) in [(false, 0.0), (true, 0.0), (true, 0.02)] {
+                let sheet = isotropic(law, wrinkles, residual);
+                for (c1, c2) in [
+                    (1.7, 1.3),
+                    (1.4, n + 1e-3),
+                    (1.4, n - 1e-3),
+                    (1.5, 0.5),
+                    (1.001, 0.6),
+                    (0.999, 0.6),
+                    (0.8, 0.6),
+                ] {
+                    for angle in [0.0, 0.4, core::f64::consts::FRAC_PI_4, 1.3, 1.9, 2.6] {
+                        check(&sheet, tensor(c1, c2, angle), &format!("{sheet:?} {c1} {c2} {angle}"));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn equal_and_nearly_equal_stretches_make_no_difference() {
+        for law in LAWS {
+            for (wrinkles, residual) in [(false, 0.0), (true, 0.0), (true, 0.02)] {
+                let sheet = isotropic(law, wrinkles, residual);
+                for mean in [1.5, 0.8] {
+                    for apart in [0.0, 1e-15, 1e-9, 1e-7, 0.9e-6, 1.1e-6, 1e-5] {
+                        for angle in [0.0, 0.4, core::f64::consts::FRAC_PI_4, 2.6] {
+                            let c = tensor(mean * (1.0 + apart), mean * (1.0 - apart), angle);
+                            check(&sheet, c, &format!("{sheet:?} {mean} {apart} {angle}"));
+                        }
+                    }
+                }
+            }
+        }
+        // Without load too, where the sheet doesn't wrinkle: D = Y/(1 - nu^2) [[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu)/2]].
+        let law = Law::SaintVenantKirchhoff { stiffness: 3.0, poisson: 0.4 };
+        let y = 3.0 / 0.84;
+        for apart in [0.0, 1e-9, 1e-5] {
+            let plane = isotropic(law, false, 0.0).plane(tensor(1.0 + apart, 1.0 - apart, 0.4));
+            let expected = [[y, 0.4 * y, 0.0], [0.4 * y, y, 0.0], [0.0, 0.0, 0.3 * y]];
+            for i in 0..3 {
+                for j in 0..3 {
+                    assert!((plane.d[i][j] - expected[i][j]).abs() < 1e-9, "{apart} {i} {j}: {:?}", plane.d);
+                }
+            }
+        }
+        // Rubber is isotropic and incompressible: Y = 3 mu, nu = 1/2.
+        let plane = isotropic(Law::NeoHooke { shear: 1.3 }, false, 0.0).plane([1.0, 1.0, 0.0]);
+        for (given, expected) in [(plane.d[0][0], 5.2), (plane.d[0][1], 2.6), (plane.d[2][2], 1.3)] {
+            assert!((given - expected).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn known_energies_and_stresses() {
+        // By hand at stretches 2 and 1: I1 = 5.25, I2 = 5.25; 2 dW/dc = (1/l) dW/dl.
+        let at = |law| isotropic(law, true, 0.0).plane(tensor(4.0, 1.0, 0.0));
+        let plane = at(Law::NeoHooke { shear: 1.3 });
+        for (given, expected) in
+            [(plane.w, 0.65 * 2.25), (plane.s[0], 1.3 * (1.0 - 1.0 / 16.0)), (plane.s[1], 1.3 * 0.75)]
+        {
+            assert!((given - expected).abs() < 1e-14, "{plane:?}");
+        }
+        let plane = at(Law::MooneyRivlin { c1: 0.6, c2: 0.2 });
+        assert!((plane.w - 0.8 * 2.25).abs() < 1e-14);
+        // 2 c1 (1 - 1/(c1^2 c2)) + 2 c2 (c2 - 1/c1^2), and with 1 and 2 changed.
+        assert!((plane.s[0] - (1.2 + 0.4) * (1.0 - 1.0 / 16.0)).abs() < 1e-14);
+        assert!((plane.s[1] - (1.2 * 0.75 + 0.4 * 3.0)).abs() < 1e-14);
+        let plane = at(Law::Gent { shear: 1.3, limit: 30.0 });
+        assert!((plane.w + 0.65 * 30.0 * (1.0_f64 - 2.25 / 30.0).ln()).abs() < 1e-14);
+        assert!((plane.s[1] - 1.3 * 30.0 / 27.75 * 0.75).abs() < 1e-14);
+        let plane = at(Law::Hencky { stiffness: 3.0, poisson: 0.3 });
+        let e = 2.0_f64.ln();
+        assert!((plane.w - 1.5 / 0.91 * e * e).abs() < 1e-14);
+        assert!(
+            (plane.s[0] - 3.0 / 0.91 * e / 4.0).abs() < 1e-14 && (plane.s[1] - 0.9 / 0.91 * e).abs() < 1e-14
+        );
+        let plane = at(Law::SaintVenantKirchhoff { stiffness: 3.0, poisson: 0.4 });
+        assert!((plane.w - 1.5 / 0.84 * 2.25).abs() < 1e-14);
+        assert!(
+            (plane.s[0] - 3.0 / 0.84 * 1.5).abs() < 1e-14 && (plane.s[1] - 1.2 / 0.84 * 1.5).abs() < 1e-14
+        );
+    }
+
+    #[test]
+    fn a_residual_is_a_share_of_the_whole_sheet() {
+        let cloths = LAWS.map(Cloth::Isotropic).into_iter().chain([Cloth::Orthotropic(WOVEN)]);
+        for cloth in cloths {
+            let at = |wrinkles, residual, c| Sheet { cloth, wrinkles, residual }.plane(c);
+            for (c1, c2) in [(1.7, 1.5), (1.5, 0.5), (0.8, 0.6)] {
+                let c = tensor(c1, c2, 0.4);
+                let (relaxed, full, mixed) = (at(true, 0.0, c), at(false, 0.0, c), at(true, 0.03, c));
+                assert_eq!(relaxed.tension, mixed.tension);
+                let mix = |a: f64, b: f64| 0.97 * a + 0.03 * b;
+                let what = format!("{cloth:?} {c1} {c2}");
+                assert!((mixed.w - mix(relaxed.w, full.w)).abs() < 1e-14, "{what}");
+                for i in 0..3 {
+                    assert!((mixed.s[i] - mix(relaxed.s[i], full.s[i])).abs() < 1e-14, "{what}");
+                    for j in 0..3 {
+                        assert!((mixed.d[i][j] - mix(relaxed.d[i][j], full.d[i][j])).abs() < 1e-13, "{what}");
+                    }
+                }
+                // It is seen where the sheet gives way, and only there.
+                let is_taut = relaxed.tension == Tension::Taut;
+                assert_eq!((relaxed.w - full.w).abs() < 1e-14, is_taut, "{what}");
+            }
+        }
+    }
+
+    #[test]
+    fn along_the_axes_of_a_sheet() {
+        // What a membrane of revolution asks for is the energy of the same sheet.
+        let h = 1e-4;
+        let cloths = LAWS.map(Cloth::Isotropic).into_iter().chain([Cloth::Orthotropic(WOVEN)]);
+        for cloth in cloths {
+            for (wrinkles, residual) in [(false, 0.0), (true, 0.0), (true, 0.02)] {
+                let sheet = Sheet { cloth, wrinkles, residual };
+                for (c1, c2) in [(1.7, 1.3), (1.3, 1.7), (1.5, 0.5), (0.5, 1.5), (0.8, 0.6)] {
+                    let now = sheet.principal(c1, c2);
+                    let plane = sheet.plane([c1, c2, 0.0]);
+                    assert!((now.energy.w - plane.w).abs() < 1e-14 && now.tension == plane.tension);
+                    let slope = |f: &dyn Fn(f64) -> f64| {
+                        (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
+                    };
+                    let at = |a: f64, b: f64| sheet.principal(c1 + a, c2 + b).energy;
+                    for (given, expected) in [
+                        (now.energy.w1, slope(&|x| at(x, 0.0).w)),
+                        (now.energy.w2, slope(&|x| at(0.0, x).w)),
+                        (now.energy.w11, slope(&|x| at(x, 0.0).w1)),
+                        (now.energy.w12, slope(&|x| at(0.0, x).w1)),
+                        (now.energy.w22, slope(&|x| at(0.0, x).w2)),
+                    ] {
+                        assert!((given - expected).abs() < 1e-8, "{sheet:?} {c1} {c2}: {given} {expected}");
+                    }
+                }
+            }
+        }
+    }
+}

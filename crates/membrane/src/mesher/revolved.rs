@@ -15,7 +15,7 @@ pub enum Grading {
 
 impl Grading {
     /// From \[0, 1\] to itself: t + g (t - 1)t(...) with a slope 1/ratio at the fine ends.
-    fn at(self, t: f64) -> f64 {
+    pub(crate) fn at(self, t: f64) -> f64 {
         match self {
             Self::Even => t,
             // A cubic with slope 1/ratio at both ends.

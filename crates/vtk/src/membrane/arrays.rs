@@ -1,9 +1,12 @@
 //! What the cells of a drawing show of their elements.
 
 use super::drawing::{Cell, Drawing};
-use super::map::Vector;
+use super::map::{Vector, unit};
 use bulge_membrane::{Fields, SheetField, Tension, ThreadField};
 use vtkio::model::Attribute;
+
+/// Name of an array, and where its values are.
+type Reader<T> = (&'static str, fn(&T) -> f64);
 
 /// State of a cell that is no sheet.
 const NO_SHEET: i32 = -1;
@@ -47,7 +50,7 @@ fn name(base: &str, layer: usize) -> String {
 
 fn sheets(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Attribute> {
     let sheet = |cell: &Cell| fields.groups[cell.group].sheets.get(layer)?.get(cell.element);
-    let readers: [(&str, fn(&SheetField) -> f64); 5] = [
+    let readers: [Reader<SheetField>; 5] = [
         ("membrane_force_1_N_per_m", |sheet| sheet.force[0]),
         ("membrane_force_2_N_per_m", |sheet| sheet.force[1]),
         ("stretch_1", |sheet| sheet.stretch[0]),
@@ -64,7 +67,8 @@ fn sheets(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Attribute> {
     let direction = |cell: &Cell| -> Vector {
         let Some(sheet) = sheet(cell) else { return [0.0; 3] };
         let own = if fields.groups[cell.group].is_revolved { cell.meridian } else { sheet.direction };
-        drawing.maps[cell.map].of(own)
+        // The mean over the points of a quadratic triangle is shorter than 1.
+        drawing.maps[cell.map].of(unit(own))
     };
     let directions: Vec<f64> = drawing.cells.iter().flat_map(direction).collect();
     arrays.push(Attribute::generic(name("direction_1", layer), 3).with_data(directions));
@@ -87,7 +91,7 @@ fn number(tension: Tension) -> i32 {
 
 fn threads(drawing: &Drawing, fields: &Fields, layer: usize) -> Vec<Attribute> {
     let thread = |cell: &Cell| fields.groups[cell.group].threads.get(layer)?.get(cell.element);
-    let readers: [(&str, fn(&ThreadField) -> f64); 3] = [
+    let readers: [Reader<ThreadField>; 3] = [
         ("fibre_tension_N", |thread| thread.tension),
         ("fibre_strain", |thread| thread.stretch - 1.0),
         ("fibre_angle_rad", |thread| thread.angle),

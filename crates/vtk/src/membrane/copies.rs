@@ -1,6 +1,6 @@
 //! Copies of a drawing, turned and mirrored, grown together at their seams.
 
-use super::drawing::{Cell, Drawing, SAME_PLACE, Shape, size};
+use super::drawing::{Drawing, SAME_PLACE, Shape, size};
 use super::map::{Map, Vector, dot, minus};
 use crate::VtkError;
 use std::collections::{HashMap, HashSet};
@@ -69,7 +69,8 @@ pub(super) fn copied(part: &Drawing, maps: &Maps) -> Result<Drawing, VtkError> {
         let first = whole.maps.len();
         whole.maps.extend(part.maps.iter().map(|own| map.after(own)));
         for cell in &part.cells {
-            let image = Cell { map: first + cell.map, ..cell.renumbered(|node| numbers[node]) };
+            let mut image = cell.renumbered(|node| numbers[node]);
+            image.map += first;
             if matches!(cell.shape, Shape::Vertex | Shape::Line | Shape::QuadraticLine) {
                 // In a seam two copies of a cable are the same one.
                 let mut nodes = image.nodes().to_vec();
@@ -154,18 +155,12 @@ impl Seams {
                 }
             }
         }
-        match found {
-            // Remembered too, under the number it got: a third copy may meet this node of it.
-            Some(other) => {
-                if other.node != image.node {
-                    self.places.entry(cube).or_default().push(Image { number: other.number, ..image });
-                }
-                Some(other.number)
-            }
-            None => {
-                self.places.entry(cube).or_default().push(image);
-                None
-            }
+        let number = found.map(|other| other.number);
+        // Another node's point is remembered as this one's too: a third copy may meet either.
+        if found.is_none_or(|other| other.node != image.node) {
+            let image = Image { number: number.unwrap_or(image.number), ..image };
+            self.places.entry(cube).or_default().push(image);
         }
+        number
     }
 }
