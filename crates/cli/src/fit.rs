@@ -1,13 +1,14 @@
 //! `bulge fit`: effects fitted to measurements, and the muscle file that holds them.
 
-use bulge_effects::known;
-use bulge_inference::{DataSummary, Fit, Fitting, NoiseFloor, Options, extended, fit_effects};
+use bulge_effects::{Catalogue, Effect, known};
+use bulge_inference::{DataSummary, Extension, Fit, Fitting, NoiseFloor, Options, extended, fit_effects};
 use bulge_measurements::Data;
-use bulge_muscles::to_toml;
+use bulge_muscles::{Muscle, to_toml};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::arguments;
 use crate::compare::parameters;
@@ -60,20 +61,7 @@ impl FitCommand {
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = Data::read(&self.data)?;
-        let known = known(&muscle, &catalogue)?;
-        let options = Options { known, ..Options::new(catalogue, effects) };
-        let fitting = fit_effects(&data, &muscle, &options)?;
-        if !fitting.fit.convergence.converged {
-            let what = format!(
-                "the fit did not converge: {}, after {} iterations from {} starts; fit fewer effects at once, or measure more",
-                fitting.fit.convergence.reason,
-                fitting.fit.convergence.iterations,
-                fitting.fit.convergence.starts
-            );
-            return Err(Failure::NotConverged(what));
-        }
-        let extension = extended(&fitting.model, &fitting.fit)?;
-        let model = provenance(&fitting) + &to_toml(&extension.muscle);
+        let Fitted { fitting, extension, model } = fitted(&data, &muscle, effects, catalogue)?;
         if let Some(path) = &self.out {
             files::write(path, model.as_bytes())?;
         }
@@ -98,13 +86,7 @@ impl FitCommand {
             return Ok(model);
         }
         let mut text = format!("{} fitted to {}\n\n", muscle.name(), fitting.data.files.join(", "));
-        for line in errors(&fitting) {
-            let _ = writeln!(text, "  {line}");
-        }
-        parameters(&mut text, &fitting.fit);
-        for warning in &fitting.fit.warnings {
-            let _ = writeln!(text, "  ! {warning}");
-        }
+        text.push_str(&learnt(&fitting));
         for (name, why) in &extension.left_out {
             let _ = writeln!(text, "  {name} is not in the file: {why}");
         }
@@ -113,6 +95,51 @@ impl FitCommand {
         }
         Ok(text)
     }
+}
+
+/// Effects fitted, and the muscle file with what was learnt.
+pub(crate) struct Fitted {
+    pub(crate) fitting: Fitting,
+    pub(crate) extension: Extension,
+    pub(crate) model: String,
+}
+
+/// Fits effects to data.
+pub(crate) fn fitted(
+    data: &Data,
+    muscle: &Muscle,
+    effects: Vec<Arc<dyn Effect>>,
+    catalogue: Catalogue,
+) -> Result<Fitted, Failure> {
+    let known = known(muscle, &catalogue)?;
+    let options = Options { known, ..Options::new(catalogue, effects) };
+    let fitting = fit_effects(data, muscle, &options)?;
+    if !fitting.fit.convergence.converged {
+        let what = format!(
+            "the fit did not converge: {}, after {} iterations from {} starts; fit fewer effects at once, or measure more",
+            fitting.fit.convergence.reason,
+            fitting.fit.convergence.iterations,
+            fitting.fit.convergence.starts
+        );
+        return Err(Failure::NotConverged(what));
+    }
+    let extension = extended(&fitting.model, &fitting.fit)?;
+    let model = provenance(&fitting) + &to_toml(&extension.muscle);
+    Ok(Fitted { fitting, extension, model })
+}
+
+/// What was learnt, in lines: the error before and after, the numbers, and what to mind.
+pub(crate) fn learnt(fitting: &Fitting) -> String {
+    let mut text = String::new();
+    for line in errors(fitting) {
+        // Writing to a String can't fail.
+        let _ = writeln!(text, "  {line}");
+    }
+    parameters(&mut text, &fitting.fit);
+    for warning in &fitting.fit.warnings {
+        let _ = writeln!(text, "  ! {warning}");
+    }
+    text
 }
 
 fn percent(fitting: &Fitting, error: f64) -> f64 {

@@ -1,17 +1,22 @@
 //! `bulge membrane`: a finite-element membrane case, state after state.
 
+use bulge_measurements::Data;
 use bulge_membrane::Effort;
 use bulge_membrane::case::{CASE_EXAMPLE, Case, CaseError, CaseRun, Row};
+use bulge_muscles::Muscle;
+use bulge_vtk::{MembranePicture, MembraneSeries, Whole};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use std::fmt::Write;
 use std::io::{IsTerminal, stderr, stdout};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use crate::arguments;
 use crate::failure::Failure;
 use crate::files;
+use crate::fit::{self as fitted, Fitted};
 use crate::text::{shown, significant, table};
 
 /// A finite-element membrane case: a mesh, what it is made of, what holds it, and loads in turn.
@@ -24,6 +29,9 @@ pub(crate) struct MembraneCommand {
     /// Folder of the result: states.csv, a .vtu for each state and a .pvd that ParaView plays as a film
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Write the muscle of the case with the effect `limited-unfolding` fitted to the states: what the cloth costs, for all other commands
+    #[arg(long, value_name = "MODEL.toml")]
+    as_effect: Option<PathBuf>,
     /// One JSON document on standard output
     #[arg(long)]
     json: bool,
@@ -38,30 +46,63 @@ impl MembraneCommand {
             source: Box::new(source),
             kept,
         };
+        if self.as_effect.is_some() {
+            learns(&case)?;
+        }
         let mut run = case.start().map_err(|error| refused(error, String::new()))?;
         files::folder(&self.out)?;
+        let stem = stem(&case.name);
+        let mut series = MembraneSeries::new(&self.out, &stem)?;
+        let whole = Whole::of(&case);
         let bar = self.bar(case.states());
         let clock = Instant::now();
         let mut rows: Vec<Row> = Vec::new();
         while let Some(next) = run.advance(|_, _| bar.tick()) {
-            let (row, _, _) = match next {
+            let (row, state, fields) = match next {
                 Ok(next) => next,
                 Err(error) => {
                     bar.finish_and_clear();
-                    let kept = self.kept(&rows);
+                    let kept = self.kept(&rows, &series);
                     return Err(refused(error, kept));
                 }
             };
+            series.append(&MembranePicture {
+                state: &state,
+                fields: &fields,
+                whole,
+                time: row.state as f64,
+            })?;
             bar.set_message(line(&row));
             bar.inc(1);
             rows.push(row);
             files::write(&self.out.join("states.csv"), csv(&rows).as_bytes())?;
         }
         bar.finish_and_clear();
-        if self.json {
-            return self.document(&case, &run, &rows);
+        let time = clock.elapsed();
+        let forces = forces(&rows);
+        if let Some(forces) = &forces {
+            files::write(&self.out.join("forces.csv"), forces.as_bytes())?;
         }
-        Ok(self.text(&case, &run, &rows, clock.elapsed()))
+        let learnt = self.as_effect.as_ref().map(|path| self.learn(&case, path)).transpose()?;
+        if self.json {
+            return self.document(&case, &run, &rows, &series, learnt.as_ref());
+        }
+        let mut text = self.text(&case, &run, &rows, time);
+        let _ = writeln!(
+            text,
+            "  wrote {} and states.csv{}",
+            series.path().display(),
+            if forces.is_some() { ", forces.csv (for `bulge compare`, `diagnose` and `fit`)" } else { "" }
+        );
+        if let (Some(fitted), Some(path)) = (&learnt, &self.as_effect) {
+            let _ = writeln!(
+                text,
+                "\nthe effect of the cloth, fitted to these states\n\n{}\n  wrote {}",
+                fitted::learnt(&fitted.fitting).trim_end(),
+                path.display()
+            );
+        }
+        Ok(text)
     }
 
     fn bar(&self, states: usize) -> ProgressBar {
@@ -78,19 +119,37 @@ impl MembraneCommand {
     }
 
     /// What stands of a run that ended early.
-    fn kept(&self, rows: &[Row]) -> String {
+    fn kept(&self, rows: &[Row], series: &MembraneSeries) -> String {
         match rows.last() {
             Some(row) => format!(
-                "\n  the {} states before stand in {}; the last is {}",
+                "\n  states.csv and {} hold the {} states before; the last is {}",
+                series.path().display(),
                 rows.len(),
-                self.out.display(),
                 line(row)
             ),
             None => "\n  no state was found: begin with a smaller load".to_owned(),
         }
     }
 
-    fn document(&self, case: &Case, run: &CaseRun<'_>, rows: &[Row]) -> Result<String, Failure> {
+    /// The muscle with the effect of its cloth.
+    fn learn(&self, case: &Case, path: &Path) -> Result<Fitted, Failure> {
+        let muscle = learns(case)?;
+        let catalogue = arguments::catalogue(None)?;
+        let effects = arguments::effects(&catalogue, &["limited-unfolding".to_owned()])?;
+        let data = Data::read(&[self.out.join("forces.csv")])?;
+        let fitted = fitted::fitted(&data, muscle, effects, catalogue)?;
+        files::write(path, fitted.model.as_bytes())?;
+        Ok(fitted)
+    }
+
+    fn document(
+        &self,
+        case: &Case,
+        run: &CaseRun<'_>,
+        rows: &[Row],
+        series: &MembraneSeries,
+        learnt: Option<&Fitted>,
+    ) -> Result<String, Failure> {
         let [unknowns, matrix, factors] = run.sizes();
         let document = json!({
             "schema": "bulge.membrane/1",
@@ -102,6 +161,13 @@ impl MembraneCommand {
             "matrix_entries": matrix,
             "factor_entries": factors,
             "effort": effort(&run.effort()),
+            "pvd": series.path(),
+            "effect": learnt.map(|fitted| json!({
+                "before_rmse_n": fitted.fitting.before_rmse_n,
+                "rmse_n": fitted.fitting.rmse_n,
+                "fit": fitted.fitting.fit,
+                "model": fitted.model,
+            })),
             "states": rows,
         });
         Ok(serde_json::to_string_pretty(&document)? + "\n")
@@ -135,9 +201,45 @@ impl MembraneCommand {
             seconds(factorising),
             seconds(solving)
         );
-        let _ = writeln!(text, "  states.csv in {}", self.out.display());
         text
     }
+}
+
+/// The muscle that a case can teach the effect of its cloth.
+fn learns(case: &Case) -> Result<&Muscle, Failure> {
+    let is_shortened = case.steps.iter().any(|step| step.fittings.iter().flatten().next().is_some());
+    match &case.muscle {
+        Some(muscle) if muscle.is_pleated() && is_shortened => Ok(muscle),
+        _ => Err(Failure::Value {
+            option: "--as-effect",
+            what: "the case needs a pleated muscle (`muscle` in `[mesher]`) and steps with a `contraction`"
+                .to_owned(),
+        }),
+    }
+}
+
+/// A file name from a case's name.
+fn stem(name: &str) -> String {
+    let mut stem = String::new();
+    for c in name.chars() {
+        if c.is_alphanumeric() {
+            stem.extend(c.to_lowercase());
+        } else if !stem.is_empty() && !stem.ends_with('-') {
+            stem.push('-');
+        }
+    }
+    let stem: String = stem.trim_end_matches('-').chars().take(80).collect();
+    if stem.is_empty() { "membrane".to_owned() } else { stem }
+}
+
+/// The states as measurements are written, if they have a contraction and a force.
+fn forces(rows: &[Row]) -> Option<String> {
+    let mut text = String::from("pressure [Pa],contraction,force [N],diameter [m],volume [m^3]\n");
+    for row in rows.iter().filter(|row| row.pressure > 0.0) {
+        let (contraction, force) = (row.contraction?, row.force?);
+        let _ = writeln!(text, "{},{contraction},{force},{},{}", row.pressure, row.diameter, row.volume);
+    }
+    (text.lines().count() > 1).then_some(text)
 }
 
 fn seconds(time: Duration) -> String {

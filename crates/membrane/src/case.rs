@@ -16,6 +16,7 @@ use crate::material::Sheet;
 use crate::mesh::Mesh;
 use crate::state::{Copies, Tolerance};
 use crate::structure::{Fitting, Part, Support};
+use bulge_muscles::Muscle;
 use serde::Serialize;
 
 /// Everything that a case file says.
@@ -39,8 +40,8 @@ pub struct Case {
     pub steps: Vec<Step>,
     /// When an equilibrium is good enough.
     pub tolerance: Tolerance,
-    /// The muscle that the mesh was made for, in its own file, and the cloth's circumference.
-    pub muscle: Option<String>,
+    /// The muscle that the mesh was made for, with the fibres of the case.
+    pub muscle: Option<Muscle>,
     /// The sheets by name.
     pub materials: Vec<(String, Sheet)>,
 }
@@ -48,6 +49,8 @@ pub struct Case {
 /// A load to be reached from the one before.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Step {
+    /// Whether it begins with the mesh at rest, not with the state before.
+    pub is_restart: bool,
     /// What fills the membrane.
     pub filling: Filling,
     /// What the fittings do at its end: places from those in the mesh, m, or forces, N. `None`: as before.

@@ -81,7 +81,8 @@ pub struct Summary {
 impl Solver {
     /// Places, forces and stretches of a state.
     #[must_use]
-    pub fn fields(&self, state: &State) -> Fields {
+    pub fn fields(&mut self, state: &State) -> Fields {
+        self.restore(state);
         let mut places = Vec::new();
         self.structure.dofs.places(&state.y, &mut places);
         let displacements = places

@@ -6,7 +6,9 @@ use crate::solver::Solver;
 use crate::state::State;
 
 /// The smallest step, over the whole path.
-const SMALLEST: f64 = 1.0 / 4096.0;
+const SMALLEST: f64 = 1.0 / 1024.0;
+/// Iterations that one step of a path is worth: a shorter step costs less than a long search.
+const PATIENCE: usize = 80;
 /// How far an extrapolation may reach, over the step before it.
 const REACH: f64 = 2.0;
 
@@ -26,7 +28,12 @@ impl Solver {
         let (mut done, mut step) = (0.0, 1.0_f64);
         let mut last = from.clone();
         let mut older: Option<(f64, State)> = None;
-        loop {
+        // From a mesh at rest it may be a long way; from an equilibrium it isn't.
+        let patience = self.tolerance.iterations;
+        if from.iterations > 0 {
+            self.tolerance.iterations = patience.min(PATIENCE);
+        }
+        let found = loop {
             let next = (done + step).min(1.0);
             let between = before.towards(load, next);
             let start = match &older {
@@ -43,8 +50,9 @@ impl Solver {
                 Ok(state) => {
                     seen(next, &state);
                     if next >= 1.0 {
-                        return Ok(state);
+                        break Ok(state);
                     }
+                    self.tolerance.iterations = patience.min(PATIENCE);
                     older = Some((done, std::mem::replace(&mut last, state)));
                     done = next;
                     step *= 1.5;
@@ -52,11 +60,13 @@ impl Solver {
                 Err(error) => {
                     step *= 0.5;
                     if step < SMALLEST {
-                        return Err(limit(&last, load).unwrap_or(error));
+                        break Err(limit(&last, load).unwrap_or(error));
                     }
                 }
             }
-        }
+        };
+        self.tolerance.iterations = patience;
+        found
     }
 
     /// A state whose nodes have followed the fittings along z in proportion: what a new place of a fitting starts from.
@@ -130,7 +140,8 @@ fn extrapolated(older: &State, last: &State, ratio: f64) -> State {
 /// What a path that ends says, if it is the pressure that can't rise.
 fn limit(last: &State, load: &Load) -> Option<MembraneError> {
     match load.inflation {
-        Inflation::Pressure(pressure) if pressure > last.pressure => {
+        // Nothing is known of a limit where no equilibrium was found at all.
+        Inflation::Pressure(pressure) if pressure > last.pressure && last.iterations > 0 => {
             Some(MembraneError::LimitPoint { pressure, last: last.pressure, volume: last.volume })
         }
         _ => None,

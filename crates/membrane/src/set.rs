@@ -16,6 +16,10 @@ pub(crate) trait Element<const N: usize>: Send + Sync + core::fmt::Debug {
     fn measure(&self, x: &[Vector; N], penalty: f64, rule: &Self::Rule) -> [f64; 2];
     fn local(&self, x: &[Vector; N], penalty: f64, pressure: f64, rule: &Self::Rule) -> Local<N>;
     fn hold(&mut self, x: &[Vector; N], penalty: f64) -> f64;
+    /// The tensions T0 of inextensible threads, to be read and written.
+    fn held(&mut self) -> Vec<&mut f64> {
+        Vec::new()
+    }
 }
 
 impl<const N: usize> Element<N> for Cable<N> {
@@ -29,6 +33,9 @@ impl<const N: usize> Element<N> for Cable<N> {
     }
     fn hold(&mut self, x: &[Vector; N], penalty: f64) -> f64 {
         Self::hold(self, x, penalty)
+    }
+    fn held(&mut self) -> Vec<&mut f64> {
+        Self::held(self)
     }
 }
 
@@ -45,6 +52,9 @@ impl<const N: usize> Element<N> for Ring<N> {
     }
     fn hold(&mut self, x: &[Vector; N], penalty: f64) -> f64 {
         Self::hold(self, x, penalty)
+    }
+    fn held(&mut self) -> Vec<&mut f64> {
+        Self::held(self)
     }
 }
 
@@ -103,6 +113,8 @@ pub(crate) trait Elements: Send + Sync + core::fmt::Debug {
     fn work(&self, place: Place<'_>, out: Parts<'_>);
     /// The largest |l - 1| of a taut inextensible thread, whose tension is taken over.
     fn hold(&mut self, place: Place<'_>) -> f64;
+    /// Those tensions, to be read and written.
+    fn held(&mut self) -> Vec<&mut f64>;
 }
 
 /// Measures, gradients and stiffness of one element.
@@ -207,6 +219,10 @@ impl<E: Element<N>, const N: usize> Elements for Set<E, N> {
             let each = each.zip(out.stiffness.par_chunks_exact_mut(size));
             each.enumerate().with_min_len(BATCH).for_each(one);
         }
+    }
+
+    fn held(&mut self) -> Vec<&mut f64> {
+        self.elements.iter_mut().flat_map(Element::held).collect()
     }
 
     fn hold(&mut self, place: Place<'_>) -> f64 {

@@ -93,6 +93,8 @@ impl Solver {
     #[must_use]
     pub fn at_rest(&mut self) -> State {
         let y = self.structure.start.clone();
+        self.held().into_iter().for_each(|tension| *tension = 0.0);
+        let held = vec![0.0; self.held().len()];
         let [energy, volume] = self.measure(&y);
         State {
             pressure: 0.0,
@@ -103,8 +105,22 @@ impl Solver {
             residual: 0.0,
             unstable: 0,
             iterations: 0,
+            penalty: self.penalty,
+            held,
             y,
         }
+    }
+
+    fn held(&mut self) -> Vec<&mut f64> {
+        self.structure.groups.iter_mut().flat_map(|(_, group)| group.elements_mut().held()).collect()
+    }
+
+    /// Gives the inextensible threads the tensions that they have in a state.
+    pub(crate) fn restore(&mut self, state: &State) {
+        for (tension, held) in self.held().into_iter().zip(&state.held) {
+            *tension = *held;
+        }
+        self.penalty = state.penalty;
     }
 
     /// The equilibrium under `load` that is reached from `start`.
@@ -119,8 +135,14 @@ impl Solver {
             }
         }
         let mut pressure = start.pressure;
+        self.restore(start);
+        // What the threads pull with at the start becomes T0, whatever the stiffness will be.
+        self.hold(&start.y);
         self.choose_penalty(load, start);
         let first = self.effort.iterations;
+        if matches!(load.inflation, Inflation::Volume(_)) && start.iterations == 0 {
+            self.puff(load, &mut y, &mut pressure);
+        }
         let mut worst = f64::INFINITY;
         for _ in 0..HOLDS {
             let (residual, unstable) = match load.inflation {
@@ -148,6 +170,22 @@ impl Solver {
         })
     }
 
+    /// A breath of gas for a mesh at rest, so that a prescribed volume finds a membrane under tension.
+    fn puff(&mut self, load: &Load, y: &mut Vec<f64>, pressure: &mut f64) {
+        self.work(y, 0.0);
+        let mut breath = 1e-3 * self.mean_diagonal() / self.size;
+        for _ in 0..4 {
+            let small = Load { inflation: Inflation::Pressure(breath), fittings: load.fittings.clone() };
+            let mut trial = y.clone();
+            let mut p = breath;
+            if self.downhill(&small, &mut trial, &mut p).is_ok() {
+                (*y, *pressure) = (trial, breath);
+                return;
+            }
+            breath *= 0.1;
+        }
+    }
+
     /// From the loads: forces of p V^(2/3) shall stretch a thread by 1/STIFF in the first round.
     fn choose_penalty(&mut self, load: &Load, start: &State) {
         let pressure = match load.inflation {
@@ -155,8 +193,9 @@ impl Solver {
             Inflation::Gas(gas) => gas.pressure(start.volume.max(1e-3 * self.size.powi(3))).0,
             Inflation::Volume(_) => start.pressure,
         };
-        let area = (self.size * self.size)
-            .min(4.0 * start.volume.abs().powf(2.0 / 3.0).max(1e-3 * self.size.powi(2)));
+        // A flat start has no volume yet.
+        let (round, box_side) = (start.volume.abs().powf(2.0 / 3.0), self.size * self.size);
+        let area = if round < 0.05 * box_side { box_side } else { 4.0 * round };
         let threads = self.structure.threads();
         let force = pressure.abs() * area + load.fittings_force(&self.structure.fittings);
         self.penalty = STIFF * force.max(f64::MIN_POSITIVE) / self.copies.around / threads.max(1.0);
@@ -213,6 +252,7 @@ impl Solver {
         iterations: usize,
     ) -> State {
         self.work(y, pressure);
+        let held = self.held().into_iter().map(|tension| *tension).collect();
         let dofs = &self.structure.dofs.fittings;
         State {
             pressure,
@@ -229,6 +269,8 @@ impl Solver {
             residual,
             unstable,
             iterations,
+            penalty: self.penalty,
+            held,
             y: y.to_vec(),
         }
     }

@@ -16,7 +16,7 @@ pub struct Tolerance {
 
 impl Default for Tolerance {
     fn default() -> Self {
-        Self { residual: 1e-10, stretch: 1e-11, iterations: 120 }
+        Self { residual: 1e-10, stretch: 1e-11, iterations: 300 }
     }
 }
 
@@ -24,7 +24,13 @@ impl Default for Tolerance {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct State {
     /// The degrees of freedom.
+    #[serde(skip)]
     pub(crate) y: Vec<f64>,
+    /// Tensions T0 of the inextensible threads, and the stiffness with which they belong to it.
+    #[serde(skip)]
+    pub(crate) held: Vec<f64>,
+    #[serde(skip)]
+    pub(crate) penalty: f64,
     /// Gauge pressure, Pa.
     pub pressure: f64,
     /// Enclosed volume, m^3: between the membrane and the planes that close it.

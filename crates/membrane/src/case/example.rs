@@ -71,8 +71,9 @@ pressure = \"30 kPa\"
 places = { top = \"0 mm\" }       # of fittings, from those in the mesh; `forces = { top = \"-5 N\" }` of loaded ones
 # contraction = \"10 %\"          # in place of `places`, for a muscle
 states = 4
+# restart = true                # begin with the mesh at rest, not with the state before
 
 [solver]
 residual = 1e-10                # of the forces at a node
-iterations = 120                # for one state
+iterations = 300                # for one state
 ";

@@ -1,11 +1,13 @@
 //! Case files: TOML into a case, with the place and the cure for everything that is wrong.
 
 use bulge_muscles::settings::{Document, FileKind, Keys, Settings};
-use bulge_muscles::{Dimension, FileError};
+use bulge_muscles::{Dimension, FileError, Muscle, Parameter};
 use std::path::Path;
 
 use super::{Case, materials, parts, source, steps, supports};
+use crate::material::Thread;
 use crate::state::{Copies, Tolerance};
+use crate::structure::Part;
 
 /// What messages call the file.
 const KIND: FileKind = FileKind { name: "membrane case", file: "case.toml", line: "pressure = \"3 bar\"" };
@@ -22,7 +24,7 @@ const TOP: Keys = &[
     ("solver", "[solver]"),
 ];
 
-const SOLVER: Keys = &[("residual", "residual = 1e-10"), ("iterations", "iterations = 120")];
+const SOLVER: Keys = &[("residual", "residual = 1e-10"), ("iterations", "iterations = 300")];
 
 impl Case {
     /// Reads a case file; [`super::CASE_EXAMPLE`] has every key. The mesh and the muscle that it names stand beside it.
@@ -60,18 +62,28 @@ impl Case {
         let steps = steps::read(&settings, &source, &supports.fittings)?;
         Ok(Self {
             name: settings.text("name")?.unwrap_or("membrane").to_owned(),
-            parts,
             supports: supports.held,
             fittings: supports.fittings,
             copies: source.copies,
             length: source.length,
             steps,
             tolerance: tolerance(&settings)?,
-            muscle: source.muscle.as_ref().map(bulge_muscles::to_toml),
+            muscle: source.muscle.map(|muscle| stiffened(muscle, &parts)),
+            parts,
             materials,
             mesh: source.mesh,
         })
     }
+}
+
+/// The muscle with the stiffness that the case gives its fibres.
+fn stiffened(muscle: Muscle, parts: &[(String, Part)]) -> Muscle {
+    let stiffness = parts.iter().find_map(|(_, part)| match part {
+        Part::Cable { thread: Thread::Elastic { stiffness }, .. } => Some(*stiffness),
+        _ => None,
+    });
+    let changed = stiffness.and_then(|stiffness| muscle.with(Parameter::FibreStiffness, stiffness).ok());
+    changed.unwrap_or(muscle)
 }
 
 fn tolerance(settings: &Settings<'_>) -> Result<Tolerance, FileError> {

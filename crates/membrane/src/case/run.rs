@@ -153,6 +153,10 @@ impl CaseRun<'_> {
     ) -> Option<Result<(Row, State, Fields), CaseError>> {
         let step = self.case.steps.get(self.at)?;
         if self.under_way.is_none() {
+            if step.is_restart {
+                self.last = self.solver.at_rest();
+                self.fittings.fill(0.0);
+            }
             self.under_way = Some(self.loads(step));
         }
         let (begin, end) = self.under_way.clone()?;
@@ -196,8 +200,9 @@ impl CaseRun<'_> {
 
     /// The last equilibrium.
     #[must_use]
-    pub fn last(&self) -> (&State, Fields) {
-        (&self.last, self.solver.fields(&self.last))
+    pub fn last(&mut self) -> (&State, Fields) {
+        let fields = self.solver.fields(&self.last);
+        (&self.last, fields)
     }
 
     /// The loads at the beginning and at the end of a step, in the same kind of inflation.

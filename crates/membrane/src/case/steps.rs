@@ -17,6 +17,7 @@ const KEYS: Keys = &[
     ("forces", "forces = { top = \"-5 N\" }"),
     ("contraction", "contraction = \"10 %\""),
     ("states", "states = 4"),
+    ("restart", "restart = true"),
 ];
 
 const GASES: &[(&str, f64)] = &[("isothermal", 1.0), ("adiabatic", 1.4)];
@@ -57,7 +58,10 @@ fn step(
             return Err(table.error(table.value_span("states"), what, "write such as `states = 10`"));
         }
     };
-    Ok(Step { filling: filling(table, before)?, fittings: ends(table, source, fittings)?, states })
+    let is_restart = table.flag("restart")?.unwrap_or(false);
+    // After a restart there is no gas in it, and nothing is as before.
+    let filling = filling(table, before.filter(|_| !is_restart))?;
+    Ok(Step { is_restart, filling, fittings: ends(table, source, fittings)?, states })
 }
 
 fn filling(table: &Settings<'_>, before: Option<&Step>) -> Result<Filling, FileError> {

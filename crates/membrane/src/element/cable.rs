@@ -105,6 +105,14 @@ impl<const N: usize> Cable<N> {
         (tension / length, stretch / length)
     }
 
+    /// The tensions T0, if it is inextensible.
+    pub(crate) fn held(&mut self) -> Vec<&mut f64> {
+        match self.thread {
+            Thread::Elastic { .. } => Vec::new(),
+            Thread::Inextensible => self.held.iter_mut().collect(),
+        }
+    }
+
     /// Takes the tensions of an inextensible thread over into T0; the largest |l - 1| of a taut one.
     pub(crate) fn hold(&mut self, x: &[Vector; N], penalty: f64) -> f64 {
         if self.thread != Thread::Inextensible {

@@ -234,6 +234,14 @@ impl<const N: usize> Ring<N> {
         out
     }
 
+    /// The tensions T0 of inextensible threads.
+    pub(crate) fn held(&mut self) -> Vec<&mut f64> {
+        let is_held = |layer: &&mut Layer| {
+            matches!(layer.kind, RingLayer::Threads { thread: Thread::Inextensible, .. })
+        };
+        self.layers.iter_mut().filter(is_held).flat_map(|layer| layer.held.iter_mut()).collect()
+    }
+
     /// Takes over the tensions of inextensible threads; the largest |l - 1| of a taut one.
     pub(crate) fn hold(&mut self, x: &[Vector; N], penalty: f64) -> f64 {
         let mut worst = 0.0_f64;

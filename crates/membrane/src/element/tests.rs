@@ -1,6 +1,6 @@
 //! Elements against differences of their energies, against rotations, and against closed forms.
 
-use super::shape::{line_strain, triangle};
+use super::shape::triangle;
 use super::*;
 use crate::material::{Cloth, Law, Orthotropic, Sheet, Tension, Thread};
 use crate::set::Element;
@@ -545,7 +545,7 @@ fn what_a_triangle_carries() {
         for (flat, is_six) in [(six(FLAT, 0.0), true), (six(FLAT, 0.0), false)] {
             for stretch in [[1.3, 1.15], [1.4, natural(&sheet.cloth, 1.4)], [1.5, 0.7]] {
                 // Woven cloth has its axes in the directions of the stretches: warp along the first one.
-                for angle in [0.0, 0.37, 0.7853, 1.2, 1.9, 2.35, 2.6] {
+                for angle in [0.0, 0.37, 0.785, 1.2, 1.9, 2.35, 2.6] {
                     let warp = [f64::cos(angle), f64::sin(angle), 0.0];
                     let x = spread(&flat, stretch, angle);
                     let carried = if is_six {
@@ -718,9 +718,7 @@ fn octants(n: usize) -> Vec<[Vector; 6]> {
         .flat_map(|(x, y)| [1.0, -1.0].map(|z| (x, y, z)))
     {
         let mut push = |corners: [[usize; 2]; 3]| {
-            let middle = |a: usize, b: usize| {
-                [(corners[a][0] + corners[b][0]) / 2, (corners[a][1] + corners[b][1]) / 2]
-            };
+            let middle = |a: usize, b: usize| [0, 1].map(|k| usize::midpoint(corners[a][k], corners[b][k]));
             let all = [corners[0], corners[1], corners[2], middle(0, 1), middle(1, 2), middle(2, 0)];
             let mut places = all.map(|[i, j]| at(i, j, x, y, z));
             if x * y * z < 0.0 {
@@ -760,7 +758,7 @@ fn a_closed_surface_of_curved_triangles() {
     let all = octants(2);
     let turned: Vec<_> = all.iter().map(|x| x.map(|x| add(rotated(x, 0.9), [3.0, 1.0, -2.0]))).collect();
     assert!((volume(&all) - volume(&turned)).abs() < 1e-12);
-    // The volume by another formula, of x.n/3, and the force of the pressure as the integral of N n dA, both at 4 x 4 x ... points of
+    // The volume by another formula, of x.n/3, and the force of the pressure as the integral of N n dA, both at points of
     // their own: a square of Gauss points drawn together into the triangle.
     let gauss = [
         (0.861_136_311_594_052_6, 0.347_854_845_137_453_9),
@@ -845,6 +843,4 @@ fn elements_without_size_are_refused() {
     assert!(Ring::<2>::new(&[[1.0, 0.0, 1.0], [1.0, 0.0, 1.0]], &[]).is_none());
     // A warp that stands upright on the element: some direction in its plane is taken.
     assert!(Triangle::<3>::new(&FLAT, [0.0, 0.0, 1.0], Some(cloth)).is_some());
-    // A line that folds over has a place without length at one of its points at most: two points can't see it otherwise.
-    assert_eq!(line_strain::<3>().len(), 2);
 }

@@ -234,10 +234,8 @@ mod tests {
         for apart in [0.0, 1e-9, 1e-5] {
             let plane = isotropic(law, false, 0.0).plane(tensor(1.0 + apart, 1.0 - apart, 0.4));
             let expected = [[y, 0.4 * y, 0.0], [0.4 * y, y, 0.0], [0.0, 0.0, 0.3 * y]];
-            for i in 0..3 {
-                for j in 0..3 {
-                    assert!((plane.d[i][j] - expected[i][j]).abs() < 1e-9, "{apart} {i} {j}: {:?}", plane.d);
-                }
+            for (given, expected) in plane.d.as_flattened().iter().zip(expected.as_flattened()) {
+                assert!((given - expected).abs() < 1e-9, "{apart}: {:?}", plane.d);
             }
         }
         // Rubber is isotropic and incompressible: Y = 3 mu, nu = 1/2.
