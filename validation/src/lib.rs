@@ -15,6 +15,7 @@ mod isobars;
 mod limits;
 mod lobes;
 mod lobes_and_wall;
+mod membrane;
 mod meridian;
 mod nist;
 mod pleated_ladder;
@@ -55,6 +56,14 @@ pub const CHECKS: &[fn() -> Check] = &[
     derivative::linearised,
     derivative::stiffness,
     isobars::one_by_one,
+    membrane::sphere,
+    membrane::clamped_tube,
+    membrane::orders,
+    membrane::pleated,
+    membrane::braided,
+    membrane::braided_with_bladder,
+    membrane::sectors,
+    membrane::airbag,
     tables::lookups,
     tables::gradients,
     meridian::first_integral,

@@ -62,7 +62,7 @@ impl MembraneCommand {
                 Ok(next) => next,
                 Err(error) => {
                     bar.finish_and_clear();
-                    let kept = self.kept(&rows, &series);
+                    let kept = kept(&rows, &series);
                     return Err(refused(error, kept));
                 }
             };
@@ -87,7 +87,7 @@ impl MembraneCommand {
         if self.json {
             return self.document(&case, &run, &rows, &series, learnt.as_ref());
         }
-        let mut text = self.text(&case, &run, &rows, time);
+        let mut text = describe(&case, &run, &rows, time);
         let _ = writeln!(
             text,
             "  wrote {} and states.csv{}",
@@ -116,19 +116,6 @@ impl MembraneCommand {
         }
         bar.enable_steady_tick(Duration::from_millis(120));
         bar
-    }
-
-    /// What stands of a run that ended early.
-    fn kept(&self, rows: &[Row], series: &MembraneSeries) -> String {
-        match rows.last() {
-            Some(row) => format!(
-                "\n  states.csv and {} hold the {} states before; the last is {}",
-                series.path().display(),
-                rows.len(),
-                line(row)
-            ),
-            None => "\n  no state was found: begin with a smaller load".to_owned(),
-        }
     }
 
     /// The muscle with the effect of its cloth.
@@ -172,37 +159,50 @@ impl MembraneCommand {
         });
         Ok(serde_json::to_string_pretty(&document)? + "\n")
     }
+}
 
-    fn text(&self, case: &Case, run: &CaseRun<'_>, rows: &[Row], time: Duration) -> String {
-        let [unknowns, _, factors] = run.sizes();
-        let mut text = format!(
-            "{}: {} nodes, {} elements, {unknowns} unknowns\n\n",
-            case.name,
-            case.mesh.nodes.len(),
-            run.elements()
-        );
-        text.push_str(&table(&cells(rows)));
-        let unstable: Vec<String> =
-            rows.iter().filter(|row| row.unstable > 0).map(|row| row.state.to_string()).collect();
-        if !unstable.is_empty() {
-            // Writing to a String can't fail.
-            let _ = writeln!(
-                text,
-                "\n  unstable equilibria: state {}; the membrane would leave them for another shape",
-                unstable.join(", ")
-            );
-        }
-        let Effort { iterations, factorisations, assembling, factorising, solving } = run.effort();
+/// What stands of a run that ended early.
+fn kept(rows: &[Row], series: &MembraneSeries) -> String {
+    match rows.last() {
+        Some(row) => format!(
+            "\n  states.csv and {} hold the {} states before; the last is {}",
+            series.path().display(),
+            rows.len(),
+            line(row)
+        ),
+        None => "\n  no state was found: begin with a smaller load".to_owned(),
+    }
+}
+
+fn describe(case: &Case, run: &CaseRun<'_>, rows: &[Row], time: Duration) -> String {
+    let [unknowns, _, factors] = run.sizes();
+    let mut text = format!(
+        "{}: {} nodes, {} elements, {unknowns} unknowns\n\n",
+        case.name,
+        case.mesh.nodes.len(),
+        run.elements()
+    );
+    text.push_str(&table(&cells(rows)));
+    let unstable: Vec<String> =
+        rows.iter().filter(|row| row.unstable > 0).map(|row| row.state.to_string()).collect();
+    if !unstable.is_empty() {
+        // Writing to a String can't fail.
         let _ = writeln!(
             text,
-            "\n  {iterations} iterations, {factorisations} factorisations of {factors} numbers in {}: elements {}, factors {}, solving {}",
-            seconds(time),
-            seconds(assembling),
-            seconds(factorising),
-            seconds(solving)
+            "\n  unstable equilibria: state {}; the membrane would leave them for another shape",
+            unstable.join(", ")
         );
-        text
     }
+    let Effort { iterations, factorisations, assembling, factorising, solving } = run.effort();
+    let _ = writeln!(
+        text,
+        "\n  {iterations} iterations, {factorisations} factorisations of {factors} numbers in {}: elements {}, factors {}, solving {}",
+        seconds(time),
+        seconds(assembling),
+        seconds(factorising),
+        seconds(solving)
+    );
+    text
 }
 
 /// The muscle that a case can teach the effect of its cloth.
