@@ -186,7 +186,10 @@ pub(crate) fn braided() -> Check {
         for length in [60.0, 250.0] {
             let wanted: Vec<[f64; 8]> = values::<8>(text)?
                 .into_iter()
-                .filter(|row| (row[1] - 1e-3 * length).abs() < 1e-9 && (row[2] - 25.0).abs() < 1e-9)
+                // r0 = 10 mm.
+                .filter(|row| {
+                    [row[0] - 0.01, row[1] - 1e-3 * length, row[2] - 25.0].iter().all(|d| d.abs() < 1e-9)
+                })
                 .collect();
             let contractions: Vec<f64> = wanted.iter().map(|row| row[3]).collect();
             let found = net(160, [10.0, length], 25.0, "", &contractions)?;

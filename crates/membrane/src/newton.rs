@@ -238,14 +238,15 @@ impl Solver {
                 continue;
             }
             let mut length = (0.2 * self.size / longest).min(1.0);
-            for _ in 0..HALVINGS {
+            for halving in 0..HALVINGS {
                 for (trial, (y, by)) in trial.iter_mut().zip(y.iter().zip(&step.by)) {
                     *trial = y + length * by;
                 }
                 let [energy, volume] = self.measure(&trial);
                 let fell = self.potential(load, &trial, energy, volume) - now.potential;
                 let is_lower = fell <= 1e-4 * length * step.slope + floor;
-                if is_lower || self.is_calmer(load, now, (y, &trial), length * step.slope, is_dead) {
+                let is_first = halving == 0;
+                if is_lower || (is_first && self.is_calmer(load, now, (y, &trial), step.slope, is_dead)) {
                     // A quadratic potential falls by slope/2.
                     let expected = length * (1.0 - 0.5 * length) * step.slope;
                     let is_as_expected = (fell - expected).abs() < 0.3 * expected.abs() + floor;
@@ -281,7 +282,7 @@ impl Solver {
         is_dead: bool,
     ) -> bool {
         let size = self.totals.energy.abs() + now.potential.abs();
-        if slope.abs() > 1e-7 * size || matches!(load.inflation, Inflation::Volume(_)) {
+        if slope.abs() > 1e-9 * size || matches!(load.inflation, Inflation::Volume(_)) {
             return false;
         }
         let pressure = |solver: &Self| match load.inflation {

@@ -136,8 +136,6 @@ impl Solver {
         }
         let mut pressure = start.pressure;
         self.restore(start);
-        // What the threads pull with at the start becomes T0, whatever the stiffness will be.
-        self.hold(&start.y);
         self.choose_penalty(load, start);
         let first = self.effort.iterations;
         if matches!(load.inflation, Inflation::Volume(_)) && start.iterations == 0 {
@@ -195,7 +193,7 @@ impl Solver {
         };
         // A flat start has no volume yet.
         let (round, box_side) = (start.volume.abs().powf(2.0 / 3.0), self.size * self.size);
-        let area = if round < 0.05 * box_side { box_side } else { 4.0 * round };
+        let area = if round < 1e-3 * box_side { box_side } else { 4.0 * round };
         let threads = self.structure.threads();
         let force = pressure.abs() * area + load.fittings_force(&self.structure.fittings);
         self.penalty = STIFF * force.max(f64::MIN_POSITIVE) / self.copies.around / threads.max(1.0);
