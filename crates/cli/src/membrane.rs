@@ -4,7 +4,7 @@ use bulge_measurements::Data;
 use bulge_membrane::Effort;
 use bulge_membrane::case::{CASE_EXAMPLE, Case, CaseError, CaseRun, Row};
 use bulge_muscles::Muscle;
-use bulge_vtk::{MembranePicture, MembraneSeries, Whole};
+use bulge_vtk::{MembranePicture, MembraneSeries, Whole, write_vtu};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
@@ -29,6 +29,9 @@ pub(crate) struct MembraneCommand {
     /// Folder of the result: states.csv, a .vtu for each state and a .pvd that ParaView plays as a film
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Draw the whole muscle in every .vtu file, not only in that of the last state: sectors are repeated all round
+    #[arg(long)]
+    whole: bool,
     /// Write the muscle of the case with the effect `limited-unfolding` fitted to the states: what the cloth costs, for all other commands
     #[arg(long, value_name = "MODEL.toml")]
     as_effect: Option<PathBuf>,
@@ -54,6 +57,8 @@ impl MembraneCommand {
         let stem = stem(&case.name);
         let mut series = MembraneSeries::new(&self.out, &stem)?;
         let whole = Whole::of(&case);
+        // A sector repeated all round makes files a hundred times larger.
+        let each = if matches!(whole, Whole::Sector { .. }) && !self.whole { Whole::AsMeshed } else { whole };
         let bar = self.bar(case.states());
         let clock = Instant::now();
         let mut rows: Vec<Row> = Vec::new();
@@ -69,7 +74,7 @@ impl MembraneCommand {
             series.append(&MembranePicture {
                 state: &state,
                 fields: &fields,
-                whole,
+                whole: each,
                 time: row.state as f64,
             })?;
             bar.set_message(line(&row));
@@ -78,6 +83,11 @@ impl MembraneCommand {
             files::write(&self.out.join("states.csv"), csv(&rows).as_bytes())?;
         }
         bar.finish_and_clear();
+        if each != whole {
+            let (state, fields) = run.last();
+            let picture = MembranePicture { state, fields: &fields, whole, time: rows.len() as f64 };
+            write_vtu(self.out.join(format!("{stem}-whole.vtu")), &picture)?;
+        }
         let time = clock.elapsed();
         let forces = forces(&rows);
         if let Some(forces) = &forces {
