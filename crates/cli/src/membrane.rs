@@ -175,9 +175,8 @@ impl MembraneCommand {
 fn kept(rows: &[Row], series: &MembraneSeries) -> String {
     match rows.last() {
         Some(row) => format!(
-            "\n  states.csv and {} hold the {} states before; the last is {}",
+            "\n  states.csv and {} hold what was found; the last is {}",
             series.path().display(),
-            rows.len(),
             line(row)
         ),
         None => "\n  no state was found: begin with a smaller load".to_owned(),

@@ -229,7 +229,7 @@ impl CaseRun<'_> {
             [first, .., last] => Some(last - first),
         };
         let contraction =
-            self.case.length.and_then(|length| distance.map(|distance| -along * distance / length));
+            self.case.length.and_then(|length| distance.map(|distance| 0.0 - along * distance / length));
         let [taut, wrinkled, slack] = summary.shares;
         Row {
             state: self.states,

@@ -1,0 +1,172 @@
+//! `bulge membrane` as a user sees it: result, files, and what it says of mistaken cases.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod support;
+
+use support::{Folder, bulge, failure, json};
+
+const TUBE: &str = include_str!("../../../meshes/tube.toml");
+
+const PLEATED: &str = "[mesher]\nkind = \"pleated\"\nmuscle = \"ppam-2-r16\"\nfibres = 12\ncircumference = \"288 mm\"\ncells = [4, 10]\n\
+    [[material]]\nname = \"cloth\"\nlaw = \"st-venant\"\nthickness = \"0.1 mm\"\nyoung = \"500 MPa\"\npoisson = 0.3\n\
+    [[part]]\ngroup = \"cloth\"\nkind = \"membrane\"\nmaterial = \"cloth\"\n\
+    [[part]]\ngroup = \"fibre\"\nkind = \"cable\"\nstiffness = \"100 kN\"\n\
+    [[step]]\npressure = \"2 bar\"\ncontraction = \"5 %\"\n[[step]]\ncontraction = \"25 %\"\nstates = 4\n";
+
+#[test]
+fn a_case_gives_states_tables_and_pictures() {
+    let folder = Folder::new("membrane-states");
+    let (case, out) = (folder.write("case.toml", TUBE), folder.path("out"));
+    let document = json(&["membrane", &case, "--out", &out, "--json"]);
+    assert_eq!(document["schema"], "bulge.membrane/1");
+    let state = &document["states"][0];
+    // Shooting: -4.5093718857 N; 30 quadratic elements.
+    assert!((state["force_n"].as_f64().unwrap() + 4.509_371_9).abs() < 1e-4);
+    assert!((state["volume_m3"].as_f64().unwrap() - 34_161.1e-9).abs() < 1e-12);
+    assert_eq!((state["unstable"].as_u64(), state["slack"].as_f64()), (Some(0), Some(0.0)));
+    for name in ["states.csv", "forces.csv", "clamped-tube-of-rubber.pvd", "clamped-tube-of-rubber_0000.vtu"]
+    {
+        assert!(std::path::Path::new(&out).join(name).is_file(), "{name}");
+    }
+    let text = bulge(&["membrane", &case, "--out", &out]);
+    assert!(String::from_utf8_lossy(&text.stdout).contains("clamped tube of rubber: 61 nodes, 30 elements"));
+}
+
+#[test]
+fn the_cloth_becomes_an_effect_of_the_muscle() {
+    let folder = Folder::new("membrane-effect");
+    let (case, out, model) =
+        (folder.write("case.toml", PLEATED), folder.path("out"), folder.path("model.toml"));
+    let document = json(&["membrane", &case, "--out", &out, "--as-effect", &model, "--json"]);
+    let effect = &document["effect"];
+    assert!(effect["rmse_n"].as_f64().unwrap() < effect["before_rmse_n"].as_f64().unwrap());
+    assert!(std::fs::read_to_string(&model).unwrap().contains("[effects.limited-unfolding]"));
+    // The file is a muscle like any other.
+    let shape = json(&["shape", &model, "--pressure", "2 bar", "--contraction", "15 %", "--json"]);
+    assert!(shape["force_n"].as_f64().unwrap() > 0.0);
+    // A tube has no pleats.
+    let tube = folder.write("tube.toml", TUBE);
+    let (status, message) = failure(&["membrane", &tube, "--out", &out, "--as-effect", &model]);
+    assert!(status == 1 && message.contains("--as-effect") && message.contains("pleated"), "{message}");
+}
+
+#[test]
+fn a_pressure_beyond_the_limit_is_said_with_the_last_state() {
+    let folder = Folder::new("membrane-limit");
+    let text = TUBE.replace("pressure = \"30 kPa\"", "pressure = \"50 kPa\"\nstates = 2");
+    let (case, out) = (folder.write("case.toml", &text), folder.path("out"));
+    let (status, message) = failure(&["membrane", &case, "--out", &out]);
+    assert_eq!(status, 3, "{message}");
+    for part in ["state 2", "prescribe the volume", "3.43", "states.csv", "0.2500 bar"] {
+        assert!(message.contains(part), "no `{part}` in {message}");
+    }
+    assert_eq!(std::fs::read_to_string(format!("{out}/states.csv")).unwrap().lines().count(), 2);
+    // It goes on by its volume.
+    let text = TUBE.replace("pressure = \"30 kPa\"", "volume = \"68.3118838 ml\"");
+    let case = folder.write("volume.toml", &text);
+    let document = json(&["membrane", &case, "--out", &out, "--json"]);
+    assert!((document["states"][0]["pressure_pa"].as_f64().unwrap() / 32_353.062 - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn a_run_that_does_not_converge_ends_with_4() {
+    let folder = Folder::new("membrane-diverges");
+    let text = format!("{TUBE}\n[solver]\niterations = 1\n");
+    let (case, out) = (folder.write("case.toml", &text), folder.path("out"));
+    let (status, message) = failure(&["membrane", &case, "--out", &out]);
+    assert_eq!(status, 4, "{message}");
+    assert!(
+        message.contains("no equilibrium after 1 iterations") && message.contains("smaller load"),
+        "{message}"
+    );
+}
+
+#[test]
+fn mistaken_cases_are_refused_with_their_cure() {
+    let folder = Folder::new("membrane-mistakes");
+    let out = folder.path("out");
+    let cases = [
+        ("group = \"wall\"", "group = \"wal\"", "did you mean `wall`?"),
+        ("material = \"rubber\"", "material = \"steel\"", "there is rubber"),
+        ("shear = \"0.4 MPa\"", "shear = \"-0.4 MPa\"", "> 0"),
+        ("shear = \"0.4 MPa\"", "young = \"0.4 MPa\"", "it has shear"),
+        ("thickness = \"1 mm\"", "thickness = 1", "thickness"),
+        ("law = \"neo-hooke\"", "law = \"neohooke\"", "neo-hooke"),
+        ("cells = [30]", "cells = [30, 0]", "cells"),
+        ("cells = [30]", "cells = [10, 30]", "of triangles"),
+        ("order = 2", "order = 3", "`order` is 1"),
+        ("kind = \"tube\"", "kind = \"tub\"", "tube"),
+        ("pressure = \"30 kPa\"", "pressure = \"-30 kPa\"", "at least 0"),
+        ("pressure = \"30 kPa\"", "pressure = \"30 kPa\"\nvolume = \"1 ml\"", "keep one of them"),
+        ("pressure = \"30 kPa\"", "gas = \"isothermal\"", "no gas in it yet"),
+        ("pressure = \"30 kPa\"", "pressure = \"30 kPa\"\nforces = { top = \"1 N\" }", "loaded"),
+        (
+            "pressure = \"30 kPa\"",
+            "pressure = \"30 kPa\"\nplaces = { roof = \"1 mm\" }",
+            "there is bottom, top",
+        ),
+        ("pressure = \"30 kPa\"", "presure = \"30 kPa\"", "did you mean `pressure`?"),
+        ("[mesher]", "mesh = \"a.msh\"\n[mesher]", "keep one of them"),
+    ];
+    for (from, to, cure) in cases {
+        assert!(TUBE.contains(from), "{from}");
+        let case = folder.write("case.toml", &TUBE.replace(from, to));
+        let (status, message) = failure(&["membrane", &case, "--out", &out]);
+        assert!(status == 1 && message.contains(cure) && message.contains("case.toml"), "{to}: {message}");
+    }
+    // A plane of symmetry that doesn't close the volume, and supports that contradict each other.
+    for (more, cure) in [
+        (
+            "[[support]]\ngroup = \"last\"\nkind = \"plane\"\nnormal = [1, 0, 1]\n",
+            "level or contain the z axis",
+        ),
+        ("[[support]]\ngroup = \"last\"\nkind = \"fitting\"\nfitting = \"bottom\"\n", "two fittings"),
+        ("[[support]]\ngroup = \"wall\"\nkind = \"fixed\"\n", "nothing can move"),
+    ] {
+        let case = folder.write("case.toml", &format!("{TUBE}\n{more}"));
+        let (status, message) = failure(&["membrane", &case, "--out", &out]);
+        assert!(status == 1 && message.contains(cure), "{more}: {message}");
+    }
+}
+
+/// The mesh of a quarter of a tube as a file of Gmsh.
+fn gmsh() -> String {
+    bulge_membrane::mesher::tube(10.0, 60.0, [6, 12], false, bulge_membrane::mesher::Grading::Even).to_msh()
+}
+
+const FROM_FILE: &str = "mesh = \"tube.msh\"\n[scale]\nunit = \"mm\"\naround = 4\nlength = \"60 mm\"\n\
+    [[material]]\nname = \"rubber\"\nlaw = \"neo-hooke\"\nthickness = \"1 mm\"\nshear = \"0.4 MPa\"\n\
+    [[part]]\ngroup = \"wall\"\nkind = \"membrane\"\nmaterial = \"rubber\"\n\
+    [[support]]\ngroup = \"left\"\nkind = \"plane\"\nnormal = [0, 1, 0]\n\
+    [[support]]\ngroup = \"right\"\nkind = \"plane\"\nnormal = [1, 0, 0]\n\
+    [[support]]\ngroup = \"first\"\nkind = \"fitting\"\nfitting = \"bottom\"\n\
+    [[support]]\ngroup = \"last\"\nkind = \"fitting\"\nfitting = \"top\"\n\
+    [[step]]\npressure = \"20 kPa\"\ncontraction = \"5 %\"\n";
+
+#[test]
+fn meshes_come_from_gmsh() {
+    let folder = Folder::new("membrane-gmsh");
+    let out = folder.path("out");
+    let mesh = gmsh();
+    folder.write("tube.msh", &mesh);
+    let case = folder.write("case.toml", FROM_FILE);
+    let document = json(&["membrane", &case, "--out", &out, "--json"]);
+    assert!((document["states"][0]["contraction"].as_f64().unwrap() - 0.05).abs() < 1e-12);
+    let volume = document["states"][0]["volume_m3"].as_f64().unwrap();
+    assert!(volume > 2e-5 && volume < 3e-5, "{volume}");
+    // The same mesh in metres is a thousand times too large for its length, but a mesh all the same; without a unit it is none.
+    let no_unit = folder.write("no-unit.toml", &FROM_FILE.replace("unit = \"mm\"\n", ""));
+    let (status, message) = failure(&["membrane", &no_unit, "--out", &out]);
+    assert!(status == 1 && message.contains("`unit`"), "{message}");
+    // Cut in the middle.
+    folder.write("tube.msh", &mesh[..mesh.len() / 2]);
+    let (status, message) = failure(&["membrane", &case, "--out", &out]);
+    assert!(status == 1 && message.contains("tube.msh"), "{message}");
+    // A hole: the edge that nothing holds.
+    folder.write("tube.msh", &mesh);
+    let support = "[[support]]\ngroup = \"right\"\nkind = \"plane\"\nnormal = [1, 0, 0]\n";
+    let hole = folder.write("hole.toml", &FROM_FILE.replace(support, ""));
+    let (status, message) = failure(&["membrane", &hole, "--out", &out]);
+    assert!(status == 1 && message.contains("open edge") && message.contains("element"), "{message}");
+}
