@@ -23,7 +23,7 @@ fn a_case_gives_states_tables_and_pictures() {
     let state = &document["states"][0];
     // Shooting: -4.5093718857 N; 30 quadratic elements.
     assert!((state["force_n"].as_f64().unwrap() + 4.509_371_9).abs() < 1e-4);
-    assert!((state["volume_m3"].as_f64().unwrap() - 34_161.1e-9).abs() < 1e-12);
+    assert!((state["volume_m3"].as_f64().unwrap() - 34_161.1e-9).abs() < 1e-10);
     assert_eq!((state["unstable"].as_u64(), state["slack"].as_f64()), (Some(0), Some(0.0)));
     for name in ["states.csv", "forces.csv", "clamped-tube-of-rubber.pvd", "clamped-tube-of-rubber_0000.vtu"]
     {
@@ -66,7 +66,7 @@ fn a_pressure_beyond_the_limit_is_said_with_the_last_state() {
     let text = TUBE.replace("pressure = \"30 kPa\"", "volume = \"68.3118838 ml\"");
     let case = folder.write("volume.toml", &text);
     let document = json(&["membrane", &case, "--out", &out, "--json"]);
-    assert!((document["states"][0]["pressure_pa"].as_f64().unwrap() / 32_353.062 - 1.0).abs() < 1e-5);
+    assert!((document["states"][0]["pressure_pa"].as_f64().unwrap() / 32_353.062 - 1.0).abs() < 1e-4);
 }
 
 #[test]
@@ -115,6 +115,7 @@ fn mistaken_cases_are_refused_with_their_cure() {
         let (status, message) = failure(&["membrane", &case, "--out", &out]);
         assert!(status == 1 && message.contains(cure) && message.contains("case.toml"), "{to}: {message}");
     }
+    assert_eq!(folder.names(), ["case.toml"], "a refused case leaves nothing behind");
     // A plane of symmetry that doesn't close the volume, and supports that contradict each other.
     for (more, cure) in [
         (
