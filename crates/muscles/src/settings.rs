@@ -197,7 +197,12 @@ impl<'a> Settings<'a> {
     ///
     /// # Errors
     /// If the value is no such quantity.
-    pub fn quantity_of(&self, name: &str, value: Setting<'a>, dimension: Dimension) -> Result<f64, FileError> {
+    pub fn quantity_of(
+        &self,
+        name: &str,
+        value: Setting<'a>,
+        dimension: Dimension,
+    ) -> Result<f64, FileError> {
         let found =
             units::any(self.number(name, value)?).map_err(|error| self.unreadable(name, value, error))?;
         if found.dimension == dimension {
