@@ -179,7 +179,9 @@ fn kept(rows: &[Row], series: &MembraneSeries) -> String {
             series.path().display(),
             line(row)
         ),
-        None => "\n  no state was found: begin with a smaller load".to_owned(),
+        None => {
+            "\n  no state of the case was reached: begin with a smaller load, or in smaller steps".to_owned()
+        }
     }
 }
 

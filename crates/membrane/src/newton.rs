@@ -70,7 +70,7 @@ impl Solver {
             gradient[dof] -= force;
         }
         // Forces are differences of lengths times stiffness: what rounding leaves of them.
-        let rounding = 8.0 * f64::EPSILON * self.size;
+        let rounding = 32.0 * f64::EPSILON * self.size;
         let (mut ratio, mut residual) = (0.0_f64, 0.0_f64);
         for (i, g) in gradient.iter().enumerate() {
             let diagonal = self.matrix[self.assembly.diagonal[i]].abs();
@@ -192,6 +192,10 @@ impl Solver {
             }
             self.effort.iterations += 1;
             if !self.improve(load, &now, closure, &mut guard, y) {
+                // Nothing lowers the energy of what is in equilibrium: a mesh at rest without load, for one.
+                if now.ratio <= 1.0 {
+                    return Ok((now.residual, 0));
+                }
                 break;
             }
         }
@@ -319,7 +323,7 @@ impl Solver {
         let mut now = self.now(load, y, *pressure);
         for iteration in 0..self.tolerance.iterations {
             let excess = self.totals.volume - volume;
-            last = now.residual;
+            last = now.residual.hypot(excess / volume);
             let Inertia::Negative(negative) = self.factorise(0.0) else {
                 break;
             };

@@ -60,7 +60,7 @@ impl Solver {
                 Err(error) => {
                     step *= 0.5;
                     if step < SMALLEST {
-                        break Err(limit(&last, load).unwrap_or(error));
+                        break Err(limit(before, &last, load).unwrap_or(error));
                     }
                 }
             }
@@ -138,10 +138,12 @@ fn extrapolated(older: &State, last: &State, ratio: f64) -> State {
 }
 
 /// What a path that ends says, if it is the pressure that can't rise.
-fn limit(last: &State, load: &Load) -> Option<MembraneError> {
+fn limit(before: &Load, last: &State, load: &Load) -> Option<MembraneError> {
     match load.inflation {
-        // Nothing is known of a limit where no equilibrium was found at all.
-        Inflation::Pressure(pressure) if pressure > last.pressure && last.iterations > 0 => {
+        // Nothing is known of a limit where no equilibrium was found at all, or where an end moved as well.
+        Inflation::Pressure(pressure)
+            if pressure > last.pressure && last.iterations > 0 && before.fittings == load.fittings =>
+        {
             Some(MembraneError::LimitPoint { pressure, last: last.pressure, volume: last.volume })
         }
         _ => None,
