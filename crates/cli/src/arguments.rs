@@ -21,12 +21,14 @@ pub(crate) enum MethodArgument {
     ClosedForm,
     /// Shooting on the equilibrium ODE
     Shooting,
+    /// Membrane finite elements of revolution (`bulge shape` only)
+    Membrane,
 }
 
 impl MethodArgument {
     pub(crate) fn approach(self) -> Approach {
         match self {
-            Self::Auto => Approach::Auto,
+            Self::Auto | Self::Membrane => Approach::Auto,
             Self::ClosedForm => Approach::ClosedForm,
             Self::Shooting => Approach::Shooting,
         }

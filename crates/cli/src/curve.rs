@@ -61,6 +61,10 @@ pub(crate) struct CurveCommand {
 
 impl CurveCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
+        if self.method == MethodArgument::Membrane {
+            let what = "characteristics come from the closed form and from shooting: write a case for `bulge membrane`".to_owned();
+            return Err(Failure::Value { option: "--method", what });
+        }
         let (_, extended) = extended(&self.muscle, self.effects.as_deref())?;
         let muscle = extended.muscle().clone();
         let pressures: Vec<Pressure> = list("--pressure", &self.pressure)?;

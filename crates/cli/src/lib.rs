@@ -31,6 +31,7 @@ pub use bulge_effects as effects;
 pub use bulge_fibre as fibre;
 pub use bulge_inference as inference;
 pub use bulge_measurements as measurements;
+pub use bulge_membrane as membrane;
 pub use bulge_model as model;
 pub use bulge_muscles as muscles;
 pub use bulge_numerics as numerics;

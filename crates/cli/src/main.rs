@@ -7,6 +7,7 @@ mod curve;
 mod demo;
 mod diagnose;
 mod effects;
+mod elements;
 mod failure;
 mod files;
 mod fit;

@@ -11,6 +11,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use crate::arguments::{MethodArgument, about, about_extended, extended, quantity};
+use crate::elements;
 use crate::failure::Failure;
 use crate::sketch::sketch;
 use crate::text::significant;
@@ -107,7 +108,11 @@ impl ShapeCommand {
         let about = about(&muscle, pressure);
         let problem = Problem::new(&muscle, pressure).map_err(&about)?;
         let approach = self.method.approach();
-        let (shape, equilibrium_force) = self.shape(&stated, &extended, given)?;
+        let (shape, equilibrium_force) = if self.method == MethodArgument::Membrane {
+            (elements::shape(&problem, &extended, pressure, given, self.points)?, None)
+        } else {
+            self.shape(&stated, &extended, given)?
+        };
         let limit = extended.contraction_limit(pressure, approach).ok();
         if let Some(path) = &self.vtk {
             write_vtp(path, &bulge(&muscle, &shape, self.surface, cloth))?;

@@ -171,3 +171,45 @@ fn meshes_come_from_gmsh() {
     let (status, message) = failure(&["membrane", &hole, "--out", &out]);
     assert!(status == 1 && message.contains("open edge") && message.contains("element"), "{message}");
 }
+
+const BLADDER: &str = "name = \"braid\"\nkind = \"braided\"\nlength = \"60 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nwall = \"1 mm\"\n\
+    fibres = 100\nfibre = { stiffness = \"2 kN\" }\n[effects.bladder-elasticity]\nc10 = \"0.2 MPa\"\n";
+
+/// Two methods that share nothing: shooting on the meridian, and elements on the energy.
+#[test]
+fn a_shape_by_elements_is_that_of_the_meridian() {
+    let folder = Folder::new("membrane-shape");
+    let bladder = folder.write("bladder.toml", BLADDER);
+    for muscle in ["ppam-2-r16", "dmsp-20-250", &bladder] {
+        for given in [["--contraction", "15 %"], ["--force", "150 N"]] {
+            let shape = |method: &str| {
+                json(
+                    &[&["shape", muscle, "--pressure", "2 bar", "--method", method, "--json"], &given[..]]
+                        .concat(),
+                )
+            };
+            let [shot, found] = ["shooting", "membrane"].map(shape);
+            assert_eq!(found["method"], "membrane");
+            let names = [
+                ("force_n", 1e-6),
+                ("contraction", 1e-6),
+                ("volume_m3", 1e-7),
+                ("max_radius_m", 1e-6),
+                ("fibre_tension_n", 1e-4),
+                ("stiffness_n_per_m", 1e-4),
+                ("stiffness_isothermal_n_per_m", 1e-4),
+            ];
+            for (name, tolerance) in names {
+                let [a, b] = [&shot, &found].map(|shape| shape[name].as_f64().unwrap());
+                assert!((a / b - 1.0).abs() < tolerance, "{muscle} {given:?} {name}: {a} {b}");
+            }
+        }
+    }
+    let (status, message) = failure(&["curve", "ppam-1", "--pressure", "1 bar", "--method", "membrane"]);
+    assert!(status == 1 && message.contains("bulge membrane"), "{message}");
+    let lobed =
+        folder.write("lobed.toml", &(BLADDER.to_owned() + "[effects.force-offset]\nforce = \"3 N\"\n"));
+    let (status, message) =
+        failure(&["shape", &lobed, "--pressure", "1 bar", "--contraction", "9 %", "--method", "membrane"]);
+    assert!(status == 1, "{message}");
+}

@@ -104,7 +104,10 @@ impl Problem {
         self.judged(contraction, || match method {
             _ if self.is_cylinder() => by_cylinder(net, contraction),
             Method::ClosedForm => by_closed_form(net, contraction),
-            Method::Shooting => by_shooting(&self.net, net, contraction, from, (USUAL, Way::Ode)),
+            // This crate never chooses elements.
+            Method::Shooting | Method::Membrane => {
+                by_shooting(&self.net, net, contraction, from, (USUAL, Way::Ode))
+            }
         })
     }
 
@@ -120,7 +123,7 @@ impl Problem {
         self.judged(contraction, || match method {
             _ if self.is_cylinder() => by_cylinder(net, contraction),
             Method::ClosedForm => by_closed_form(net, contraction),
-            Method::Shooting => {
+            Method::Shooting | Method::Membrane => {
                 let groups = Groups::of(net);
                 let plain = &self.net;
                 match groups.count() {

@@ -10,6 +10,8 @@ pub enum Method {
     ClosedForm,
     /// Shooting on the equilibrium ODE.
     Shooting,
+    /// Membrane finite elements (not of this crate).
+    Membrane,
 }
 
 impl std::fmt::Display for Method {
@@ -17,6 +19,7 @@ impl std::fmt::Display for Method {
         f.write_str(match self {
             Self::ClosedForm => "closed-form",
             Self::Shooting => "shooting",
+            Self::Membrane => "membrane",
         })
     }
 }

@@ -1,0 +1,270 @@
+//! The equilibrium of a muscle by membrane finite elements of revolution: `bulge shape --method membrane`.
+//!
+//! Fibres as threads on a line of quadratic elements, a bladder as a sheet of rubber on the same line. A pleated muscle of n fibres is one of
+//! revolution under the pressure p sin(2 pi/n)/(2 pi/n): the polygon's area.
+
+use bulge_fibre::{
+    ADIABATIC, AMBIENT_PRESSURE, Convergence, Given, MeridianPoint, Method, Problem, Response, Shape,
+};
+use bulge_membrane::mesher::{Grading, revolved};
+use bulge_membrane::{
+    Cloth, Copies, Fitting, Inflation, Law, Load, Part, RingLayer, Sheet, Solver, State, Structure, Support,
+    Thread, Tolerance,
+};
+use bulge_model::Extended;
+use bulge_muscles::{Construction, Ends, Muscle, Pressure, Quantity};
+use std::f64::consts::{PI, TAU};
+
+use crate::failure::Failure;
+
+/// Elements at least.
+const ELEMENTS: usize = 200;
+/// Steps of contraction on the way: a long braid has more than one equilibrium, and small steps keep to the first.
+const STEP: f64 = 0.025;
+/// Difference of contraction for the derivatives.
+const DIFFERENCE: f64 = 1e-4;
+
+/// What the elements are made from.
+struct Elements {
+    solver: Solver,
+    /// Effective pressure \[Pa\], and the share of the circle that carries it.
+    pressure: f64,
+    share: f64,
+    length: f64,
+    radius: f64,
+    /// sin(alpha0), threads, and the mesh's nodes per point of the meridian.
+    sine: f64,
+    threads: f64,
+    every: usize,
+}
+
+/// The equilibrium of a muscle without other shape effects than those of its kind, ends, fibres and bladder.
+pub(crate) fn shape(
+    problem: &Problem,
+    extended: &Extended,
+    pressure: Pressure,
+    given: Given,
+    points: usize,
+) -> Result<Shape, Failure> {
+    let muscle = extended.muscle();
+    check(muscle, extended)?;
+    let mut elements = Elements::new(muscle, pressure, points)?;
+    let contraction = match given {
+        Given::Contraction(contraction) => contraction,
+        Given::Length(length) => 1.0 - length / elements.length,
+        // Where the meridian's equilibrium has this force or volume; corrected below.
+        Given::Force(_) | Given::Volume(_) => {
+            let found = problem.solve(given, bulge_fibre::Approach::Auto);
+            found.map_err(crate::arguments::about(muscle, pressure))?.contraction
+        }
+    };
+    let mut state = elements.at(contraction)?;
+    let mut slopes = elements.slopes(contraction, &state)?;
+    // The two solutions are so close that one step of Newton's method is enough.
+    let off = match given {
+        Given::Force(force) => (force - state.forces[1]) / (-elements.length * slopes[0]),
+        Given::Volume(volume) => (volume - state.volume) / (-elements.length * slopes[1]),
+        Given::Contraction(_) | Given::Length(_) => 0.0,
+    };
+    let contraction = contraction + off;
+    if off != 0.0 {
+        state = elements.at(contraction)?;
+        slopes = elements.slopes(contraction, &state)?;
+    }
+    Ok(elements.drawn(contraction, &state, slopes, pressure.si()))
+}
+
+/// What elements of revolution can't say.
+fn check(muscle: &Muscle, extended: &Extended) -> Result<(), Failure> {
+    let refused = |what: &str| {
+        let what = format!(
+            "membrane elements of revolution know no {what}: leave the method out, or write a case for `bulge membrane`"
+        );
+        Err(Failure::Value { option: "--method", what })
+    };
+    if extended.adds_force() || !extended.used().is_empty() {
+        return refused("effects");
+    }
+    if muscle.unfolding().is_some() {
+        return refused("limited unfolding");
+    }
+    match muscle.construction() {
+        Construction::Pleated(p) if p.cloth_circumference().is_some() => refused("lobes"),
+        Construction::Pleated(p) if p.pleat_depth().si() > 0.0 => refused("pleat depth"),
+        Construction::Pleated(p) if p.misalignment().si() > 0.0 => refused("misaligned fibres"),
+        Construction::Braided(b) if b.ends() == Ends::Cylinder => refused("cylinder without ends"),
+        Construction::Braided(b) if b.fitting_radius() != b.radius() => refused("fittings of another radius"),
+        Construction::Braided(_) if muscle.gas_wall().is_some() => refused("gas inside a thick wall"),
+        _ => Ok(()),
+    }
+}
+
+fn failed(error: impl std::fmt::Display) -> Failure {
+    Failure::NotConverged(format!("membrane elements: {error}"))
+}
+
+impl Elements {
+    fn new(muscle: &Muscle, pressure: Pressure, points: usize) -> Result<Self, Failure> {
+        let (length, radius) = (muscle.length().si(), muscle.end_radius().si());
+        let fibres = muscle.fibres().map(f64::from);
+        let (angle, share) = match muscle.construction() {
+            Construction::Pleated(_) => (0.0, fibres.map_or(1.0, |n| (TAU / n).sin() / (TAU / n))),
+            Construction::Braided(braided) => (braided.braid_angle().si(), 1.0),
+        };
+        let threads = fibres.unwrap_or(1.0);
+        let thread = muscle
+            .fibre()
+            .map_or(Thread::Inextensible, |fibre| Thread::Elastic { stiffness: fibre.stiffness().si() });
+        let mut layers = vec![RingLayer::Threads { thread, count: threads, angle }];
+        if let Some(bladder) = muscle.bladder() {
+            let wall = bladder.wall().si();
+            let law = Law::MooneyRivlin { c1: wall * bladder.c10().si(), c2: wall * bladder.c01().si() };
+            let sheet = Sheet { cloth: Cloth::Isotropic(law), wrinkles: false, residual: 0.0 };
+            layers.push(RingLayer::Sheet { sheet, fullness: 1.0 });
+        }
+        // As many nodes as points, or a multiple.
+        let halves = points.div_ceil(2).max(2) - usize::from(points % 2 == 1);
+        let every = ELEMENTS.div_ceil(halves);
+        let mesh = revolved(|t| [radius, length * t], halves * every, true, Grading::Ends(3.0));
+        let ends = [("first", 0), ("last", 1)];
+        let supports = ends.map(|(group, fitting)| (group.to_owned(), Support::Fitting { fitting }));
+        let parts = [("wall".to_owned(), Part::Revolved { layers })];
+        let structure = Structure::new(&mesh, &parts, &supports, &[Fitting::Placed; 2]).map_err(failed)?;
+        let solver = Solver::new(structure, Copies::ONE, Tolerance::default()).map_err(failed)?;
+        let pressure = pressure.si() * share;
+        Ok(Self { solver, pressure, share, length, radius, sine: angle.sin(), threads, every })
+    }
+
+    fn load(&self, contraction: f64) -> Load {
+        let fittings = vec![0.0, -contraction * self.length];
+        Load { inflation: Inflation::Pressure(self.pressure), fittings }
+    }
+
+    /// From rest to a contraction in small steps.
+    fn at(&mut self, contraction: f64) -> Result<State, Failure> {
+        let mut state = self.solver.at_rest();
+        let mut before = Load { inflation: Inflation::Pressure(0.0), fittings: vec![0.0; 2] };
+        let first = contraction.min(STEP);
+        let mut steps = vec![first];
+        while steps.last().is_some_and(|last| contraction - last > 1e-12) {
+            steps.push((first + steps.len() as f64 * STEP).min(contraction));
+        }
+        for step in steps {
+            let load = self.load(step);
+            state = self.solver.follow(&before, &state, &load, |_, _| ()).map_err(failed)?;
+            before = load;
+        }
+        Ok(state)
+    }
+
+    /// dF/dl, dV/dl and dF/dp (for gas enclosed) about a state.
+    fn slopes(&mut self, contraction: f64, state: &State) -> Result<[f64; 3], Failure> {
+        let mut ends = Vec::new();
+        for sign in [-1.0, 1.0] {
+            let load = self.load(contraction + sign * DIFFERENCE);
+            ends.push(self.solver.follow(&self.load(contraction), state, &load, |_, _| ()).map_err(failed)?);
+        }
+        let over = -1.0 / (2.0 * DIFFERENCE * self.length);
+        let slope = |of: &dyn Fn(&State) -> f64| over * (of(&ends[1]) - of(&ends[0]));
+        let mut stiffer = self.load(contraction);
+        let more = 1e-4 * self.pressure;
+        stiffer.inflation = Inflation::Pressure(self.pressure + more);
+        let pressed =
+            self.solver.follow(&self.load(contraction), state, &stiffer, |_, _| ()).map_err(failed)?;
+        Ok([slope(&|s| s.forces[1]), slope(&|s| s.volume), (pressed.volume - state.volume) / more])
+    }
+
+    fn drawn(&mut self, contraction: f64, state: &State, slopes: [f64; 3], pressure: f64) -> Shape {
+        let fields = self.solver.fields(state);
+        let threads = &fields.groups[0].threads[0];
+        let rubber = fields.groups[0].sheets.first();
+        let places = &fields.places;
+        let force = state.forces[1];
+        let cosine = (1.0 - self.sine * self.sine).sqrt();
+        let mut departure = 0.0_f64;
+        let last = places.len() - 1;
+        let slope = |node: usize| {
+            // By the parabola of each element at the node; where two meet, their mean.
+            let of = |element: usize, xi: f64| {
+                let [a, m, b] = [0, 1, 2].map(|k| places[2 * element + k]);
+                let d = |i: usize| (xi - 0.5) * a[i] - 2.0 * xi * m[i] + (xi + 0.5) * b[i];
+                d(0).atan2(d(2))
+            };
+            match (node % 2, node) {
+                (1, _) => of(node / 2, 0.0),
+                (_, 0) => of(0, -1.0),
+                (_, n) if n == last => of(n / 2 - 1, 1.0),
+                (_, n) => 0.5 * (of(n / 2 - 1, 1.0) + of(n / 2, -1.0)),
+            }
+        };
+        let near = |node: usize| [node.saturating_sub(1) / 2, (node / 2).min(threads.len() - 1)];
+        let point = |node: usize| {
+            let [x, _, z] = places[node];
+            let mean = |of: &dyn Fn(usize) -> f64| 0.5 * near(node).map(of).iter().sum::<f64>();
+            let strain = mean(&|e| threads[e].stretch) - 1.0;
+            let slope = slope(node);
+            let carried = force + self.pressure * PI * x * x;
+            MeridianPoint {
+                x_m: z,
+                r_m: x,
+                slope_rad: slope,
+                braid_angle_rad: (x * self.sine / (self.radius * (1.0 + strain))).asin(),
+                fibre_tension_n: mean(&|e| threads[e].tension),
+                fibre_strain: strain,
+                membrane_force_n_per_m: carried / slope.cos() / (TAU * x),
+                // The material keeps its azimuth, and the mesh is the muscle at rest: a tube.
+                fibre_length_m: (z - fields.displacements[node][2]) / cosine,
+                turn_rad: (z - fields.displacements[node][2]) * self.sine / (cosine * self.radius),
+            }
+        };
+        let meridian: Vec<MeridianPoint> = (0..=last).step_by(self.every).map(point).collect();
+        // In the middle of every element N cos(psi) = F + p A.
+        for (e, thread) in threads.iter().enumerate() {
+            let at = point(2 * e + 1);
+            let sheet = rubber.map_or(0.0, |sheet| sheet[e].force[0] * TAU * at.r_m);
+            let net = self.threads * thread.tension * thread.angle.cos() + sheet;
+            let carried = force + self.pressure * PI * at.r_m * at.r_m;
+            let scale = carried.abs().max(self.pressure * PI * self.radius * self.radius);
+            departure = departure.max((net * at.slope_rad.cos() - carried).abs() / scale);
+        }
+        let [stiffness, volume_slope, swelling] = slopes;
+        // The gas's pressure falls as the volume grows: dp/dl = -g p_abs dV/dl/(V + g p_abs dV/dp).
+        let enclosed = |exponent: f64| {
+            let absolute = exponent * (pressure + AMBIENT_PRESSURE);
+            let (v, dv, swelling) =
+                (self.share * state.volume, self.share * volume_slope, self.share * swelling * self.share);
+            // dF/dp = -dV/dl at constant length (Maxwell), of the polygon's volume.
+            stiffness + dv * absolute * dv / (v + absolute * swelling)
+        };
+        let largest = meridian.iter().fold(0.0_f64, |a, at| a.max(at.r_m));
+        let middle = meridian[meridian.len() / 2].r_m;
+        Shape {
+            response: Response {
+                pressure_pa: pressure,
+                force_n: force,
+                length_m: self.length * (1.0 - contraction),
+                contraction,
+                volume_m3: state.volume,
+                volume_polygon_m3: self.share * state.volume,
+                max_radius_m: largest,
+                mid_radius_m: middle,
+                fibre_tension_n: threads.iter().fold(0.0_f64, |a, t| a.max(t.tension)),
+                fibre_strain: threads.iter().fold(0.0_f64, |a, t| a.max(t.stretch - 1.0)),
+                stiffness_n_per_m: stiffness,
+                volume_slope_m2: self.share * volume_slope,
+                stiffness_isothermal_n_per_m: enclosed(1.0),
+                stiffness_adiabatic_n_per_m: enclosed(ADIABATIC),
+                end_slope_rad: meridian.first().map_or(0.0, |at| at.slope_rad),
+                method: Method::Membrane,
+                convergence: Convergence {
+                    iterations: u32::try_from(self.solver.effort().iterations).unwrap_or(u32::MAX),
+                    evaluations: u32::try_from(self.solver.effort().factorisations).unwrap_or(u32::MAX),
+                    steps: 0,
+                    residual: state.residual,
+                    first_integral: departure,
+                },
+            },
+            meridian,
+        }
+    }
+}
