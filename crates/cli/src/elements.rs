@@ -103,6 +103,21 @@ fn failed(error: impl std::fmt::Display) -> Failure {
     Failure::NotConverged(format!("membrane elements: {error}"))
 }
 
+/// Slope of the meridian at a node, by the parabola of its element; where two meet, the mean of theirs.
+fn slope(places: &[[f64; 3]], node: usize) -> f64 {
+    let of = |element: usize, xi: f64| {
+        let [a, m, b] = [0, 1, 2].map(|k| places[2 * element + k]);
+        let d = |i: usize| (xi - 0.5) * a[i] - 2.0 * xi * m[i] + (xi + 0.5) * b[i];
+        d(0).atan2(d(2))
+    };
+    match (node % 2, node / 2) {
+        (1, element) => of(element, 0.0),
+        (_, 0) => of(0, -1.0),
+        (_, element) if node + 1 == places.len() => of(element - 1, 1.0),
+        (_, element) => 0.5 * (of(element - 1, 1.0) + of(element, -1.0)),
+    }
+}
+
 impl Elements {
     fn new(muscle: &Muscle, pressure: Pressure, points: usize) -> Result<Self, Failure> {
         let (length, radius) = (muscle.length().si(), muscle.end_radius().si());
@@ -183,26 +198,12 @@ impl Elements {
         let cosine = (1.0 - self.sine * self.sine).sqrt();
         let mut departure = 0.0_f64;
         let last = places.len() - 1;
-        let slope = |node: usize| {
-            // By the parabola of each element at the node; where two meet, their mean.
-            let of = |element: usize, xi: f64| {
-                let [a, m, b] = [0, 1, 2].map(|k| places[2 * element + k]);
-                let d = |i: usize| (xi - 0.5) * a[i] - 2.0 * xi * m[i] + (xi + 0.5) * b[i];
-                d(0).atan2(d(2))
-            };
-            match (node % 2, node) {
-                (1, _) => of(node / 2, 0.0),
-                (_, 0) => of(0, -1.0),
-                (_, n) if n == last => of(n / 2 - 1, 1.0),
-                (_, n) => 0.5 * (of(n / 2 - 1, 1.0) + of(n / 2, -1.0)),
-            }
-        };
         let near = |node: usize| [node.saturating_sub(1) / 2, (node / 2).min(threads.len() - 1)];
         let point = |node: usize| {
             let [x, _, z] = places[node];
             let mean = |of: &dyn Fn(usize) -> f64| 0.5 * near(node).map(of).iter().sum::<f64>();
             let strain = mean(&|e| threads[e].stretch) - 1.0;
-            let slope = slope(node);
+            let slope = slope(places, node);
             let carried = force + self.pressure * PI * x * x;
             MeridianPoint {
                 x_m: z,
