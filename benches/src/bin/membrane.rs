@@ -44,6 +44,13 @@ const QUESTIONS: &[Question] = &[
         runs: 50,
     },
     Question {
+        name: "tube, 200 quadratic elements of revolution",
+        file: "tube.toml",
+        changes: &[("[30]", "[200]")],
+        error: tube,
+        runs: 20,
+    },
+    Question {
         name: "tube, 24 x 48 cells of triangles",
         file: "tube-3d.toml",
         changes: &[],
