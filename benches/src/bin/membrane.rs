@@ -79,10 +79,13 @@ const QUESTIONS: &[Question] = &[
         runs: 1,
     },
     Question {
-        name: "airbag, 10^5 unknowns, 10 pressures",
-        file: "airbag.toml",
-        changes: &[("[40, 40]", "[182, 182]"), ("pressure = \"5 kPa\"", "pressure = \"5 kPa\"\nstates = 10")],
-        error: volume,
+        name: "tube of triangles, 10^5 unknowns, 10 pressures",
+        file: "tube-3d.toml",
+        changes: &[
+            ("[24, 48]", "[129, 258]"),
+            ("pressure = \"30 kPa\"", "pressure = \"30 kPa\"\nstates = 10"),
+        ],
+        error: tube,
         runs: 1,
     },
 ];
