@@ -1,5 +1,6 @@
 //! `bulge membrane`: a finite-element membrane case, state after state.
 
+use bulge_inference::Fitting;
 use bulge_measurements::Data;
 use bulge_membrane::Effort;
 use bulge_membrane::case::{CASE_EXAMPLE, Case, CaseError, CaseRun, Row};
@@ -135,6 +136,7 @@ impl MembraneCommand {
         let effects = arguments::effects(&catalogue, &["limited-unfolding".to_owned()])?;
         let data = Data::read(&[self.out.join("forces.csv")])?;
         let fitted = fitted::fitted(&data, muscle, effects, catalogue)?;
+        is_the_cloth(case, &fitted)?;
         files::write(path, fitted.model.as_bytes())?;
         Ok(fitted)
     }
@@ -227,6 +229,31 @@ fn learns(case: &Case) -> Result<&Muscle, Failure> {
                 .to_owned(),
         }),
     }
+}
+
+/// How far the radius that is fitted may lie from that of the cloth without a fold: lobes come taut a little before it.
+const NEAR: f64 = 0.2;
+
+/// Refuses an effect that stands for something else: the cloth must end where the fit says that it does.
+fn is_the_cloth(case: &Case, fitted: &Fitted) -> Result<(), Failure> {
+    let parameters = &fitted.fitting.fit.parameters;
+    let radius = parameters.iter().find(|parameter| parameter.name == "unfolded_radius");
+    let (Some(cloth), Some(radius)) = (case.unfolded_radius.map(|radius| 1e3 * radius), radius) else {
+        return Ok(());
+    };
+    if (radius.value / cloth - 1.0).abs() <= NEAR {
+        return Ok(());
+    }
+    let Fitting { before_rmse_n, rmse_n, .. } = &fitted.fitting;
+    Err(Failure::Outside(format!(
+        "--as-effect: nothing is written: fitted to these states (error {} N, before {} N), limited unfolding would act from {} mm on, but the cloth \
+         has no fold left at {} mm only. What costs force before that are the lobes between the fibres: contract further, or compare forces.csv with a \
+         muscle that states `[effects.lobes]`",
+        significant(*rmse_n, 3),
+        significant(*before_rmse_n, 3),
+        significant(radius.value, 4),
+        significant(cloth, 4),
+    )))
 }
 
 /// A file name from a case's name.

@@ -42,6 +42,8 @@ pub struct Case {
     pub tolerance: Tolerance,
     /// The muscle that the mesh was made for, with the fibres of the case.
     pub muscle: Option<Muscle>,
+    /// Radius of a pleated cloth without any fold: its circumference over 2 pi, m.
+    pub unfolded_radius: Option<f64>,
     /// The sheets by name.
     pub materials: Vec<(String, Sheet)>,
 }

@@ -66,6 +66,7 @@ impl Case {
             fittings: supports.fittings,
             copies: source.copies,
             length: source.length,
+            unfolded_radius: source.unfolded_radius,
             steps,
             tolerance: tolerance(&settings)?,
             muscle: source.muscle.map(|muscle| stiffened(muscle, &parts)),

@@ -44,6 +44,7 @@ pub(super) struct Source {
     pub(super) mesh: Mesh,
     pub(super) copies: Copies,
     pub(super) length: Option<f64>,
+    pub(super) unfolded_radius: Option<f64>,
     pub(super) muscle: Option<Muscle>,
     /// What holds it by its symmetry.
     pub(super) supports: Vec<(String, Support)>,
@@ -125,6 +126,7 @@ fn from_file(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Source, F
         mesh,
         copies: copies(&scale)?,
         length: positive(&scale, "length", Dimension::LENGTH)?,
+        unfolded_radius: None,
         muscle: None,
         supports: Vec::new(),
         fittings: Vec::new(),
@@ -192,7 +194,7 @@ fn plane(normal: [f64; 3]) -> Support {
 }
 
 fn source(mesh: Mesh, copies: Copies, supports: Vec<(String, Support)>) -> Source {
-    Source { mesh, copies, supports, length: None, fittings: Vec::new(), muscle: None }
+    Source { mesh, copies, supports, length: None, unfolded_radius: None, fittings: Vec::new(), muscle: None }
 }
 
 impl Wish<'_, '_> {
@@ -293,7 +295,8 @@ impl Wish<'_, '_> {
         ];
         let copies = Copies { around: 2.0 * pleated.fibres as f64, along: 2.0 };
         let whole = source(pleated.half_lobe(), copies, supports);
-        Ok(Source { fittings: vec![placed("top")], length: Some(pleated.length), ..whole })
+        let unfolded_radius = Some(pleated.circumference / (2.0 * PI));
+        Ok(Source { fittings: vec![placed("top")], length: Some(pleated.length), unfolded_radius, ..whole })
     }
 }
 
