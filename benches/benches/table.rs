@@ -7,7 +7,7 @@ use bulge_benches::random_points;
 use bulge_fibre::closed_form;
 use bulge_sweep::{Plan, tabulate};
 use bulge_table::Table;
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -29,6 +29,12 @@ fn lookups(c: &mut Criterion) {
             b.iter(|| lookup.at(black_box(*next.next().unwrap())));
         });
         if form == "splines" {
+            let mut found = vec![None; POINTS];
+            group.throughput(Throughput::Elements(POINTS as u64));
+            group.bench_function("lookup, splines, all points in one call", |b| {
+                b.iter(|| lookup.at_each(black_box(&points), black_box(&mut found)));
+            });
+            group.throughput(Throughput::Elements(1));
             // What a controller of one muscle does.
             let curve = lookup.curve::<96>([0.0, 6.875]).unwrap();
             let mut next = points.iter().cycle();

@@ -65,6 +65,35 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         self.in_space(point)
     }
 
+    /// [`Lookup::at`] of many points, bit for bit, into as many places; of the longer slice the rest is left alone. For splines over two axes it
+    /// takes two thirds of the time, since the steps of several points overlap.
+    ///
+    /// ```
+    /// # fn run(table: &bulge_table::Table<'_>) -> Option<()> {
+    /// let lookup = table.lookup::<2, 2>().ok()?;
+    /// let mut found = [None; 3];
+    /// lookup.at_each(&[[0.1, 6.875], [0.2, 6.875], [0.9, 6.875]], &mut found);
+    /// let [force, volume] = found[1]?;
+    /// # let _ = (force, volume);
+    /// assert!(found[2].is_none()); // beyond the largest contraction
+    /// # Some(())
+    /// # }
+    /// ```
+    #[inline]
+    pub fn at_each(&self, points: &[[f64; A]], found: &mut [Option<[Sample<A>; O]>]) {
+        if A == 2 && self.form == Form::Spline {
+            if self.is_single {
+                self.each_in_plane::<Single>(points, found);
+            } else {
+                self.each_in_plane::<Double>(points, found);
+            }
+            return;
+        }
+        for (point, found) in points.iter().zip(found) {
+            *found = self.in_space(*point);
+        }
+    }
+
     /// [`Lookup::at`] for any number of axes; not inlined, since the stack that it needs would be prepared for two axes as well.
     #[inline(never)]
     fn in_space(&self, point: [f64; A]) -> Option<[Sample<A>; O]> {

@@ -59,7 +59,7 @@ impl Mul for Pair {
 }
 
 /// Of the four coefficients about a cell, in two steps: six times de Boor's two numbers L and H of the step before the last, then their mean
-/// with the weights 1 - t and t. The slope is half of H - L.
+/// L + t (H - L). The slope is half of H - L.
 ///
 /// ```text
 /// L = (1 - t)^2 k0 + (4 - 2 t^2) k1 + (1 + t)^2 k2      H = (2 - t)^2 k1 + (4 - 2 (1 - t)^2) k2 + t^2 k3
@@ -68,7 +68,6 @@ impl Mul for Pair {
 pub(crate) struct Weights {
     low: [Pair; 3],
     high: [Pair; 3],
-    rest: Pair,
     t: Pair,
 }
 
@@ -82,9 +81,18 @@ impl Weights {
         Self {
             low: [below, four - (above + above), next * next],
             high: [last * last, four - (below + below), above],
-            rest,
             t,
         }
+    }
+
+    /// Those of both numbers, each twice.
+    #[inline]
+    pub(crate) fn of_each(t: Pair) -> [Self; 2] {
+        let both = Self::at(t);
+        [0, 1].map(|i| {
+            let b = |p: Pair| Pair::both(p.0[i]);
+            Self { low: both.low.map(b), high: both.high.map(b), t: b(both.t) }
+        })
     }
 
     /// L and H.
@@ -97,7 +105,7 @@ impl Weights {
     /// The mean of two ends.
     #[inline]
     pub(crate) fn mean(&self, [low, high]: [Pair; 2]) -> Pair {
-        self.rest * low + self.t * high
+        low + self.t * (high - low)
     }
 }
 

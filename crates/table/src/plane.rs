@@ -1,4 +1,5 @@
-//! The lookup of splines over two axes: the general path with everything known beforehand and no loop left, two outputs at a time.
+//! The lookup of splines over two axes: the general path with everything known beforehand and no loop left, two outputs at a time, and for many
+//! points the places of two at a time.
 //!
 //! What doesn't depend on the output is computed twice, from numbers that are stored twice: so it needn't be spread before it meets the outputs.
 
@@ -9,6 +10,8 @@ use crate::lookup::{Lookup, Sample};
 use crate::pair::{Factors, Pair, Weights};
 use crate::spline::{Double, Number};
 
+/// Points whose places are found before any is looked up, so that the steps of several points overlap. An even number.
+const BLOCK: usize = 32;
 /// Most pairs of outputs.
 const PAIRS: usize = crate::format::MOST_OUTPUTS / 2;
 
@@ -94,13 +97,13 @@ impl Cells {
         Self { number: Pair::both(scale * number), inside: Pair::both(scale * number * INSIDE) }
     }
 
-    /// Cell and the place in it, without the checks of a conversion. Where two cells meet it may be either.
+    /// Cells and the places in them, without the checks of a conversion. Where two cells meet it may be either.
     #[inline]
     #[expect(clippy::cast_possible_truncation, reason = "the low bits are the number of the cell")]
-    fn at(&self, q: Pair) -> (usize, Pair) {
+    fn at(&self, q: Pair) -> ([u32; 2], Pair) {
         let whole = Pair::both(WHOLE);
         let cell = (q * self.inside - Pair::both(0.5)) + whole;
-        (cell.0[0].to_bits() as u32 as usize, q * self.number - (cell - whole))
+        (cell.0.map(|cell| cell.to_bits() as u32), q * self.number - (cell - whole))
     }
 }
 
@@ -120,78 +123,127 @@ fn sample<const A: usize>(found: &[Pair; 3], o: usize) -> Sample<A> {
     Sample { value: found[0].0[o], gradient }
 }
 
+/// How far two points are along their axes, which a single point is twice.
+struct Start {
+    distance: Pair,
+    /// The distance or its root, and its derivative.
+    s: [Pair; 2],
+    /// The second coordinate, but for its scale, and its derivative.
+    q: Pair,
+    own_v: Pair,
+}
+
+impl Start {
+    #[inline]
+    fn at(plane: &Plane, is_root: bool, x: Pair, y: Pair) -> Self {
+        let distance = x - plane.low[0];
+        let (mut q, mut own_v) = (y - plane.low[1], plane.own);
+        if !plane.is_linear {
+            let below = (q + plane.pole).reciprocal();
+            q = q * below;
+            own_v = own_v * below * below;
+        }
+        let mut s = [distance, Pair::both(1.0)];
+        if is_root {
+            let r = distance.reciprocal_root();
+            s = [distance * r, r * Pair::both(0.5)];
+        }
+        Self { distance, s, q, own_v }
+    }
+}
+
+/// Where two points are in the table.
+#[derive(Debug, Clone, Copy, Default)]
+struct Places {
+    row: [u32; 2],
+    column: [u32; 2],
+    /// Places in their cells.
+    t: Pair,
+    w: Pair,
+    /// The first coordinate and its inverse.
+    u: Pair,
+    over: Pair,
+    /// Its derivative by its own axis and by the second coordinate, and the derivative of that one.
+    own_u: Pair,
+    shift: Pair,
+    own_v: Pair,
+    is_inside: [bool; 2],
+}
+
 impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     /// [`Lookup::at`] of splines where A is 2.
     #[inline]
     pub(crate) fn in_plane<N: Number>(&self, point: [f64; A]) -> Option<[Sample<A>; O]> {
-        if O > 2 {
-            return self.all_in_plane::<N>(point);
-        }
-        let found = self.two_in_plane::<N>(point[0], point[1], 0)?;
-        Some(array::from_fn(|o| sample(&found, o)))
-    }
-
-    fn all_in_plane<N: Number>(&self, point: [f64; A]) -> Option<[Sample<A>; O]> {
-        let mut samples = [Sample { value: 0.0, gradient: [0.0; A] }; O];
-        for (i, samples) in samples.chunks_mut(2).enumerate() {
-            let found = self.two_in_plane::<N>(point[0], point[1], i)?;
-            for (o, to) in samples.iter_mut().enumerate() {
-                *to = sample(&found, o);
-            }
-        }
-        Some(samples)
+        all(|i| self.two_in_plane::<N>(point[0], point[1], i))
     }
 
     /// Values and derivatives of a pair of outputs. A function of its own, since pairs that are returned in memory stay pairs.
     #[inline(never)]
     fn two_in_plane<N: Number>(&self, x: f64, y: f64, i: usize) -> Option<[Pair; 3]> {
         let plane = &self.plane;
-        let i = if O > 2 { i } else { 0 };
-        let distance = Pair::both(x) - plane.low[0];
-        let is_inside = y >= plane.low[1].0[0] && y <= plane.high[1];
-        if !(is_inside && distance.0[0] >= self.least && x <= plane.high[0]) {
+        if !(y >= plane.low[1].0[0] && y <= plane.high[1]) {
             return None;
         }
-        // The second coordinate, but for its scale.
-        let mut q = Pair::both(y) - plane.low[1];
-        let mut own_v = plane.own;
-        if !plane.is_linear {
-            let below = (q + plane.pole).reciprocal();
-            q = q * below;
-            own_v = own_v * below * below;
+        let start = Start::at(plane, self.is_root, Pair::both(x), Pair::both(y));
+        if !(start.distance.0[0] >= self.least && x <= plane.high[0]) {
+            return None;
         }
-        let (mut s, mut s_by) = (distance, Pair::both(1.0));
-        if self.is_root {
-            let r = distance.reciprocal_root();
-            (s, s_by) = (distance * r, r * Pair::both(0.5));
-        }
-        // The first one, with what it takes from the second.
+        // 1/Q and c of the edge go together.
         let (mut edge, mut edge_by) = (plane.first, Pair::default());
         if self.is_fitted {
-            let (cell, t) = plane.edge.at(q);
-            let knots: &[[u8; 16]; 4] = self.edge.as_chunks().0.get(cell..)?.first_chunk()?;
-            let knot = |k: &[u8; 16]| Pair([Double::read(&k[..8]), Double::read(&k[8..])]);
+            let (cell, t) = plane.edge.at(start.q);
+            let knots: &[[u8; 16]; 4] = self.edge.as_chunks().0.get(cell[0] as usize..)?.first_chunk()?;
             let weights = Weights::at(t);
-            let ends = weights.ends(&[knot(&knots[0]), knot(&knots[1]), knot(&knots[2]), knot(&knots[3])]);
+            let ends = weights.ends(&knots.map(|k| Pair([Double::read(&k[..8]), Double::read(&k[8..])])));
             (edge, edge_by) = (weights.mean(ends), (ends[1] - ends[0]) * plane.edge_by);
         }
-        let [scale, pole] = edge.0.map(Pair::both);
-        let [scale_by, pole_by] = edge_by.0.map(Pair::both);
+        let twice = |i: usize| [Pair::both(edge.0[i]), Pair::both(edge_by.0[i])];
+        let places = self.both_places(&start, twice(0), twice(1));
+        if !self.is_on(places.u.0[0]) {
+            return None;
+        }
+        self.samples_at::<N>(&places, 0, i)
+    }
+
+    /// Two points on the table, but for whether they are inside.
+    #[inline]
+    fn both_places(&self, start: &Start, [scale, scale_by]: [Pair; 2], [pole, pole_by]: [Pair; 2]) -> Places {
+        let (plane, [s, s_by]) = (&self.plane, start.s);
         let below = (s * plane.factor + pole).reciprocal();
         let part = scale * below;
         let u = part * s;
-        let own_u = part * (pole * below) * s_by;
-        let shift = (s * below) * (scale_by - part * pole_by);
-        if !(u.0[0] <= 1.0 + 4.0 * f64::EPSILON && u.0[0] >= self.least_u) {
-            return None;
-        }
-        // The patch.
         let (row, t) = plane.across.at(u);
-        let (column, w) = plane.along.at(q);
-        let (across, along) = (Weights::at(t), Weights::at(w));
+        let (column, w) = plane.along.at(start.q);
+        Places {
+            row,
+            column,
+            t,
+            w,
+            u,
+            over: if self.least_u > 0.0 { u.at_most(1.0).reciprocal() } else { Pair::both(1.0) },
+            own_u: part * (pole * below) * s_by,
+            shift: (s * below) * (scale_by - part * pole_by),
+            own_v: start.own_v,
+            is_inside: [false; 2],
+        }
+    }
+
+    /// Whether a first coordinate is on the table.
+    #[inline]
+    fn is_on(&self, u: f64) -> bool {
+        u <= 1.0 + 4.0 * f64::EPSILON && u >= self.least_u
+    }
+
+    /// Values and derivatives of a pair of outputs at one of two points.
+    #[inline]
+    fn samples_at<N: Number>(&self, place: &Places, point: usize, i: usize) -> Option<[Pair; 3]> {
+        let plane = &self.plane;
+        let i = if O > 2 { i } else { 0 };
+        let only = |two: &Pair| Pair::both(two.0[point]);
+        let [across, along] = Weights::of_each(Pair([place.t.0[point], place.w.0[point]]));
         let each = O * N::BYTES;
         let stride = each * plane.nodes as usize;
-        let start = row * stride + column * each;
+        let start = place.row[point] as usize * stride + place.column[point] as usize * each;
         let patch = self.data.get(start..start + (3 * stride + 4 * each))?;
         let rows = [0, 1, 2, 3].map(|k| patch.get(k * stride..k * stride + 4 * each));
         let (fourth, third, second, first) = (rows[3]?, rows[2]?, rows[1]?, rows[0]?);
@@ -206,11 +258,74 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let g_u = ends[1] - ends[0];
         let g_v = across.mean([high[0] - low[0], high[1] - low[1]]);
         // The factors, and the chain rule.
-        let u = u.at_most(1.0);
-        let over = if self.least_u > 0.0 { u.reciprocal() } else { Pair::both(1.0) };
-        let [factor, fall] = plane.factors[i].at(u, over);
+        let (own_u, own_v) = (only(&place.own_u), only(&place.own_v));
+        let [factor, fall] = plane.factors[i].at(only(&place.u).at_most(1.0), only(&place.over));
         let by_u = g_u * (factor * plane.across_by) - g * fall;
-        let by_v = g_v * (factor * (plane.along_by * own_v)) + by_u * (shift * own_v);
+        let by_v = g_v * (factor * (plane.along_by * own_v)) + by_u * (only(&place.shift) * own_v);
         Some([g * factor, by_u * own_u, by_v])
     }
+
+    /// [`Lookup::at_each`] of splines where A is 2.
+    pub(crate) fn each_in_plane<N: Number>(&self, points: &[[f64; A]], found: &mut [Option<[Sample<A>; O]>]) {
+        for (points, found) in points.chunks(BLOCK).zip(found.chunks_mut(BLOCK)) {
+            let mut places = [Places::default(); BLOCK / 2];
+            for (two, place) in points.chunks(2).zip(&mut places) {
+                let last = two[two.len() - 1];
+                self.two_places(Pair([two[0][0], last[0]]), Pair([two[0][1], last[1]]), place);
+            }
+            for (k, found) in found.iter_mut().enumerate().take(points.len()) {
+                *found = all(|i| self.one_of_two::<N>(&places[k / 2], k % 2, i));
+            }
+        }
+    }
+
+    /// Where two points are, each step for both. Of points outside it may be anywhere.
+    #[inline(never)]
+    fn two_places(&self, x: Pair, y: Pair, to: &mut Places) {
+        let plane = &self.plane;
+        let start = Start::at(plane, self.is_root, x, y);
+        let [mut scale, mut pole] = plane.first.0.map(|number| [Pair::both(number), Pair::default()]);
+        if self.is_fitted {
+            let (cells, t) = plane.edge.at(start.q);
+            let edge: &[[u8; 16]] = self.edge.as_chunks().0;
+            let knots = |cell: u32| edge.get(cell as usize..).and_then(<[_]>::first_chunk::<4>);
+            let Some(none) = edge.first_chunk() else { return };
+            let [a, b] = [knots(cells[0]).unwrap_or(none), knots(cells[1]).unwrap_or(none)];
+            let weights = Weights::at(t);
+            let number = |k: &[u8; 16], at: usize| Double::read(&k[8 * at..]);
+            [scale, pole] = [0, 1].map(|at| {
+                let ends = weights.ends(&array::from_fn(|k| Pair([number(&a[k], at), number(&b[k], at)])));
+                [weights.mean(ends), (ends[1] - ends[0]) * plane.edge_by]
+            });
+        }
+        *to = self.both_places(&start, scale, pole);
+        to.is_inside = array::from_fn(|k| {
+            let is_along = y.0[k] >= plane.low[1].0[0] && y.0[k] <= plane.high[1];
+            let is_across = start.distance.0[k] >= self.least && x.0[k] <= plane.high[0];
+            is_along && is_across && self.is_on(to.u.0[k])
+        });
+    }
+
+    #[inline(never)]
+    fn one_of_two<N: Number>(&self, place: &Places, point: usize, i: usize) -> Option<[Pair; 3]> {
+        let point = point % 2;
+        if place.is_inside[point] { self.samples_at::<N>(place, point, i) } else { None }
+    }
+}
+
+/// All outputs from those of the pairs.
+#[inline]
+fn all<const A: usize, const O: usize>(pair: impl Fn(usize) -> Option<[Pair; 3]>) -> Option<[Sample<A>; O]> {
+    if O <= 2 {
+        let found = pair(0)?;
+        return Some(array::from_fn(|o| sample(&found, o)));
+    }
+    let mut samples = [Sample { value: 0.0, gradient: [0.0; A] }; O];
+    for (i, samples) in samples.chunks_mut(2).enumerate() {
+        let found = pair(i)?;
+        for (o, to) in samples.iter_mut().enumerate() {
+            *to = sample(&found, o);
+        }
+    }
+    Some(samples)
 }

@@ -1,6 +1,6 @@
 //! Square root without std: `core` has none on stable Rust.
 
-/// 1/sqrt(x) of a normal positive x, to 2 units in the last place.
+/// 1/sqrt(x) of a normal positive x, to 2 units in the last place; some number for any other x.
 ///
 /// From Lomont's constant (3.4 % off), by the cubic of z = x y^2 that is nearest to 1/sqrt(z) for the z that come of it (7.5e-7 off), then by a step
 /// of third order: with e = 1 - x y^2
@@ -10,7 +10,7 @@
 /// ```
 #[inline]
 pub(crate) fn reciprocal_root(x: f64) -> f64 {
-    let y = f64::from_bits(0x5FE6_EB50_C7B5_37A9 - (x.to_bits() >> 1));
+    let y = f64::from_bits(0x5FE6_EB50_C7B5_37A9_u64.wrapping_sub(x.to_bits() >> 1));
     let z = x * y * y;
     let y = y * (2.189_332_75 + z * (-2.191_720_62 + z * (1.315_441_19 - 0.313_054_06 * z)));
     let e = 1.0 - x * y * y;

@@ -4,7 +4,7 @@
 
 mod writer;
 
-use bulge_table::{Form, Lookup, Table, TableError};
+use bulge_table::{Form, Lookup, Sample, Table, TableError};
 use writer::{Axis, Draft, Dual, Kind, Polynomial, Random, single};
 
 const PPAM: &[u8] = include_bytes!("../examples/data/ppam.table");
@@ -337,6 +337,7 @@ fn both_agree<const A: usize, const O: usize>(random: &mut Random) {
             }
         }
         curve_agrees(&lookup, &table, random);
+        each_agrees(&lookup, &table, random);
         let shape = TableError::Shape { axes: A, outputs: O };
         assert!(table.lookup::<5, 1>().is_err_and(|error| error == shape));
         assert!(table.lookup::<A, 9>().is_err_and(|error| error == shape));
@@ -348,6 +349,42 @@ fn both_agree<const A: usize, const O: usize>(random: &mut Random) {
         assert!(table.upper_end(&point[1..]).is_none());
         assert!(table.sample(&point, &mut values[..O], &mut gradients).is_some());
         assert!(table.axis(A).is_none() && table.output(O).is_none());
+    }
+}
+
+/// Many points at once are the same points one by one, whatever their number and their neighbours, and no place beyond them is written.
+fn each_agrees<const A: usize, const O: usize>(
+    lookup: &Lookup<'_, A, O>,
+    table: &Table<'_>,
+    random: &mut Random,
+) {
+    let odd = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN, -0.0, 0.0];
+    for count in [0, 1, 2, 3, 31, 32, 33, 70] {
+        let points: Vec<[f64; A]> = (0..count)
+            .map(|i| {
+                let mut point: [f64; A] = std::array::from_fn(|k| {
+                    let axis = table.axis(k).unwrap();
+                    axis.low + random.between(-0.05, 1.05) * (axis.high - axis.low)
+                });
+                if i % 5 == 1 {
+                    point[i % A] = odd[i / 5 % odd.len()];
+                }
+                point
+            })
+            .collect();
+        let untouched = Some([Sample { value: 7.0, gradient: [7.0; A] }; O]);
+        let mut found = vec![untouched; count + 2];
+        lookup.at_each(&points, &mut found);
+        for (point, found) in points.iter().zip(&found) {
+            let of = |all: Option<[Sample<A>; O]>| {
+                all.map(|all| all.map(|s| (s.value.to_bits(), s.gradient.map(f64::to_bits))))
+            };
+            assert_eq!(of(lookup.at(*point)), of(*found), "{point:?}");
+        }
+        assert!(found[count..].iter().all(|found| *found == untouched));
+        let mut short = vec![None; count / 2];
+        lookup.at_each(&points, &mut short);
+        assert_eq!(short, found[..count / 2]);
     }
 }
 
