@@ -38,6 +38,7 @@ def main():
         print(f"table of {figures['bytes']} bytes, built and certified in {figures['build_s']:.2f} s")
         print(f"{'':44}  per point   largest error   what")
         print(f"{'Bulge, lookup':44}  {figures['lookup_ns']:6.0f} ns   1.0e-06         f, v and their gradients")
+        print(f"{'Bulge, lookup, 4096 at once':44}  {figures['many_ns']:6.0f} ns   1.0e-06         f, v and their gradients")
         print(f"{'Bulge, lookup, one slenderness (`curve`)':44}  {figures['curve_ns']:6.0f} ns   1.0e-06         f, v and their gradients")
         print(f"{'Bulge, closed form':44}  {figures['solve_ns']:6.0f} ns                   f, v and their gradients")
         fine = grid(table, 400)

@@ -51,6 +51,13 @@ fn main() -> Result<(), Failure> {
             }
         }
     });
+    let mut found = vec![None; POINTS];
+    let of_many = median(PASSES * POINTS, || {
+        for _ in 0..PASSES {
+            lookup.at_each(black_box(&points), &mut found);
+            black_box(&found);
+        }
+    });
     let curve = lookup.curve::<96>([0.0, 6.875]).ok_or("the table has more coefficients than expected")?;
     let along_curve = median(PASSES * POINTS, || {
         for _ in 0..PASSES {
@@ -66,6 +73,7 @@ fn main() -> Result<(), Failure> {
     });
     let document = json!({
         "lookup_ns": looked_up,
+        "many_ns": of_many,
         "curve_ns": along_curve,
         "solve_ns": solved,
         "build_s": seconds,

@@ -109,7 +109,7 @@ fn ask(question: &Question, folder: &Path) -> Result<(), Failure> {
             let effort = run.effort();
             let share = |part: std::time::Duration| 100.0 * part.as_secs_f64() / time;
             line = format!(
-                "{}\t{}\t{}\t{}\t{time:.4} s\telements {:.0} %, factors {:.0} %, solving {:.0} %\t{}",
+                "{}\t{}\t{}\t{}\t{time:.2e} s\telements {:.0} %, factors {:.0} %, solving {:.0} %\t{}",
                 question.name,
                 run.sizes()[0],
                 case.states(),
