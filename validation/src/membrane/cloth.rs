@@ -1,0 +1,215 @@
+//! Cloth and cables in triangles: pleated sectors, an airbag, a wrinkled panel.
+
+use bulge_membrane::case::Row;
+use bulge_membrane::mesher::{Pleated, Surface, grid};
+use bulge_membrane::{Block, CellKind, Cloth, Fitting, Inflation, Law, Part, Sheet, Support, Thread};
+use std::f64::consts::PI;
+
+use super::rig::{order, plane, solver, to};
+use super::rows;
+use crate::check::{Check, Claim, Trouble};
+
+/// Force of N fibres without stretch on flat facets without stiffness: R = 16, l0 = 110 mm, 20 %, 3 bar.
+fn facets_force(fibres: u32, elements: usize) -> Result<f64, Trouble> {
+    let muscle = Pleated {
+        fibres: fibres as usize,
+        radius: 0.016,
+        length: 0.11,
+        circumference: 2.0 * PI * 0.016,
+        depth: 0.0,
+        cells: [1, elements],
+        is_quadratic: false,
+    };
+    let mut mesh = muscle.lobe();
+    for block in &mut mesh.blocks {
+        block.pattern = None;
+    }
+    let angle = 2.0 * PI / f64::from(fibres);
+    let mut sector = solver(
+        &mesh,
+        &[
+            ("cloth", Part::Membrane { sheet: None, warp: [0.0, 0.0, 1.0] }),
+            ("fibre", Part::Cable { thread: Thread::Inextensible, share: 1.0 }),
+        ],
+        &[
+            ("top", Support::Cyclic { partner: "fibre".to_owned(), angle }),
+            ("middle", plane([0.0, 0.0, 1.0])),
+            ("end", Support::Fitting { fitting: 0 }),
+        ],
+        &[Fitting::Placed],
+        [f64::from(fibres), 2.0],
+    )?;
+    let rest = sector.at_rest();
+    let state = to(&mut sector, &rest, Inflation::Pressure(3e5), &[-0.011])?;
+    state.forces.first().copied().ok_or_else(|| "the sector has no fitting".into())
+}
+
+/// c = sin(2 pi/N)/(2 pi/N) of the pleated muscle.
+fn facets_exact(fibres: u32) -> f64 {
+    let angle = 2.0 * PI / f64::from(fibres);
+    0.451_457_606_469 * 3e5 * 0.11 * 0.11 * angle.sin() / angle
+}
+
+/// Flat facets between fibres.
+pub(crate) fn facets() -> Check {
+    Claim {
+        group: "membrane",
+        name: "6, 12, 24 fibres without stretch and facets without stiffness, cyclic sector: force",
+        source: "elliptic integrals times sin(2 pi/n)/(2 pi/n)",
+        tolerance: 3e-4,
+        why: "40 cables over half the length: second order",
+    }
+    .run(|tally| {
+        for fibres in [6, 12, 24] {
+            tally.relative(facets_force(fibres, 40)?, facets_exact(fibres), || format!("n = {fibres}"));
+        }
+        Ok(())
+    })
+}
+
+/// How fast their error falls.
+pub(crate) fn facets_order() -> Check {
+    Claim {
+        group: "membrane",
+        name: "order of convergence of the same: 2",
+        source: "elliptic integrals times sin(2 pi/n)/(2 pi/n)",
+        tolerance: 0.1,
+        why: "20, 40, 80 cables are not yet asymptotic to more",
+    }
+    .run(|tally| {
+        for fibres in [6, 12, 24] {
+            let mut errors = Vec::new();
+            for elements in [20, 40, 80] {
+                errors.push(facets_force(fibres, elements)? / facets_exact(fibres) - 1.0);
+            }
+            order(tally, &format!("n = {fibres}"), &errors, 2.0);
+        }
+        Ok(())
+    })
+}
+
+fn sector(
+    fibres: u32,
+    cells: [usize; 2],
+    cloth: &str,
+    fibre: &str,
+    contraction: f64,
+) -> Result<Row, Trouble> {
+    let text = format!(
+        "[mesher]\nkind = \"pleated\"\nradius = \"16 mm\"\nlength = \"110 mm\"\nfibres = {fibres}\ncircumference = \"288 mm\"\ncells = [{}, {}]\n{cloth}[[part]]\ngroup = \"fibre\"\nkind = \"cable\"\n{fibre}[[step]]\npressure = \"3 bar\"\ncontraction = {contraction}\n",
+        cells[0], cells[1]
+    );
+    let rows = rows(&text)?;
+    rows.last().cloned().ok_or_else(|| "the case has no state".into())
+}
+
+/// Half lobes with cloth between the fibres.
+pub(crate) fn sectors() -> Check {
+    Claim {
+        group: "membrane",
+        name: "pleated sectors with cloth (50 N/mm, tension field), n = 8, 12, 24: force and volume",
+        source: "an independent prototype, converged to 3e-4",
+        tolerance: 1e-3,
+        why: "12 x 40 cells; the reference has 18 x 60",
+    }
+    .run(|tally| {
+        let cloth = "[[material]]\nname = \"cloth\"\nlaw = \"st-venant\"\nthickness = \"0.1 mm\"\nyoung = \"500 MPa\"\npoisson = 0.3\n[[part]]\ngroup = \"cloth\"\nkind = \"membrane\"\nmaterial = \"cloth\"\n";
+        for (fibres, force, volume) in [(8, 884.25, 479_439.0), (12, 1064.44, 456_851.0), (24, 1320.17, 422_513.0)] {
+            let stiffness = format!("stiffness = \"{} N\"\n", 12e6 / f64::from(fibres));
+            let row = sector(fibres, [12, 40], cloth, &stiffness, 0.2)?;
+            tally.relative(row.force.unwrap_or(f64::NAN), force, || format!("force, n = {fibres}"));
+            tally.relative(row.volume, 1e-9 * volume, || format!("volume, n = {fibres}"));
+        }
+        Ok(())
+    })
+}
+
+/// The square airbag, one eighth.
+pub(crate) fn airbag() -> Check {
+    Claim {
+        group: "membrane",
+        name: "square airbag of 1.2 m diagonal, 0.6 mm, 5 kPa: volume",
+        source: "an independent prototype, 12800 triangles",
+        tolerance: 1e-3,
+        why: "3200 triangles",
+    }
+    .run(|tally| {
+        let text = "[mesher]\nkind = \"square\"\nside = \"848.53 mm\"\ncells = [40, 40]\n[[material]]\nname = \"foil\"\nlaw = \"st-venant\"\nthickness = \"0.6 mm\"\nyoung = \"588 MPa\"\npoisson = 0.4\n[[part]]\ngroup = \"cloth\"\nkind = \"membrane\"\nmaterial = \"foil\"\n[[step]]\npressure = \"5 kPa\"\n";
+        let rows = rows(text)?;
+        tally.relative(rows[0].volume, 0.124_995, || "volume".into());
+        Ok(())
+    })
+}
+
+/// A panel of unit height, width and stiffness bent so far that a band of it is slack: M/(P h), largest stress and curvature, all without
+/// dimensions.
+fn panel(band: f64, cells: usize) -> Result<[f64; 3], Trouble> {
+    // Its ends stay plane: z = 1 + k (x - b) there, which the mesh has from the start, the pattern not.
+    let curvature = 1e-3;
+    let place = |u: f64, v: f64| [u, 0.0, v * (1.0 + curvature * (u - band))];
+    let pattern = |u: f64, v: f64| [u, v];
+    let mut mesh =
+        grid(&Surface { place: &place, pattern: Some(&pattern), cells: [cells; 2], is_quadratic: false });
+    // One corner stays where it is; all else is free to move across as the panel bends.
+    mesh.blocks.push(Block {
+        group: "corner".to_owned(),
+        kind: CellKind::Point,
+        cells: vec![cells],
+        numbers: vec![1],
+        pattern: None,
+    });
+    let law = Law::SaintVenantKirchhoff { stiffness: 1.0, poisson: 0.3 };
+    let sheet = Sheet { cloth: Cloth::Isotropic(law), wrinkles: true, residual: 1e-4 };
+    let level = plane([0.0, 0.0, 1.0]);
+    let mut panel = solver(
+        &mesh,
+        &[("cloth", Part::Membrane { sheet: Some(sheet), warp: [1.0, 0.0, 0.0] })],
+        &[
+            ("cloth", plane([0.0, 1.0, 0.0])),
+            ("v0", level.clone()),
+            ("v1", level),
+            ("corner", plane([1.0, 0.0, 0.0])),
+        ],
+        &[],
+        [1.0, 1.0],
+    )?;
+    let rest = panel.at_rest();
+    let state = to(&mut panel, &rest, Inflation::Pressure(0.0), &[])?;
+    let fields = panel.fields(&state);
+    let group = &fields.groups[0];
+    let (mut force, mut moment, mut top) = (0.0, 0.0, 0.0);
+    for (cell, (sheet, area)) in group.cells.chunks_exact(3).zip(group.sheets[0].iter().zip(&group.areas)) {
+        let x = cell.iter().map(|node| mesh.nodes[*node as usize][0]).sum::<f64>() / 3.0;
+        // Per length of the pattern across, of which wrinkles take some away.
+        let pull = sheet.force[0] * sheet.stretch[1] * area;
+        force += pull;
+        moment += pull * (x - 0.5);
+        if x > 1.0 - 1.0 / cells as f64 {
+            top += pull * cells as f64;
+        }
+    }
+    // From the middle of the outermost cells to the edge, in proportion.
+    let edge = top * (1.0 - band) / (1.0 - band - 0.5 / cells as f64);
+    Ok([moment / force, edge / force, curvature / (2.0 * force)])
+}
+
+/// A panel in bending, wrinkled where it would be compressed.
+pub(crate) fn wrinkled_panel() -> Check {
+    Claim {
+        group: "membrane",
+        name: "wrinkled panel in bending, M/(P h) = 0.2, 0.3, 0.4: moment, largest stress, curvature",
+        source: "Stein and Hedgepeth",
+        tolerance: 1e-2,
+        why: "10 x 10 cells: 7e-4; strains of 1e-3 add as much",
+    }
+    .run(|tally| {
+        for band in [0.1, 0.4, 0.7] {
+            let [moment, stress, curvature] = panel(band, 10)?;
+            let exact = (band + 0.5) / 3.0;
+            tally.relative(moment, exact, || format!("moment, b/h = {band}"));
+            tally.relative(stress, 2.0 / (1.0 - band), || format!("stress, b/h = {band}"));
+            tally.relative(curvature, (1.0 - band).powi(-2), || format!("curvature, b/h = {band}"));
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,133 @@
+//! Flat discs, held at the rim or joined with another: elements of revolution.
+
+use bulge_membrane::mesher::{Grading, revolved};
+use bulge_membrane::{Cloth, Inflation, Law, Part, RingLayer, Sheet, Solver, State, Support, Thread};
+
+use super::rig::{extreme, plane, rubber, solver, to};
+use crate::check::{Check, Claim, Trouble};
+
+/// A disc of radius 1, from its rim to its middle.
+fn disc(part: Part, rim: Support, elements: usize) -> Result<Solver, Trouble> {
+    let mesh = revolved(|t| [1.0 - t, 0.0], elements, true, Grading::Even);
+    let along = if rim == Support::Fixed { 1.0 } else { 2.0 };
+    solver(&mesh, &[("wall", part)], &[("first", rim), ("last", Support::Axis)], &[], [1.0, along])
+}
+
+/// How high the middle stands.
+fn height(disc: &mut Solver, state: &State) -> f64 {
+    disc.fields(state).places.last().map_or(f64::NAN, |place| place[2])
+}
+
+/// Small pressures.
+pub(crate) fn hencky() -> Check {
+    Claim {
+        group: "membrane",
+        name: "flat disc at p a/(Y h) = 1e-5, nu = 0.2 to 0.4: height, volume, force in the middle and at the rim",
+        source: "Hencky's series",
+        tolerance: 1e-3,
+        why: "the series is the limit of small pressures; 30 quadratic elements",
+    }
+    .run(|tally| {
+        let p = 1e-5_f64;
+        for [poisson, kw, k0, ka, kv] in [
+            [0.2, 0.677_435_325_805, 0.420_683_090_434, 0.316_109_288_5, 1.114_377_953_41],
+            [0.3, 0.653_443_344_693, 0.431_101_016_110, 0.332_956_806_9, 1.070_316_686_50],
+            [0.34, 0.642_998_037_074, 0.435_966_558_463, 0.340_589_787_7, 1.051_318_242_33],
+            [0.4, 0.626_255_079_364, 0.444_217_658_946, 0.353_232_745_1, 1.021_090_857_91],
+        ] {
+            let part = rubber(Law::SaintVenantKirchhoff { stiffness: 1.0, poisson });
+            let mut disc = disc(part, Support::Fixed, 30)?;
+            let rest = disc.at_rest();
+            let state = to(&mut disc, &rest, Inflation::Pressure(p), &[])?;
+            let sheets = &disc.fields(&state).groups[0].sheets[0];
+            // From the middles of the outermost elements to the rim.
+            let rim = 1.5 * sheets[0].force[0] - 0.5 * sheets[1].force[0];
+            let case = |what: &str| format!("{what}, nu = {poisson}");
+            tally.relative(height(&mut disc, &state), kw * p.cbrt(), || case("height"));
+            tally.relative(state.volume, kv * p.cbrt(), || case("volume"));
+            tally.relative(sheets[29].force[0], k0 * (p * p).cbrt(), || case("force in the middle"));
+            tally.relative(rim, ka * (p * p).cbrt(), || case("force at the rim"));
+        }
+        Ok(())
+    })
+}
+
+/// Large stretches.
+pub(crate) fn rubber_discs() -> Check {
+    Claim {
+        group: "membrane",
+        name: "disc of neo-Hookean and Mooney-Rivlin rubber blown up: pressure at four heights, largest pressure",
+        source: "shooting (Adkins and Rivlin's problem), 9 digits",
+        tolerance: 1e-6,
+        why: "80 quadratic elements: fourth order",
+    }
+    .run(|tally| {
+        let mooney = Law::MooneyRivlin { c1: 0.5 / 1.1, c2: 0.05 / 1.1 };
+        let neo_hooke = Law::NeoHooke { shear: 1.0 };
+        // p A/(mu H) and w/A.
+        let of_neo_hooke = [
+            [0.527_781_922, 0.383_472_429],
+            [1.643_581_841, 0.798_789_213],
+            [1.869_554_748, 1.083_067_162],
+            [1.864_578_897, 1.302_007_729],
+        ];
+        let of_mooney = [
+            [0.540_520_902, 0.385_442_027],
+            [1.819_418_924, 0.822_324_896],
+            [2.245_900_737, 1.161_125_160],
+            [2.415_896_761, 1.473_641_873],
+        ];
+        for (name, law, table) in [("neo-Hooke", neo_hooke, of_neo_hooke), ("Mooney-Rivlin", mooney, of_mooney)]
+        {
+            let mut disc = disc(rubber(law), Support::Fixed, 80)?;
+            let rest = disc.at_rest();
+            let mut state = to(&mut disc, &rest, Inflation::Pressure(0.1), &[])?;
+            for [pressure, wanted] in table {
+                // The volume at which the middle is as high, by secants.
+                let (mut a, mut there) = (state.volume, height(&mut disc, &state));
+                let mut volume = a * wanted / there;
+                for _ in 0..12 {
+                    state = to(&mut disc, &state, Inflation::Volume(volume), &[])?;
+                    let now = height(&mut disc, &state);
+                    if (now - wanted).abs() < 1e-11 {
+                        break;
+                    }
+                    (a, volume, there) = (volume, volume - (now - wanted) * (volume - a) / (now - there), now);
+                }
+                tally.relative(state.pressure, pressure, || format!("pressure, {name}, height {wanted}"));
+            }
+            if name == "neo-Hooke" {
+                let [_, largest] = extreme(0.8 * state.volume, |volume| {
+                    state = to(&mut disc, &state, Inflation::Volume(volume), &[])?;
+                    Ok(state.pressure)
+                })?;
+                tally.relative(largest, 1.879_173_469, || "largest pressure".into());
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Two discs without stretch along their radii, joined at their rims.
+pub(crate) fn mylar() -> Check {
+    Claim {
+        group: "membrane",
+        name: "Mylar balloon: volume and thickness",
+        source: "gamma functions",
+        tolerance: 1e-5,
+        why: "80 quadratic elements, a film of 1e-6 of its stiffness around",
+    }
+    .run(|tally| {
+        let law = Law::SaintVenantKirchhoff { stiffness: 1.0, poisson: 0.3 };
+        let sheet = Sheet { cloth: Cloth::Isotropic(law), wrinkles: true, residual: 1e-6 };
+        let threads = RingLayer::Threads { thread: Thread::Inextensible, count: 40.0, angle: 0.0 };
+        let part = Part::Revolved { layers: vec![threads, RingLayer::Sheet { sheet, fullness: 1.0 }] };
+        let mut balloon = disc(part, plane([0.0, 0.0, 1.0]), 80)?;
+        let rest = balloon.at_rest();
+        let state = to(&mut balloon, &rest, Inflation::Pressure(1.0), &[])?;
+        tally.relative(state.volume, 1.218_524_216_118_569_7, || "volume".into());
+        let thickness = 2.0 * height(&mut balloon, &state);
+        tally.relative(thickness, 0.913_893_162_088_927_2, || "thickness".into());
+        Ok(())
+    })
+}
