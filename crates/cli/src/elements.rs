@@ -48,15 +48,14 @@ pub(crate) fn shape(
 ) -> Result<Shape, Failure> {
     let muscle = extended.muscle();
     check(muscle, extended)?;
+    // The meridian knows what is possible; of a force or a volume it also tells where they are, corrected below.
+    let near = problem.solve(given, bulge_fibre::Approach::Auto);
+    let near = near.map_err(crate::arguments::about(muscle, pressure))?.contraction;
     let mut elements = Elements::new(muscle, pressure, points)?;
     let contraction = match given {
         Given::Contraction(contraction) => contraction,
         Given::Length(length) => 1.0 - length / elements.length,
-        // Where the meridian's equilibrium has this force or volume; corrected below.
-        Given::Force(_) | Given::Volume(_) => {
-            let found = problem.solve(given, bulge_fibre::Approach::Auto);
-            found.map_err(crate::arguments::about(muscle, pressure))?.contraction
-        }
+        Given::Force(_) | Given::Volume(_) => near,
     };
     let mut state = elements.at(contraction)?;
     let mut slopes = elements.slopes(contraction, &state)?;
@@ -100,7 +99,7 @@ fn check(muscle: &Muscle, extended: &Extended) -> Result<(), Failure> {
 }
 
 fn failed(error: impl std::fmt::Display) -> Failure {
-    Failure::NotConverged(format!("membrane elements: {error}"))
+    Failure::NotConverged(format!("membrane elements: {error}; leave `--method membrane` out"))
 }
 
 /// Slope of the meridian at a node, by the parabola of its element; where two meet, the mean of theirs.

@@ -95,9 +95,15 @@ impl Failure {
                 _ => 1,
             },
             Self::Membrane { source, .. } => match source.as_ref() {
-                CaseError::State { source: MembraneError::LimitPoint { .. }, .. } => 3,
+                CaseError::State {
+                    source:
+                        MembraneError::LimitPoint { .. }
+                        | MembraneError::Collapsed { .. }
+                        | MembraneError::Overstretched { .. },
+                    ..
+                } => 3,
+                CaseError::Structure(_) | CaseError::State { source: MembraneError::NoGas { .. }, .. } => 1,
                 CaseError::State { .. } => 4,
-                CaseError::Structure(_) => 1,
             },
             Self::NotConverged(_) => 4,
             _ => 1,

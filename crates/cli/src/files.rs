@@ -9,19 +9,8 @@ use crate::failure::Failure;
 
 /// Writes to a temporary name in the same folder, forces it to the disk, and renames.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    publish(path, bytes).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
-}
-
-fn publish(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    if path.is_dir() {
-        return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; give the name of a file"));
-    }
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if !folder.is_dir() {
-        let missing = format!("there is no folder {}; create it first", folder.display());
-        return Err(io::Error::new(io::ErrorKind::NotFound, missing));
-    }
-    write_durably(path, bytes)
+    can_be_written(path)?;
+    write_durably(path, bytes).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
 }
 
 /// Writes files into a folder, which is created if it isn't there; none of them if one of the names is that of a folder.
@@ -41,4 +30,31 @@ pub(crate) fn folder(path: &Path) -> Result<(), Failure> {
         return Err(Failure::Output { path: path.to_path_buf(), source });
     }
     fs::create_dir_all(path).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
+}
+
+/// Removes files of an earlier run, if they are there.
+pub(crate) fn remove(paths: &[PathBuf]) -> Result<(), Failure> {
+    for path in paths {
+        match fs::remove_file(path) {
+            Err(source) if source.kind() != io::ErrorKind::NotFound => {
+                return Err(Failure::Output { path: path.clone(), source });
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a file that could not be written at the end of a long run.
+pub(crate) fn can_be_written(path: &Path) -> Result<(), Failure> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let source = if path.is_dir() {
+        io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; give the name of a file")
+    } else if !folder.is_dir() {
+        let missing = format!("there is no folder {}; create it first", folder.display());
+        io::Error::new(io::ErrorKind::NotFound, missing)
+    } else {
+        return Ok(());
+    };
+    Err(Failure::Output { path: path.to_path_buf(), source })
 }

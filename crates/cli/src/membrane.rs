@@ -2,10 +2,10 @@
 
 use bulge_inference::Fitting;
 use bulge_measurements::Data;
-use bulge_membrane::Effort;
 use bulge_membrane::case::{CASE_EXAMPLE, Case, CaseError, CaseRun, Row};
+use bulge_membrane::{Effort, Fields, State};
 use bulge_muscles::Muscle;
-use bulge_vtk::{MembranePicture, MembraneSeries, Whole, write_vtu};
+use bulge_vtk::{MembranePicture, MembraneSeries, VtkError, Whole, write_vtu};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
@@ -50,61 +50,50 @@ impl MembraneCommand {
             source: Box::new(source),
             kept,
         };
-        if self.as_effect.is_some() {
+        if let Some(path) = &self.as_effect {
             learns(&case)?;
+            files::can_be_written(path)?;
         }
         let mut run = case.start().map_err(|error| refused(error, String::new()))?;
         files::folder(&self.out)?;
         let stem = stem(&case.name);
-        let mut series = MembraneSeries::new(&self.out, &stem)?;
-        let whole = Whole::of(&case);
-        // A sector repeated all round makes files a hundred times larger.
-        let each = if matches!(whole, Whole::Sector { .. }) && !self.whole { Whole::AsMeshed } else { whole };
+        let mut output = Output::new(self, &case, &stem)?;
         let bar = self.bar(case.states());
         let clock = Instant::now();
-        let mut rows: Vec<Row> = Vec::new();
         while let Some(next) = run.advance(|_, _| bar.tick()) {
-            let (row, state, fields) = match next {
-                Ok(next) => next,
+            match next {
+                Ok((row, state, fields)) => {
+                    bar.set_message(line(&row));
+                    bar.inc(1);
+                    output.take(row, &state, &fields)?;
+                }
                 Err(error) => {
                     bar.finish_and_clear();
-                    let kept = kept(&rows, &series);
-                    return Err(refused(error, kept));
+                    let rescued = run.rescued();
+                    let is_rescued = rescued.is_some();
+                    if let Some((row, state, fields)) = rescued {
+                        output.take(row, &state, &fields)?;
+                    }
+                    output.finish(&mut run)?;
+                    return Err(refused(error, output.kept(is_rescued)));
                 }
-            };
-            series.append(&MembranePicture {
-                state: &state,
-                fields: &fields,
-                whole: each,
-                time: row.state as f64,
-            })?;
-            bar.set_message(line(&row));
-            bar.inc(1);
-            rows.push(row);
-            files::write(&self.out.join("states.csv"), csv(&rows).as_bytes())?;
+            }
         }
         bar.finish_and_clear();
-        if each != whole {
-            let (state, fields) = run.last();
-            let picture = MembranePicture { state, fields: &fields, whole, time: rows.len() as f64 };
-            write_vtu(self.out.join(format!("{stem}-whole.vtu")), &picture)?;
-        }
+        output.finish(&mut run)?;
         let time = clock.elapsed();
-        let forces = forces(&rows);
-        if let Some(forces) = &forces {
-            files::write(&self.out.join("forces.csv"), forces.as_bytes())?;
-        }
-        let learnt = self.as_effect.as_ref().map(|path| self.learn(&case, path)).transpose()?;
+        let learnt = self.as_effect.as_ref().map(|path| self.learn(&case, &output, path)).transpose()?;
         if self.json {
-            return self.document(&case, &run, &rows, &series, learnt.as_ref());
+            return self.document(&case, &run, &output, learnt.as_ref());
         }
-        let mut text = describe(&case, &run, &rows, time);
+        let mut text = describe(&case, &run, &output, time);
         let _ = writeln!(
             text,
             "  wrote {} and states.csv{}",
-            series.path().display(),
-            if forces.is_some() { ", forces.csv (for `bulge compare`, `diagnose` and `fit`)" } else { "" }
+            output.series.path().display(),
+            if output.has_forces { ", forces.csv (for `bulge compare`, `diagnose` and `fit`)" } else { "" }
         );
+        text.extend(output.note.iter().map(|note| format!("  {note}\n")));
         if let (Some(fitted), Some(path)) = (&learnt, &self.as_effect) {
             let _ = writeln!(
                 text,
@@ -130,11 +119,15 @@ impl MembraneCommand {
     }
 
     /// The muscle with the effect of its cloth.
-    fn learn(&self, case: &Case, path: &Path) -> Result<Fitted, Failure> {
+    fn learn(&self, case: &Case, output: &Output, path: &Path) -> Result<Fitted, Failure> {
         let muscle = learns(case)?;
+        let Some(forces) = forces(&output.rows) else {
+            let what = "no state has a pressure and a contraction: there is nothing to learn from".to_owned();
+            return Err(Failure::Value { option: "--as-effect", what });
+        };
         let catalogue = arguments::catalogue(None)?;
         let effects = arguments::effects(&catalogue, &["limited-unfolding".to_owned()])?;
-        let data = Data::read(&[self.out.join("forces.csv")])?;
+        let data = Data::from_csv(&forces, &self.out.join("forces.csv").display().to_string())?;
         let fitted = fitted::fitted(&data, muscle, effects, catalogue)?;
         is_the_cloth(case, &fitted)?;
         files::write(path, fitted.model.as_bytes())?;
@@ -145,8 +138,7 @@ impl MembraneCommand {
         &self,
         case: &Case,
         run: &CaseRun<'_>,
-        rows: &[Row],
-        series: &MembraneSeries,
+        output: &Output,
         learnt: Option<&Fitted>,
     ) -> Result<String, Failure> {
         let [unknowns, matrix, factors] = run.sizes();
@@ -160,34 +152,106 @@ impl MembraneCommand {
             "matrix_entries": matrix,
             "factor_entries": factors,
             "effort": effort(&run.effort()),
-            "pvd": series.path(),
+            "writing_s": output.writing.as_secs_f64(),
+            "pvd": output.series.path(),
             "effect": learnt.map(|fitted| json!({
                 "before_rmse_n": fitted.fitting.before_rmse_n,
                 "rmse_n": fitted.fitting.rmse_n,
                 "fit": fitted.fitting.fit,
                 "model": fitted.model,
             })),
-            "states": rows,
+            "states": output.rows,
         });
         Ok(serde_json::to_string_pretty(&document)? + "\n")
     }
 }
 
-/// What stands of a run that ended early.
-fn kept(rows: &[Row], series: &MembraneSeries) -> String {
-    match rows.last() {
-        Some(row) => format!(
-            "\n  states.csv and {} hold what was found; the last is {}",
-            series.path().display(),
-            line(row)
-        ),
-        None => {
-            "\n  no state of the case was reached: begin with a smaller load, or in smaller steps".to_owned()
+/// What a run leaves in its folder.
+struct Output {
+    folder: PathBuf,
+    stem: String,
+    series: MembraneSeries,
+    rows: Vec<Row>,
+    /// How each state is drawn, and the last one.
+    each: Whole,
+    whole: Whole,
+    has_forces: bool,
+    writing: Duration,
+    note: Option<String>,
+}
+
+impl Output {
+    /// An empty folder: what an earlier run of this case left there would pass for this one's.
+    fn new(command: &MembraneCommand, case: &Case, stem: &str) -> Result<Self, Failure> {
+        let folder = command.out.clone();
+        let whole = Whole::of(case);
+        // A sector repeated all round makes files a hundred times larger.
+        let is_sector = matches!(whole, Whole::Sector { .. });
+        let each = if is_sector && !command.whole { Whole::AsMeshed } else { whole };
+        let series = MembraneSeries::new(&folder, stem)?;
+        let last = format!("{stem}-whole.vtu");
+        files::remove(&["states.csv", "forces.csv", &last].map(|name| folder.join(name)))?;
+        Ok(Self {
+            folder,
+            stem: stem.to_owned(),
+            series,
+            rows: Vec::new(),
+            each,
+            whole,
+            has_forces: false,
+            writing: Duration::ZERO,
+            note: None,
+        })
+    }
+
+    fn take(&mut self, row: Row, state: &State, fields: &Fields) -> Result<(), Failure> {
+        let clock = Instant::now();
+        self.series.append(&MembranePicture { state, fields, whole: self.each, time: row.state as f64 })?;
+        self.rows.push(row);
+        files::write(&self.folder.join("states.csv"), csv(&self.rows).as_bytes())?;
+        self.writing += clock.elapsed();
+        Ok(())
+    }
+
+    /// The whole muscle in its last state, and the forces for other commands.
+    fn finish(&mut self, run: &mut CaseRun<'_>) -> Result<(), Failure> {
+        let clock = Instant::now();
+        if self.each != self.whole && !self.rows.is_empty() {
+            let (state, fields) = run.last();
+            let time = self.rows.len() as f64;
+            let picture = MembranePicture { state, fields: &fields, whole: self.whole, time };
+            match write_vtu(self.folder.join(format!("{}-whole.vtu", self.stem)), &picture) {
+                Err(error @ VtkError::TooManyPoints { .. }) => {
+                    self.note = Some(format!("the whole muscle isn't drawn: {error}"));
+                }
+                done => done?,
+            }
+        }
+        if let Some(forces) = forces(&self.rows) {
+            files::write(&self.folder.join("forces.csv"), forces.as_bytes())?;
+            self.has_forces = true;
+        }
+        self.writing += clock.elapsed();
+        Ok(())
+    }
+
+    /// What stands of a run that ended early.
+    fn kept(&self, is_rescued: bool) -> String {
+        match self.rows.last() {
+            Some(row) => format!(
+                "\n  states.csv and {} hold what was found; the last is {}{}",
+                self.series.path().display(),
+                if is_rescued { "the last equilibrium on the way to " } else { "" },
+                line(row)
+            ),
+            None => "\n  no state of the case was reached: begin with a smaller load, or in smaller steps"
+                .to_owned(),
         }
     }
 }
 
-fn describe(case: &Case, run: &CaseRun<'_>, rows: &[Row], time: Duration) -> String {
+fn describe(case: &Case, run: &CaseRun<'_>, output: &Output, time: Duration) -> String {
+    let rows = &output.rows;
     let [unknowns, _, factors] = run.sizes();
     let mut text = format!(
         "{}: {} nodes, {} elements, {unknowns} unknowns\n\n",
@@ -209,18 +273,22 @@ fn describe(case: &Case, run: &CaseRun<'_>, rows: &[Row], time: Duration) -> Str
     let Effort { iterations, factorisations, assembling, factorising, solving } = run.effort();
     let _ = writeln!(
         text,
-        "\n  {iterations} iterations, {factorisations} factorisations of {factors} numbers in {}: elements {}, factors {}, solving {}",
+        "\n  {iterations} iterations, {factorisations} factorisations of {factors} numbers in {}: elements {}, factors {}, solving {}, files {}",
         seconds(time),
         seconds(assembling),
         seconds(factorising),
-        seconds(solving)
+        seconds(solving),
+        seconds(output.writing)
     );
     text
 }
 
 /// The muscle that a case can teach the effect of its cloth.
 fn learns(case: &Case) -> Result<&Muscle, Failure> {
-    let is_shortened = case.steps.iter().any(|step| step.fittings.iter().flatten().next().is_some());
+    let is_shortened = case
+        .steps
+        .iter()
+        .any(|step| step.contraction.is_some() || step.fittings.iter().flatten().next().is_some());
     match &case.muscle {
         Some(muscle) if muscle.is_pleated() && is_shortened => Ok(muscle),
         _ => Err(Failure::Value {
@@ -247,7 +315,7 @@ fn is_the_cloth(case: &Case, fitted: &Fitted) -> Result<(), Failure> {
     let Fitting { before_rmse_n, rmse_n, .. } = &fitted.fitting;
     Err(Failure::Outside(format!(
         "--as-effect: nothing is written: fitted to these states (error {} N, before {} N), limited unfolding would act from {} mm on, but the cloth \
-         has no fold left at {} mm only. What costs force before that are the lobes between the fibres: contract further, or compare forces.csv with a \
+         has no fold left at {} mm only (forces.csv stands). What costs force before that are the lobes between the fibres: contract further, or compare forces.csv with a \
          muscle that states `[effects.lobes]`",
         significant(*rmse_n, 3),
         significant(*before_rmse_n, 3),
@@ -255,6 +323,9 @@ fn is_the_cloth(case: &Case, fitted: &Fitted) -> Result<(), Failure> {
         significant(cloth, 4),
     )))
 }
+
+/// Bytes of a file name, which systems allow 255, without the state's number.
+const LONGEST_STEM: usize = 80;
 
 /// A file name from a case's name.
 fn stem(name: &str) -> String {
@@ -266,7 +337,11 @@ fn stem(name: &str) -> String {
             stem.push('-');
         }
     }
-    let stem: String = stem.trim_end_matches('-').chars().take(80).collect();
+    let mut end = stem.len().min(LONGEST_STEM);
+    while !stem.is_char_boundary(end) {
+        end -= 1;
+    }
+    let stem = stem[..end].trim_end_matches('-').to_owned();
     if stem.is_empty() { "membrane".to_owned() } else { stem }
 }
 

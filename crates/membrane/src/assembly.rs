@@ -4,8 +4,10 @@
 //! result doesn't depend on who computed what when.
 
 use crate::dofs::{Dofs, NONE};
+use crate::error::MembraneError;
 use crate::set::{Elements, Parts, Place, packed};
 use rayon::prelude::*;
+use std::collections::TryReserveError;
 
 /// For each entry of a vector the places in a buffer whose sum it is.
 #[derive(Debug, Default)]
@@ -16,16 +18,18 @@ struct Gather {
 
 impl Gather {
     /// From (entry, source), in the order of the sources.
-    fn new(entries: usize, mut pairs: Vec<(u32, u32)>) -> Self {
+    fn new(entries: usize, mut pairs: Vec<(u32, u32)>) -> Result<Self, TryReserveError> {
         pairs.sort_unstable();
-        let mut starts = vec![0_u32; entries + 1];
+        let mut starts = filled(entries + 1, 0_u32)?;
         for (entry, _) in &pairs {
             starts[*entry as usize + 1] += 1;
         }
         for i in 0..entries {
             starts[i + 1] += starts[i];
         }
-        Self { starts, sources: pairs.into_iter().map(|(_, source)| source).collect() }
+        let mut sources = with_room(pairs.len())?;
+        sources.extend(pairs.into_iter().map(|(_, source)| source));
+        Ok(Self { starts, sources })
     }
 
     fn entries(&self) -> usize {
@@ -74,8 +78,14 @@ pub(crate) struct Totals {
 }
 
 impl Assembly {
-    pub(crate) fn new(sets: &[&dyn Elements], dofs: &Dofs) -> Self {
-        let (mut force, mut sweep, mut stiffness) = (Vec::new(), Vec::new(), Vec::new());
+    pub(crate) fn new(sets: &[&dyn Elements], dofs: &Dofs) -> Result<Self, MembraneError> {
+        Self::try_new(sets, dofs).map_err(|_| MembraneError::Memory { unknowns: dofs.free })
+    }
+
+    fn try_new(sets: &[&dyn Elements], dofs: &Dofs) -> Result<Self, TryReserveError> {
+        let all = |of: &dyn Fn(usize) -> usize| sets.iter().map(|set| set.count() * of(set.each())).sum();
+        let (mut force, mut sweep) = (with_room(all(&|each| 3 * each))?, with_room(all(&|each| 3 * each))?);
+        let mut stiffness = with_room(all(&|each| packed(3 * each)))?;
         let (mut gradient_at, mut packed_at, mut count) = (0_usize, 0_usize, 0);
         let mut sizes = Vec::new();
         for set in sets {
@@ -101,9 +111,11 @@ impl Assembly {
                                 let (i, j) = (all[3 * a + k], all[3 * b + l]);
                                 if (i as usize) < dofs.free && (j as usize) < dofs.free {
                                     let entry = (i.max(j), i.min(j));
+                                    grow(&mut stiffness)?;
                                     stiffness.push((entry, short(at)));
                                     // Two of its numbers are the same one: both halves of the matrix come to the diagonal.
                                     if i == j && (a, k) != (b, l) {
+                                        grow(&mut stiffness)?;
                                         stiffness.push((entry, short(at)));
                                     }
                                 }
@@ -117,37 +129,40 @@ impl Assembly {
             count += set.count();
         }
         stiffness.par_sort_unstable();
-        let (mut columns, mut rows) = (vec![0_usize], Vec::new());
-        let mut pairs = Vec::with_capacity(stiffness.len());
-        let mut diagonal = Vec::with_capacity(dofs.free);
+        let (mut columns, mut rows) = (with_room(dofs.free + 1)?, Vec::new());
+        columns.push(0_usize);
+        let mut pairs = with_room(stiffness.len())?;
+        let mut diagonal = with_room(dofs.free)?;
         let mut next = stiffness.into_iter().peekable();
         for column in 0..short(dofs.free) {
             let mut last = NONE;
             while let Some(((_, row), source)) = next.next_if(|((c, _), _)| *c == column) {
                 if row != last {
+                    grow(&mut rows)?;
                     rows.push(row as usize);
                     last = row;
                 }
                 pairs.push((short(rows.len() - 1), source));
             }
             if last != column {
+                grow(&mut rows)?;
                 rows.push(column as usize);
             }
             diagonal.push(rows.len() - 1);
             columns.push(rows.len());
         }
-        Self {
-            stiffness: Gather::new(rows.len(), pairs),
-            force: Gather::new(dofs.all, force),
-            sweep: Gather::new(dofs.all, sweep),
+        Ok(Self {
+            stiffness: Gather::new(rows.len(), pairs)?,
+            force: Gather::new(dofs.all, force)?,
+            sweep: Gather::new(dofs.all, sweep)?,
             columns,
             rows,
             diagonal,
             sizes,
-            measures: vec![0.0; 2 * count],
-            gradients: vec![0.0; gradient_at],
-            packed: vec![0.0; packed_at],
-        }
+            measures: filled(2 * count, 0.0)?,
+            gradients: filled(gradient_at, 0.0)?,
+            packed: filled(packed_at, 0.0)?,
+        })
     }
 
     /// Energy and volume.
@@ -212,10 +227,64 @@ impl Assembly {
     }
 }
 
+/// An empty vector with room for so many.
+fn with_room<T>(count: usize) -> Result<Vec<T>, TryReserveError> {
+    let mut all = Vec::new();
+    all.try_reserve_exact(count)?;
+    Ok(all)
+}
+
+fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, TryReserveError> {
+    let mut all = with_room(count)?;
+    all.resize(count, value);
+    Ok(all)
+}
+
+/// Room for one more, twice as much as before where there is none.
+fn grow<T>(all: &mut Vec<T>) -> Result<(), TryReserveError> {
+    if all.len() == all.capacity() { all.try_reserve(1) } else { Ok(()) }
+}
+
 #[expect(
     clippy::cast_possible_truncation,
     reason = "checked when the structure is built: fewer than 2^32 numbers"
 )]
 fn short(count: usize) -> u32 {
     count as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// More elements than any memory holds.
+    #[derive(Debug)]
+    struct Endless;
+
+    impl Elements for Endless {
+        fn count(&self) -> usize {
+            1 << 44
+        }
+        fn nodes(&self, _: usize) -> &[u32] {
+            &[0, 0, 0]
+        }
+        fn each(&self) -> usize {
+            3
+        }
+        fn measure(&self, _: Place<'_>, _: &mut [f64]) {}
+        fn work(&self, _: Place<'_>, _: Parts<'_>) {}
+        fn hold(&mut self, _: Place<'_>) -> f64 {
+            0.0
+        }
+        fn held(&mut self) -> Vec<&mut f64> {
+            Vec::new()
+        }
+    }
+
+    #[test]
+    fn too_many_elements_are_an_error() {
+        let dofs = Dofs { nodes: Vec::new(), free: 7, all: 7, fittings: Vec::new() };
+        let error = Assembly::new(&[&Endless], &dofs).err();
+        assert_eq!(error, Some(MembraneError::Memory { unknowns: 7 }));
+    }
 }

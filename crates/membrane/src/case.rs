@@ -1,5 +1,6 @@
 //! Cases: a mesh, what it is made of, what holds it, and the loads in turn, from a TOML file.
 
+mod ends;
 mod example;
 mod materials;
 mod parts;
@@ -9,6 +10,7 @@ mod source;
 mod steps;
 mod supports;
 
+pub use ends::Ends;
 pub use example::CASE_EXAMPLE;
 pub use run::{CaseError, CaseRun, Row};
 
@@ -32,6 +34,8 @@ pub struct Case {
     pub supports: Vec<(String, Support)>,
     /// The end fittings with their names.
     pub fittings: Vec<(String, Fitting)>,
+    /// The fittings between which a contraction is measured; `None` without fittings.
+    pub ends: Option<Ends>,
     /// How often the mesh stands in the whole.
     pub copies: Copies,
     /// Unpressurised length between the end fittings, m, if the case has a contraction.
@@ -57,6 +61,8 @@ pub struct Step {
     pub filling: Filling,
     /// What the fittings do at its end: places from those in the mesh, m, or forces, N. `None`: as before.
     pub fittings: Vec<Option<f64>>,
+    /// The contraction at its end, if the step prescribes one.
+    pub contraction: Option<f64>,
     /// States that are kept on the way, the last one included.
     pub states: usize,
 }

@@ -9,7 +9,6 @@
 //! come first, the prescribed ones last: d(energy)/dy of those is the reaction.
 
 use crate::element::{Vector, add, dot, norm, scaled, sub};
-use crate::error::MembraneError;
 
 /// No degree of freedom.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -34,11 +33,42 @@ pub(crate) struct Supports {
 
 #[derive(Debug, Clone, Default)]
 struct Held {
-    /// Directions in which it can't move, orthonormal.
-    normals: Vec<Vector>,
-    fitting: Option<usize>,
-    /// Partner across a cyclic sector, and the angle from it to this node, rad.
-    partner: Option<(usize, f64)>,
+    /// Directions in which it can't move, orthonormal, and what holds them.
+    normals: Vec<(Vector, By)>,
+    fitting: Option<(usize, By)>,
+    partner: Option<Partner>,
+}
+
+/// What holds a node: the number of a support.
+pub(crate) type By = usize;
+
+/// A node across a cyclic sector, and the angle from it, rad.
+#[derive(Debug, Clone, Copy)]
+struct Partner {
+    node: usize,
+    angle: f64,
+    by: By,
+}
+
+/// Supports that contradict each other at a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Clash {
+    pub(crate) node: usize,
+    pub(crate) kind: ClashKind,
+    /// The supports: the second one where there is an order.
+    pub(crate) by: [By; 2],
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ClashKind {
+    /// It rides on two fittings.
+    TwoFittings,
+    /// It follows two others.
+    TwoPartners,
+    /// It follows one node and is the partner of another.
+    Chain,
+    /// It is held along z, and rides on a fitting, which moves there.
+    HeldFitting,
 }
 
 /// The numbers of all nodes.
@@ -64,48 +94,62 @@ impl Supports {
     }
 
     /// The node can't move along `normal`.
-    pub(crate) fn hold(&mut self, node: usize, normal: Vector) {
+    pub(crate) fn hold(&mut self, node: usize, normal: Vector, by: By) {
         let held = &mut self.nodes[node].normals;
         let mut left = scaled(normal, 1.0 / norm(normal));
-        for known in held.iter() {
+        for (known, _) in held.iter() {
             left = sub(left, scaled(*known, dot(left, *known)));
         }
         // Nearly what is held already.
         if norm(left) > 1e-6 {
-            held.push(scaled(left, 1.0 / norm(left)));
+            held.push((scaled(left, 1.0 / norm(left)), by));
         }
     }
 
     /// The node can't move.
-    pub(crate) fn fix(&mut self, node: usize) {
+    pub(crate) fn fix(&mut self, node: usize, by: By) {
         for normal in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
-            self.hold(node, normal);
+            self.hold(node, normal, by);
         }
     }
 
     /// The node moves with the fitting.
-    pub(crate) fn ride(&mut self, node: usize, fitting: usize) -> Result<(), MembraneError> {
-        if self.nodes[node].fitting.is_some_and(|other| other != fitting) {
-            return Err(MembraneError::TwoFittings { node });
+    pub(crate) fn ride(&mut self, node: usize, fitting: usize, by: By) -> Result<(), Clash> {
+        match self.nodes[node].fitting {
+            Some((other, before)) if other != fitting => {
+                Err(Clash { node, kind: ClashKind::TwoFittings, by: [before, by] })
+            }
+            Some(_) => Ok(()),
+            None => {
+                self.nodes[node].fitting = Some((fitting, by));
+                Ok(())
+            }
         }
-        self.nodes[node].fitting = Some(fitting);
-        Ok(())
     }
 
     /// The node does what `partner` does, turned by `angle` about z.
-    pub(crate) fn follow(&mut self, node: usize, partner: usize, angle: f64) {
+    pub(crate) fn follow(&mut self, node: usize, partner: usize, angle: f64, by: By) -> Result<(), Clash> {
         if node == partner {
             // On the axis.
-            self.hold(node, [1.0, 0.0, 0.0]);
-            self.hold(node, [0.0, 1.0, 0.0]);
-        } else {
-            self.nodes[node].partner = Some((partner, angle));
+            self.hold(node, [1.0, 0.0, 0.0], by);
+            self.hold(node, [0.0, 1.0, 0.0], by);
+            return Ok(());
+        }
+        match self.nodes[node].partner {
+            Some(other) if other.node != partner || (other.angle - angle).abs() > 1e-6 => {
+                Err(Clash { node, kind: ClashKind::TwoPartners, by: [other.by, by] })
+            }
+            _ => {
+                self.nodes[node].partner = Some(Partner { node: partner, angle, by });
+                Ok(())
+            }
         }
     }
 
     /// Degrees of freedom with their values at `places`, the fittings at the place z = 0 of their own motion.
-    pub(crate) fn dofs(mut self, places: &[Vector]) -> Result<(Dofs, Vec<f64>), MembraneError> {
+    pub(crate) fn dofs(mut self, places: &[Vector]) -> Result<(Dofs, Vec<f64>), Clash> {
         self.hand_over()?;
+        self.check_fittings()?;
         let mut nodes = vec![
             NodeDofs { dof: [NONE; 3], axis: [[0.0; 3]; 3], is_plain: false, base: [0.0; 3] };
             places.len()
@@ -120,7 +164,8 @@ impl Supports {
             if held.fitting.is_some() {
                 continue;
             }
-            let axes = complement(&held.normals);
+            let normals: Vec<Vector> = held.normals.iter().map(|(normal, _)| *normal).collect();
+            let axes = complement(&normals);
             node.is_plain = held.normals.is_empty();
             for (k, axis) in axes.iter().enumerate() {
                 node.dof[k] = index(values.len());
@@ -141,14 +186,14 @@ impl Supports {
         }
         let free = values.len() - self.fittings.iter().filter(|free| !**free).count();
         for (node, held) in nodes.iter_mut().zip(&self.nodes) {
-            if let Some(fitting) = held.fitting {
+            if let Some((fitting, _)) = held.fitting {
                 // Held in every direction but that of the fitting.
                 node.dof[0] = fittings[fitting];
                 node.axis[0] = [0.0, 0.0, 1.0];
             }
         }
         for i in 0..nodes.len() {
-            if let Some((partner, angle)) = self.nodes[i].partner {
+            if let Some(Partner { node: partner, angle, .. }) = self.nodes[i].partner {
                 let own = nodes[partner];
                 nodes[i] = NodeDofs {
                     dof: own.dof,
@@ -163,17 +208,28 @@ impl Supports {
     }
 
     /// What holds a node that follows its partner holds the partner.
-    fn hand_over(&mut self) -> Result<(), MembraneError> {
+    fn hand_over(&mut self) -> Result<(), Clash> {
         for i in 0..self.nodes.len() {
-            let Some((partner, angle)) = self.nodes[i].partner else { continue };
-            if self.nodes[partner].partner.is_some() {
-                return Err(MembraneError::CyclicChain { node: partner });
+            let Some(Partner { node: partner, angle, by }) = self.nodes[i].partner else { continue };
+            if let Some(next) = self.nodes[partner].partner {
+                return Err(Clash { node: partner, kind: ClashKind::Chain, by: [by, next.by] });
             }
-            for normal in self.nodes[i].normals.clone() {
-                self.hold(partner, turned(normal, -angle));
+            for (normal, by) in self.nodes[i].normals.clone() {
+                self.hold(partner, turned(normal, -angle), by);
             }
-            if let Some(fitting) = self.nodes[i].fitting {
-                self.ride(partner, fitting)?;
+            if let Some((fitting, by)) = self.nodes[i].fitting {
+                self.ride(partner, fitting, by)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A fitting moves along z, and holds its nodes across: another support can only do the latter.
+    fn check_fittings(&self) -> Result<(), Clash> {
+        for (node, held) in self.nodes.iter().enumerate() {
+            let Some((_, fitting)) = held.fitting else { continue };
+            if let Some((_, by)) = held.normals.iter().find(|(normal, _)| normal[2].abs() > 1e-6) {
+                return Err(Clash { node, kind: ClashKind::HeldFitting, by: [*by, fitting] });
             }
         }
         Ok(())
@@ -205,7 +261,7 @@ fn index(count: usize) -> u32 {
 }
 
 /// Orthonormal directions across the given ones: x, y and z where nothing is given.
-fn complement(normals: &[Vector]) -> Vec<Vector> {
+pub(crate) fn complement(normals: &[Vector]) -> Vec<Vector> {
     let mut known = normals.to_vec();
     let mut found = Vec::new();
     while known.len() < 3 {
@@ -238,10 +294,10 @@ mod tests {
         let mut supports = Supports::new(5);
         let end = supports.fitting(false);
         // 1 and 2 are partners over a quarter turn; 3 lies on the axis; 4 on the fitting.
-        supports.follow(2, 1, core::f64::consts::FRAC_PI_2);
-        supports.follow(3, 3, core::f64::consts::FRAC_PI_2);
-        supports.ride(4, end).unwrap();
-        supports.hold(0, [1.0, 1.0, 0.0]);
+        supports.follow(2, 1, core::f64::consts::FRAC_PI_2, 0).unwrap();
+        supports.follow(3, 3, core::f64::consts::FRAC_PI_2, 0).unwrap();
+        supports.ride(4, end, 1).unwrap();
+        supports.hold(0, [1.0, 1.0, 0.0], 2);
         let (dofs, mut y) = supports.dofs(&places).unwrap();
         // 2 + 3 + 1 and the fitting.
         assert_eq!((dofs.free, dofs.all), (6, 7));
@@ -263,13 +319,30 @@ mod tests {
 
     #[test]
     fn contradictions_are_refused() {
+        let clash = |node, kind, by| Err(Clash { node, kind, by });
+        let places = [[1.0, 0.0, 0.0]; 3];
         let mut supports = Supports::new(2);
         let (a, b) = (supports.fitting(false), supports.fitting(true));
-        supports.ride(0, a).unwrap();
-        assert!(supports.ride(0, b).is_err());
+        supports.ride(0, a, 5).unwrap();
+        supports.ride(0, a, 6).unwrap();
+        assert_eq!(supports.ride(0, b, 7), clash(0, ClashKind::TwoFittings, [5, 7]));
+        // Across the axis a fitting holds its nodes anyway.
+        supports.hold(0, [1.0, 1.0, 0.0], 8);
+        assert!(supports.clone().dofs(&places[..2]).is_ok());
+        supports.hold(0, [0.0, 0.0, 1.0], 9);
+        assert_eq!(supports.dofs(&places[..2]).err(), clash(0, ClashKind::HeldFitting, [9, 5]).err());
         let mut supports = Supports::new(3);
-        supports.follow(1, 0, 1.0);
-        supports.follow(2, 1, 1.0);
-        assert!(supports.dofs(&[[1.0, 0.0, 0.0]; 3]).is_err());
+        supports.follow(1, 0, 1.0, 3).unwrap();
+        supports.follow(1, 0, 1.0, 4).unwrap();
+        assert_eq!(supports.follow(1, 2, 1.0, 5), clash(1, ClashKind::TwoPartners, [4, 5]));
+        supports.follow(2, 1, 1.0, 6).unwrap();
+        assert_eq!(supports.dofs(&places).err(), clash(1, ClashKind::Chain, [6, 4]).err());
+        // A partner that is fixed, and a node that follows it on a fitting.
+        let mut supports = Supports::new(2);
+        let end = supports.fitting(true);
+        supports.fix(0, 1);
+        supports.follow(1, 0, 1.0, 2).unwrap();
+        supports.ride(1, end, 3).unwrap();
+        assert_eq!(supports.dofs(&places[..2]).err(), clash(0, ClashKind::HeldFitting, [1, 3]).err());
     }
 }

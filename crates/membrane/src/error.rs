@@ -7,18 +7,104 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MembraneError {
     /// A node is held by two fittings.
-    #[error("node {node} rides on two fittings: a node can only ride on one")]
+    #[error(
+        "node {node} rides on two fittings, by `{}` and by `{}`: a node can only ride on one; take it out of one of the groups",
+        groups[0], groups[1]
+    )]
     TwoFittings {
-        /// Index of the node.
-        node: usize,
+        /// Number of the node in its file.
+        node: u64,
+        /// The groups that are held.
+        groups: [String; 2],
+    },
+    /// A node on a fitting is held along z, too.
+    #[error(
+        "node {node} rides on a fitting, by `{}`, and is held along z, by `{}`: a fitting moves along z; keep one of the two supports",
+        groups[1], groups[0]
+    )]
+    HeldFitting {
+        /// Number of the node in its file.
+        node: u64,
+        /// The group that is held along z, and that on the fitting.
+        groups: [String; 2],
     },
     /// A node of a cyclic edge is the partner of another.
     #[error(
-        "node {node} is the partner of one node and follows another: the edges of a cyclic sector must be apart"
+        "node {node} is the partner of a node of `{}` and follows another itself, by `{}`: the two edges of a cyclic sector must be apart; leave one of the supports out",
+        groups[0], groups[1]
     )]
     CyclicChain {
-        /// Index of the node.
-        node: usize,
+        /// Number of the node in its file.
+        node: u64,
+        /// The groups that follow.
+        groups: [String; 2],
+    },
+    /// A node of a cyclic edge with two partners.
+    #[error(
+        "node {node} follows two nodes, by `{}` and by `{}`: a node can only follow one; take it out of one of the groups",
+        groups[0], groups[1]
+    )]
+    TwoPartners {
+        /// Number of the node in its file.
+        node: u64,
+        /// The groups that follow.
+        groups: [String; 2],
+    },
+    /// A cyclic edge that is its own partner.
+    #[error(
+        "`{group}` is to follow `{partner}` turned by {degrees:.6} degrees about z, which is the same edge: name the other edge of the sector as partner, and the angle from it to `{group}`"
+    )]
+    NoTurn {
+        /// The group.
+        group: String,
+        /// The one that it is to follow.
+        partner: String,
+        /// The angle.
+        degrees: f64,
+    },
+    /// A plane of symmetry beside the axis.
+    #[error(
+        "the plane of symmetry of `{group}` misses the z axis by {:.6e} m at node {node}: the volume is measured from the axis; move the mesh so that this plane contains the z axis",
+        offset.abs()
+    )]
+    PlaneOffAxis {
+        /// Number of the node in its file.
+        node: u64,
+        /// The group that is held.
+        group: String,
+        /// From the axis to the plane, m.
+        offset: f64,
+    },
+    /// A plane of symmetry that is neither level nor upright.
+    #[error(
+        "the plane of symmetry of `{group}` is oblique: it must be level or contain the z axis, from which the volume is measured; turn the mesh"
+    )]
+    ObliquePlane {
+        /// The group that is held.
+        group: String,
+    },
+    /// A level plane of symmetry whose nodes aren't level.
+    #[error(
+        "the nodes {} and {} of `{group}` lie at different heights, on no level plane of symmetry: move them onto one, or hold them otherwise",
+        nodes[0], nodes[1]
+    )]
+    Uneven {
+        /// The group that is held.
+        group: String,
+        /// Numbers of the nodes.
+        nodes: [u64; 2],
+    },
+    /// A rigid motion of a part that nothing holds.
+    #[error(
+        "nothing holds the part of the mesh with node {node} of `{group}` against every rigid motion: it can {motion}; add a `[[support]]` against that"
+    )]
+    NotHeld {
+        /// Number of one of its nodes in its file.
+        node: u64,
+        /// The group.
+        group: String,
+        /// How it can move.
+        motion: String,
     },
     /// An element without area or length, or one that folds over.
     #[error(
@@ -57,6 +143,14 @@ pub enum MembraneError {
         fitting: usize,
         /// How many there are.
         known: usize,
+    },
+    /// A loaded fitting that pulls at nothing.
+    #[error(
+        "no element has a node on the loaded fitting {fitting} (counted from 0): hold a group of a part by it, or leave it out"
+    )]
+    EmptyFitting {
+        /// Its number.
+        fitting: usize,
     },
     /// A node of a cyclic edge without a partner.
     #[error(
@@ -99,16 +193,18 @@ pub enum MembraneError {
     },
     /// An edge with a node in its middle for one neighbour only.
     #[error(
-        "the elements {element} and {other} of `{group}` share the edge between the nodes {} and {}, but not the node in its middle: mesh all with the same order",
+        "element {element} of `{group}` and element {other} of `{other_group}` share the edge between the nodes {} and {}, but not the node in its middle: mesh all with the same order",
         nodes[0], nodes[1]
     )]
     MixedOrders {
         /// Number of one element.
         element: u64,
+        /// Its group.
+        group: String,
         /// Number of the other.
         other: u64,
-        /// The group.
-        group: String,
+        /// The group of that.
+        other_group: String,
         /// Numbers of the nodes.
         nodes: [u64; 2],
     },
@@ -129,13 +225,39 @@ pub enum MembraneError {
     /// The structure has nothing to solve for.
     #[error("every node is held: nothing can move")]
     NothingMoves,
-    /// The factorisation failed for want of memory.
+    /// The matrix or its factors failed for want of memory.
     #[error(
-        "no memory for the factors of a stiffness matrix of {unknowns} unknowns: use a coarser mesh or a smaller sector"
+        "no memory for a stiffness matrix of {unknowns} unknowns and its factors: use a coarser mesh or a smaller sector"
     )]
     Memory {
         /// Its size.
         unknowns: usize,
+    },
+    /// Nothing to close in.
+    #[error(
+        "there is no gas to close in: {volume:.3e} m^3 at {pressure:.3e} Pa absolute; inflate it by a step with a `pressure` before"
+    )]
+    NoGas {
+        /// Volume, m^3.
+        volume: f64,
+        /// Absolute pressure, Pa.
+        pressure: f64,
+    },
+    /// The structure has turned inside out, or its ends have passed each other.
+    #[error("the membrane collapses: {what}; hold its ends, or load it less")]
+    Collapsed {
+        /// What was found.
+        what: String,
+    },
+    /// Inextensible threads that the loads stretch all the same.
+    #[error(
+        "the inextensible threads can't keep their length: {stretch:.1e} is left (asked: {asked:.0e}); the ends may be farther apart than they reach"
+    )]
+    Overstretched {
+        /// Largest stretch less 1.
+        stretch: f64,
+        /// What was asked.
+        asked: f64,
     },
     /// The iterations ended without equilibrium.
     #[error(

@@ -48,7 +48,7 @@ impl Factor {
             .factorize_numeric_ldlt_scratch::<f64>(par, Spec::<LdltParams, f64>::default())
             .or(symbolic.solve_in_place_scratch::<f64>(1, par));
         let memory = MemBuffer::try_new(request).map_err(|_| MembraneError::Memory { unknowns: n })?;
-        let values = vec![0.0; symbolic.len_val()];
+        let values = zeros(symbolic.len_val(), n)?;
         Ok(Self { pattern, symbolic, values, memory, par })
     }
 
@@ -114,6 +114,14 @@ impl Factor {
             MemStack::new(&mut self.memory),
         );
     }
+}
+
+/// Room for numbers of a matrix of so many unknowns.
+pub(crate) fn zeros(count: usize, unknowns: usize) -> Result<Vec<f64>, MembraneError> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(count).map_err(|_| MembraneError::Memory { unknowns })?;
+    values.resize(count, 0.0);
+    Ok(values)
 }
 
 #[cfg(test)]

@@ -48,9 +48,9 @@ pub struct SheetField {
     pub stretch: [f64; 2],
     /// Unit vector along the first force; zero for a membrane of revolution.
     pub direction: Vector,
-    /// Taut, wrinkled or slack.
+    /// Taut, wrinkled or slack. Of a sheet that doesn't wrinkle: pulled in two directions, in one, in none; it bears pressure in the others.
     pub tension: Tension,
-    /// The part of the cloth's width that is folded away.
+    /// The part of the cloth's width that is folded away; 0 where it is taut.
     pub folded: f64,
 }
 
@@ -150,8 +150,7 @@ impl Solver {
             let (mut sheet, mut thread) = (0, 0);
             for carried in element.carried(&at, self.penalty) {
                 match carried {
-                    CarriedByRing::Sheet { force, stretch, tension } => {
-                        let folded = folded(stretch);
+                    CarriedByRing::Sheet { force, stretch, tension, folded } => {
                         let field = SheetField { force, stretch, direction: [0.0; 3], tension, folded };
                         put(&mut out.sheets, sheet, field);
                         sheet += 1;
@@ -169,19 +168,10 @@ impl Solver {
 fn triangles<const N: usize>(set: &Set<crate::element::Triangle<N>, N>, x: &[Vector], out: &mut GroupFields) {
     for (element, at) in each(set, x, out) {
         out.areas.push(element.area());
-        if let Some(Carried { force, stretch, direction, tension }) = element.carried(&at) {
-            put(
-                &mut out.sheets,
-                0,
-                SheetField { force, stretch, direction, tension, folded: folded(stretch) },
-            );
+        if let Some(Carried { force, stretch, direction, tension, folded }) = element.carried(&at) {
+            put(&mut out.sheets, 0, SheetField { force, stretch, direction, tension, folded });
         }
     }
-}
-
-/// What is missing to a stretch of 1 in the direction that has less.
-fn folded(stretch: [f64; 2]) -> f64 {
-    (1.0 - stretch[0].min(stretch[1])).max(0.0)
 }
 
 fn put<T>(layers: &mut Vec<Vec<T>>, layer: usize, value: T) {

@@ -81,6 +81,22 @@ impl Mesh {
         is_known.then_some(nodes)
     }
 
+    /// The number of a node in the file it came from.
+    pub(crate) fn number(&self, node: usize) -> u64 {
+        self.numbers.get(node).copied().unwrap_or(node as u64 + 1)
+    }
+
+    /// The diagonal of the box about all nodes, m.
+    pub(crate) fn size(&self) -> f64 {
+        let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        for place in &self.nodes {
+            for (range, x) in range.iter_mut().zip(place) {
+                *range = [range[0].min(*x), range[1].max(*x)];
+            }
+        }
+        range.iter().map(|[low, high]| (high - low).powi(2)).sum::<f64>().sqrt()
+    }
+
     /// Each node of a group with the one of `partner` from which it is `angle` about z.
     pub(crate) fn partners(
         &self,
@@ -106,7 +122,7 @@ impl Mesh {
                     .take_while(|(z, _)| *z <= place[2] + close)
                     .find(|(_, other)| norm(sub(self.nodes[*other], place)) <= close);
                 found.map(|(_, other)| (*node, *other)).ok_or_else(|| MembraneError::NoPartner {
-                    node: self.numbers.get(*node).copied().unwrap_or(*node as u64 + 1),
+                    node: self.number(*node),
                     group: group.to_owned(),
                     partner: partner.to_owned(),
                     degrees: angle.to_degrees(),

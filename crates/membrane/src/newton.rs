@@ -163,7 +163,7 @@ impl Solver {
         for iteration in 0..self.tolerance.iterations {
             // Running away: beyond a limit point there is nothing to find.
             let farthest = y.iter().zip(&first).fold(0.0_f64, |a, (y, first)| a.max((y - first).abs()));
-            if farthest > FARTHEST * self.size {
+            if farthest > FARTHEST * self.size || self.effort.factorisations >= self.deadline {
                 break;
             }
             let (p, closure) = match load.inflation {

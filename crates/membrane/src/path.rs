@@ -5,8 +5,15 @@ use crate::load::{Inflation, Load};
 use crate::solver::Solver;
 use crate::state::State;
 
-/// The smallest step, over the whole path.
+/// The smallest step, over the whole path; of a pressure that rises far, over the pressure reached.
 const SMALLEST: f64 = 1.0 / 1024.0;
+/// Factorisations for one path, over the iterations allowed for one equilibrium.
+const BUDGET: usize = 20;
+/// Volumes that are tried to see whether the pressure falls, and the first of these steps over the volume.
+const VOLUMES: usize = 60;
+const FIRST_VOLUME: f64 = 0.01;
+/// A pressure where none says what is much, Pa.
+const ATMOSPHERE: f64 = 1e5;
 /// Iterations that one step of a path is worth: a shorter step costs less than a long search.
 const PATIENCE: usize = 80;
 /// How far an extrapolation may reach, over the step before it.
@@ -17,13 +24,42 @@ impl Solver {
     /// prescribe the same kinds of things. `seen` is told each equilibrium on the way with its share of the path.
     ///
     /// # Errors
-    /// [`MembraneError::LimitPoint`] if the pressure can't be reached; [`MembraneError::NotConverged`].
+    /// [`MembraneError::LimitPoint`] if the pressure was seen to fall before it came to what is asked; [`MembraneError::NotConverged`] and the
+    /// other errors of [`Self::solve`].
     pub fn follow(
         &mut self,
         before: &Load,
         from: &State,
         load: &Load,
         mut seen: impl FnMut(f64, &State),
+    ) -> Result<State, MembraneError> {
+        let patience = self.tolerance.iterations;
+        self.deadline = self.effort.factorisations + BUDGET * patience;
+        let found = match self.steps(before, from, load, &mut seen) {
+            // A flat or slack mesh has no volume to begin with: gas comes first.
+            Err(_) if matches!(load.inflation, Inflation::Volume(_)) && from.iterations == 0 => {
+                self.deadline = self.effort.factorisations + BUDGET * patience;
+                self.inflated(before, from, load).and_then(|first| {
+                    let begun = Load {
+                        inflation: Inflation::Volume(first.volume),
+                        fittings: before.fittings.clone(),
+                    };
+                    self.steps(&begun, &first, load, &mut seen)
+                })
+            }
+            found => found,
+        };
+        self.tolerance.iterations = patience;
+        self.deadline = usize::MAX;
+        found
+    }
+
+    fn steps(
+        &mut self,
+        before: &Load,
+        from: &State,
+        load: &Load,
+        seen: &mut impl FnMut(f64, &State),
     ) -> Result<State, MembraneError> {
         let (mut done, mut step) = (0.0, 1.0_f64);
         let mut last = from.clone();
@@ -33,7 +69,7 @@ impl Solver {
         if from.iterations > 0 {
             self.tolerance.iterations = patience.min(PATIENCE);
         }
-        let found = loop {
+        loop {
             let next = (done + step).min(1.0);
             let between = before.towards(load, next);
             let start = match &older {
@@ -50,7 +86,7 @@ impl Solver {
                 Ok(state) => {
                     seen(next, &state);
                     if next >= 1.0 {
-                        break Ok(state);
+                        return Ok(state);
                     }
                     self.tolerance.iterations = patience.min(PATIENCE);
                     older = Some((done, std::mem::replace(&mut last, state)));
@@ -59,14 +95,89 @@ impl Solver {
                 }
                 Err(error) => {
                     step *= 0.5;
-                    if step < SMALLEST {
-                        break Err(limit(before, &last, load).unwrap_or(error));
+                    if step < smallest(before, &last, load) || self.effort.factorisations >= self.deadline {
+                        self.tolerance.iterations = patience.min(PATIENCE);
+                        return self.beyond(before, last, load, done, seen).unwrap_or(Err(error));
                     }
                 }
             }
-        };
-        self.tolerance.iterations = patience;
-        found
+        }
+    }
+
+    /// Where the pressure won't rise any more: by volumes, to see whether it has a maximum. `None` if that can't be seen.
+    fn beyond(
+        &mut self,
+        before: &Load,
+        last: State,
+        load: &Load,
+        done: f64,
+        seen: &mut impl FnMut(f64, &State),
+    ) -> Option<Result<State, MembraneError>> {
+        let Inflation::Pressure(asked) = load.inflation else { return None };
+        // Nothing is known where no equilibrium was found at all, or where an end moved as well.
+        if asked <= last.pressure || last.iterations == 0 || before.fittings != load.fittings {
+            return None;
+        }
+        let mut best = last;
+        let mut step = FIRST_VOLUME * best.volume;
+        for _ in 0..VOLUMES {
+            let volume = best.volume + step;
+            let wider = Load { inflation: Inflation::Volume(volume), fittings: load.fittings.clone() };
+            match self.solve(&wider, &best) {
+                Ok(state) if state.pressure <= best.pressure => {
+                    seen(done, &best);
+                    let (last, volume) = (best.pressure, best.volume);
+                    return Some(Err(MembraneError::LimitPoint { pressure: asked, last, volume }));
+                }
+                Ok(state) => {
+                    best = state;
+                    step *= 1.3;
+                    if best.pressure >= asked {
+                        return Some(self.solve(load, &best));
+                    }
+                }
+                Err(_) => step *= 0.3,
+            }
+            if step < 1e-6 * best.volume || self.effort.factorisations >= self.deadline {
+                break;
+            }
+        }
+        None
+    }
+
+    /// A mesh at rest under as much pressure as brings it near the volume asked.
+    fn inflated(&mut self, before: &Load, rest: &State, load: &Load) -> Result<State, MembraneError> {
+        let Inflation::Volume(volume) = load.inflation else { return Ok(rest.clone()) };
+        let under = |p: f64| Load { inflation: Inflation::Pressure(p), fittings: before.fittings.clone() };
+        self.work(&rest.y, 0.0);
+        let breath = 1e-3 * self.mean_diagonal() / self.size;
+        // Threads without stretch have no stiffness of their own, and their shape needs no certain pressure.
+        let mut pressure = if breath > 1e-200 { breath } else { ATMOSPHERE };
+        let mut state = self.solve(&under(pressure), rest)?;
+        // A bag is full soon: less gas.
+        for _ in 0..VOLUMES {
+            if state.volume <= volume {
+                break;
+            }
+            pressure *= 0.1;
+            let Ok(less) = self.solve(&under(pressure), &state) else { break };
+            if less.volume > 0.999 * state.volume {
+                break;
+            }
+            state = less;
+        }
+        for _ in 0..VOLUMES {
+            if state.volume >= volume {
+                break;
+            }
+            pressure *= 2.0;
+            let Ok(more) = self.solve(&under(pressure), &state) else { break };
+            if more.volume > volume && (more.volume - volume) > (volume - state.volume) {
+                break;
+            }
+            state = more;
+        }
+        Ok(state)
     }
 
     /// A state whose nodes have followed the fittings along z in proportion: what a new place of a fitting starts from.
@@ -137,15 +248,12 @@ fn extrapolated(older: &State, last: &State, ratio: f64) -> State {
     start
 }
 
-/// What a path that ends says, if it is the pressure that can't rise.
-fn limit(before: &Load, last: &State, load: &Load) -> Option<MembraneError> {
-    match load.inflation {
-        // Nothing is known of a limit where no equilibrium was found at all, or where an end moved as well.
-        Inflation::Pressure(pressure)
-            if pressure > last.pressure && last.iterations > 0 && before.fittings == load.fittings =>
-        {
-            Some(MembraneError::LimitPoint { pressure, last: last.pressure, volume: last.volume })
+/// The smallest step worth a trial.
+fn smallest(before: &Load, last: &State, load: &Load) -> f64 {
+    match (before.inflation, load.inflation) {
+        (Inflation::Pressure(a), Inflation::Pressure(b)) if last.iterations > 0 && b > a => {
+            SMALLEST.min(SMALLEST * last.pressure / (b - a))
         }
-        _ => None,
+        _ => SMALLEST,
     }
 }

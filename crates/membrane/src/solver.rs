@@ -14,11 +14,11 @@
 use crate::assembly::{Assembly, Totals};
 use crate::element::Vector;
 use crate::error::MembraneError;
-use crate::factor::Factor;
+use crate::factor::{Factor, zeros};
 use crate::load::{Inflation, Load};
 use crate::set::{Elements, Place};
 use crate::state::{Copies, Effort, State, Tolerance};
-use crate::structure::{Fitting, Structure};
+use crate::structure::{Fitting, Group, Structure};
 use faer::Par;
 use std::time::Instant;
 
@@ -36,6 +36,8 @@ pub struct Solver {
     pub(crate) penalty: f64,
     pub(crate) size: f64,
     pub(crate) effort: Effort,
+    /// Factorisations after which a search is given up.
+    pub(crate) deadline: usize,
 }
 
 /// Outer iterations of the augmented Lagrangian.
@@ -50,13 +52,14 @@ impl Solver {
     /// [`MembraneError::Memory`].
     pub fn new(structure: Structure, copies: Copies, tolerance: Tolerance) -> Result<Self, MembraneError> {
         let sets = sets(&structure);
-        let assembly = Assembly::new(&sets, &structure.dofs);
+        let assembly = Assembly::new(&sets, &structure.dofs)?;
         // One thread for the factors: a second one brings little on a surface, and would change the last digits.
         let factor = Factor::new(assembly.columns.clone(), assembly.rows.clone(), Par::Seq)?;
-        let matrix = vec![0.0; assembly.rows.len()];
+        let [matrix, shifted] = [0, 1].map(|_| zeros(assembly.rows.len(), structure.dofs.free));
+        let (matrix, shifted) = (matrix?, shifted?);
         let size = structure.size();
         Ok(Self {
-            shifted: matrix.clone(),
+            shifted,
             matrix,
             factor,
             assembly,
@@ -68,6 +71,7 @@ impl Solver {
             penalty: 1.0,
             size,
             effort: Effort::default(),
+            deadline: usize::MAX,
         })
     }
 
@@ -136,10 +140,12 @@ impl Solver {
         }
         let mut pressure = start.pressure;
         self.restore(start);
-        self.choose_penalty(load, start);
+        self.choose_penalty(load, start.pressure, start.volume);
         let first = self.effort.iterations;
         if matches!(load.inflation, Inflation::Volume(_)) && start.iterations == 0 {
             self.puff(load, &mut y, &mut pressure);
+            let [_, volume] = self.measure(&y);
+            self.choose_penalty(load, pressure, volume * self.copies.all());
         }
         let mut worst = f64::INFINITY;
         for _ in 0..HOLDS {
@@ -155,17 +161,31 @@ impl Solver {
             worst = self.hold(&y);
             // At the round-off of the lengths it gets no better.
             if worst <= self.tolerance.stretch || (worst < 1e-9 && worst > 0.3 * before) {
-                return Ok(state);
+                return self.upright(&state).map(|()| state);
             }
             if worst > 0.2 * before {
                 self.penalty *= 5.0;
             }
         }
-        Err(MembraneError::NotConverged {
-            iterations: self.effort.iterations - first,
-            residual: worst,
-            asked: self.tolerance.stretch,
-        })
+        Err(MembraneError::Overstretched { stretch: worst, asked: self.tolerance.stretch })
+    }
+
+    /// Refuses an equilibrium that is inside out.
+    fn upright(&self, state: &State) -> Result<(), MembraneError> {
+        let collapsed = |what: &str| Err(MembraneError::Collapsed { what: what.to_owned() });
+        if state.pressure > 0.0 && state.volume < 0.0 {
+            return collapsed("it has turned inside out");
+        }
+        let left = |node: &u32| self.x[*node as usize][0] < -1e-9 * self.size;
+        let crosses = self.structure.groups.iter().any(|(_, group)| match group {
+            Group::Ring2(set) => set.nodes.as_flattened().iter().any(left),
+            Group::Ring3(set) => set.nodes.as_flattened().iter().any(left),
+            _ => false,
+        });
+        if crosses {
+            return collapsed("it crosses its axis");
+        }
+        Ok(())
     }
 
     /// A breath of gas for a mesh at rest, so that a prescribed volume finds a membrane under tension.
@@ -185,14 +205,14 @@ impl Solver {
     }
 
     /// From the loads: forces of p V^(2/3) shall stretch a thread by 1/STIFF in the first round.
-    fn choose_penalty(&mut self, load: &Load, start: &State) {
+    fn choose_penalty(&mut self, load: &Load, pressure: f64, volume: f64) {
         let pressure = match load.inflation {
             Inflation::Pressure(p) => p,
-            Inflation::Gas(gas) => gas.pressure(start.volume.max(1e-3 * self.size.powi(3))).0,
-            Inflation::Volume(_) => start.pressure,
+            Inflation::Gas(gas) => gas.pressure(volume.max(1e-3 * self.size.powi(3))).0,
+            Inflation::Volume(_) => pressure,
         };
         // A flat start has no volume yet.
-        let (round, box_side) = (start.volume.abs().powf(2.0 / 3.0), self.size * self.size);
+        let (round, box_side) = (volume.abs().powf(2.0 / 3.0), self.size * self.size);
         let area = if round < 1e-3 * box_side { box_side } else { 4.0 * round };
         let threads = self.structure.threads();
         let force = pressure.abs() * area + load.fittings_force(&self.structure.fittings);

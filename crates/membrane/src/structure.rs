@@ -1,12 +1,15 @@
 //! A structure: the elements over a mesh, and what holds its nodes.
 
-use crate::dofs::{Dofs, Supports};
+mod held;
+mod rigid;
+
+use crate::dofs::Dofs;
 use crate::element::{Cable, Ring, RingLayer, Triangle, Vector};
 use crate::error::MembraneError;
 use crate::material::{Sheet, Thread};
 use crate::mesh::{Block, CellKind, Mesh};
 use crate::set::{Element, Elements, Set};
-use crate::surface::{Turned, backwards, oriented};
+use crate::surface::{Rims, backwards, oriented};
 use serde::Serialize;
 
 /// What the cells of a group are.
@@ -119,14 +122,15 @@ impl Structure {
     /// Elements over `mesh`: `parts` and `supports` by the names of its groups, which must exist.
     ///
     /// # Errors
-    /// An unknown group, an element without length or area, contradictory supports, a structure with nothing to solve for.
+    /// An unknown group, an element without length or area, an open edge, contradictory supports, a part that nothing holds, a structure with
+    /// nothing to solve for.
     pub fn new(
         mesh: &Mesh,
         parts: &[(String, Part)],
         supports: &[(String, Support)],
         fittings: &[Fitting],
     ) -> Result<Self, MembraneError> {
-        let turned = turned(mesh, parts, supports)?;
+        let turned = oriented(mesh, parts, &Rims::new(mesh, supports)?)?;
         let mut groups = Vec::new();
         let mut is_used = vec![false; mesh.nodes.len()];
         let mut is_flat = vec![false; mesh.nodes.len()];
@@ -148,24 +152,11 @@ impl Structure {
                 return Err(MembraneError::unknown_group(name, mesh));
             }
         }
-        let mut held = Supports::new(mesh.nodes.len());
-        for fitting in fittings {
-            held.fitting(*fitting == Fitting::Loaded);
-        }
-        for (node, (is_used, is_flat)) in is_used.iter().zip(&is_flat).enumerate() {
-            if !is_used {
-                held.fix(node);
-            } else if *is_flat {
-                held.hold(node, [0.0, 1.0, 0.0]);
-            }
-        }
-        for (name, support) in supports {
-            support_group(mesh, name, support, fittings.len(), &mut held)?;
-        }
-        let (dofs, start) = held.dofs(&mesh.nodes)?;
+        let (dofs, start) = held::dofs(mesh, supports, fittings, &is_used, &is_flat)?;
         if dofs.free == 0 {
             return Err(MembraneError::NothingMoves);
         }
+        rigid::check(mesh, &groups, &dofs, &is_flat)?;
         let numbers: usize = groups
             .iter()
             .map(|(_, group)| {
@@ -215,85 +206,6 @@ impl Structure {
         }
         range.iter().map(|[low, high]| (high - low).powi(2)).sum::<f64>().sqrt()
     }
-}
-
-fn support_group(
-    mesh: &Mesh,
-    name: &str,
-    support: &Support,
-    fittings: usize,
-    held: &mut Supports,
-) -> Result<(), MembraneError> {
-    let nodes = mesh.nodes_of(name).ok_or_else(|| MembraneError::unknown_group(name, mesh))?;
-    match support {
-        Support::Cyclic { partner, angle } => {
-            let partners =
-                mesh.nodes_of(partner).ok_or_else(|| MembraneError::unknown_group(partner, mesh))?;
-            for (node, partner) in mesh.partners(name, &nodes, partner, &partners, *angle)? {
-                held.follow(node, partner, *angle);
-            }
-            return Ok(());
-        }
-        Support::Fitting { fitting } if *fitting >= fittings => {
-            return Err(MembraneError::NoFitting { fitting: *fitting, known: fittings });
-        }
-        _ => (),
-    }
-    for node in nodes {
-        let [x, y, _] = mesh.nodes[node];
-        match support {
-            Support::Fixed => held.fix(node),
-            Support::Plane { normal } => held.hold(node, *normal),
-            Support::Axis => {
-                held.hold(node, [1.0, 0.0, 0.0]);
-                held.hold(node, [0.0, 1.0, 0.0]);
-            }
-            Support::Slide => {
-                held.hold(node, [x, y, 0.0]);
-                held.hold(node, [-y, x, 0.0]);
-            }
-            Support::Fitting { fitting } => held.ride(node, *fitting)?,
-            Support::Cyclic { .. } => (),
-        }
-    }
-    Ok(())
-}
-
-/// Which cells of the membranes face the wrong way, after the check that they close a volume.
-fn turned(
-    mesh: &Mesh,
-    parts: &[(String, Part)],
-    supports: &[(String, Support)],
-) -> Result<Turned, MembraneError> {
-    let mut is_held = vec![false; mesh.nodes.len()];
-    let mut hold = |name: &str| -> Result<(), MembraneError> {
-        let nodes = mesh.nodes_of(name).ok_or_else(|| MembraneError::unknown_group(name, mesh))?;
-        for node in nodes {
-            is_held[node] = true;
-        }
-        Ok(())
-    };
-    for (name, support) in supports {
-        hold(name)?;
-        if let Support::Cyclic { partner, .. } = support {
-            hold(partner)?;
-        }
-    }
-    let mut blocks = Vec::new();
-    for (name, part) in parts {
-        if matches!(part, Part::Cable { .. }) {
-            continue;
-        }
-        for (b, block) in mesh.blocks.iter().enumerate() {
-            if block.group == *name && block.kind != CellKind::Point {
-                if blocks.contains(&b) {
-                    return Err(MembraneError::TwoParts { group: name.clone() });
-                }
-                blocks.push(b);
-            }
-        }
-    }
-    oriented(mesh, &blocks, &is_held)
 }
 
 /// A block on its way to elements.

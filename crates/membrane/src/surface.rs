@@ -3,9 +3,16 @@
 //! The pressure acts along the normals, and the volume is the flux through the elements: neighbours must face the same side, and an open edge
 //! must lie on something that closes it without elements (a fitting, a fixed rim, a plane of symmetry, the other edge of a cyclic sector).
 
+mod rims;
+mod sector;
+
+pub(crate) use rims::Rims;
+pub(crate) use sector::sector;
+
 use crate::element::{Vector, cross, dot, sub};
 use crate::error::MembraneError;
 use crate::mesh::{Block, CellKind, Mesh};
+use crate::structure::Part;
 use std::collections::HashMap;
 
 /// One cell: block and number in it.
@@ -16,9 +23,11 @@ pub(crate) struct Turned {
     is_turned: HashMap<Cell, bool>,
 }
 
-/// A side of a cell by its two end nodes, in order of their numbers.
+/// A side of a cell.
 #[derive(Debug, Clone, Copy)]
 struct Side {
+    /// Its two end nodes, the smaller first.
+    nodes: [usize; 2],
     cell: Cell,
     /// Whether the cell goes from the smaller to the larger number.
     is_forward: bool,
@@ -31,74 +40,128 @@ impl Turned {
     }
 }
 
-/// Checks the membranes of the blocks, and finds which cells face the wrong way. `is_held`: nodes with a support.
-pub(crate) fn oriented(mesh: &Mesh, blocks: &[usize], is_held: &[bool]) -> Result<Turned, MembraneError> {
-    let (triangles, lines): (Vec<usize>, Vec<usize>) = blocks
-        .iter()
-        .copied()
+/// The blocks of membranes: of triangles, and of lines that are revolved.
+pub(crate) fn membranes(mesh: &Mesh, parts: &[(String, Part)]) -> Result<Vec<usize>, MembraneError> {
+    let mut blocks = Vec::new();
+    for (name, _) in parts.iter().filter(|(_, part)| !matches!(part, Part::Cable { .. })) {
+        for (b, block) in mesh.blocks.iter().enumerate() {
+            if block.group == *name && block.kind != CellKind::Point {
+                if blocks.contains(&b) {
+                    return Err(MembraneError::TwoParts { group: name.clone() });
+                }
+                blocks.push(b);
+            }
+        }
+    }
+    Ok(blocks)
+}
+
+/// The blocks of cables.
+fn cables(mesh: &Mesh, parts: &[(String, Part)]) -> Vec<usize> {
+    let is_cable = |block: &Block| {
+        parts.iter().any(|(name, part)| *name == block.group && matches!(part, Part::Cable { .. }))
+    };
+    (0..mesh.blocks.len()).filter(|b| is_cable(&mesh.blocks[*b])).collect()
+}
+
+/// Checks the membranes, and finds which of their cells face the wrong way.
+pub(crate) fn oriented(
+    mesh: &Mesh,
+    parts: &[(String, Part)],
+    rims: &Rims<'_>,
+) -> Result<Turned, MembraneError> {
+    let (triangles, lines): (Vec<usize>, Vec<usize>) = membranes(mesh, parts)?
+        .into_iter()
         .partition(|b| matches!(mesh.blocks[*b].kind, CellKind::Triangle3 | CellKind::Triangle6));
     let mut is_turned = HashMap::new();
     let sides = sides(mesh, &triangles);
-    check_sides(mesh, &sides, is_held)?;
+    check_sides(mesh, &sides, rims)?;
+    check_cables(mesh, &sides, &cables(mesh, parts))?;
     spread(mesh, &triangles, &sides, &mut is_turned)?;
-    chain(mesh, &lines, is_held, &mut is_turned)?;
+    chain(mesh, &lines, rims, &mut is_turned)?;
     Ok(Turned { is_turned })
 }
 
-fn sides(mesh: &Mesh, blocks: &[usize]) -> Vec<((usize, usize), Vec<Side>)> {
-    let mut sides: HashMap<(usize, usize), Vec<Side>> = HashMap::new();
+/// The sides of all triangles, those between the same nodes together.
+fn sides(mesh: &Mesh, blocks: &[usize]) -> Vec<Side> {
+    let mut sides = Vec::new();
     for b in blocks {
         let block = &mesh.blocks[*b];
+        if !matches!(block.kind, CellKind::Triangle3 | CellKind::Triangle6) {
+            continue;
+        }
         for (c, cell) in block.cells.chunks_exact(block.kind.nodes()).enumerate() {
             for k in 0..3 {
                 let (from, to) = (cell[k], cell[(k + 1) % 3]);
-                let side = Side { cell: (*b, c), is_forward: from < to, middle: cell.get(3 + k).copied() };
-                sides.entry((from.min(to), from.max(to))).or_default().push(side);
+                sides.push(Side {
+                    nodes: [from.min(to), from.max(to)],
+                    cell: (*b, c),
+                    is_forward: from < to,
+                    middle: cell.get(3 + k).copied(),
+                });
             }
         }
     }
-    let mut all: Vec<_> = sides.into_iter().collect();
     // The first one to complain about is the same every time.
-    all.sort_by_key(|(nodes, _)| *nodes);
-    all
+    sides.sort_unstable_by_key(|side| (side.nodes, side.cell));
+    sides
 }
 
-fn check_sides(
-    mesh: &Mesh,
-    sides: &[((usize, usize), Vec<Side>)],
-    is_held: &[bool],
-) -> Result<(), MembraneError> {
-    let named = |side: &Side| name(mesh, side.cell);
-    let node = |node: usize| mesh.numbers.get(node).copied().unwrap_or(node as u64 + 1);
-    for ((a, b), found) in sides {
-        let Some(first) = found.first() else { continue };
-        let (element, group) = named(first);
-        let nodes = [node(*a), node(*b)];
-        match found.len() {
-            1 if !(is_held[*a] && is_held[*b]) => {
+fn check_sides(mesh: &Mesh, sides: &[Side], rims: &Rims<'_>) -> Result<(), MembraneError> {
+    for found in sides.chunk_by(|a, b| a.nodes == b.nodes) {
+        let (element, group) = name(mesh, found[0].cell);
+        let nodes = found[0].nodes.map(|node| mesh.number(node));
+        match found {
+            [open] if !rims.closes(open.nodes)? => {
                 return Err(MembraneError::Hole { element, group, nodes });
             }
-            2 if found[0].middle != found[1].middle => {
-                let (other, _) = named(&found[1]);
-                return Err(MembraneError::MixedOrders { element, other, group, nodes });
+            [one, two] if one.middle != two.middle => {
+                return Err(mixed_orders(mesh, one.cell, two.cell, one.nodes));
             }
-            1 | 2 => (),
-            count => return Err(MembraneError::Branch { element, group, nodes, count }),
+            [_] | [_, _] => (),
+            all => return Err(MembraneError::Branch { element, group, nodes, count: all.len() }),
         }
     }
     Ok(())
+}
+
+/// A cable along the side of a triangle has the same node in its middle, or none as the triangle.
+fn check_cables(mesh: &Mesh, sides: &[Side], cables: &[usize]) -> Result<(), MembraneError> {
+    for b in cables {
+        let block = &mesh.blocks[*b];
+        if !matches!(block.kind, CellKind::Line2 | CellKind::Line3) {
+            continue;
+        }
+        for (c, cell) in block.cells.chunks_exact(block.kind.nodes()).enumerate() {
+            let nodes = [cell[0].min(cell[1]), cell[0].max(cell[1])];
+            let side = sides.get(sides.partition_point(|side| side.nodes < nodes));
+            match side {
+                Some(side) if side.nodes == nodes && side.middle != cell.get(2).copied() => {
+                    return Err(mixed_orders(mesh, (*b, c), side.cell, nodes));
+                }
+                _ => (),
+            }
+        }
+    }
+    Ok(())
+}
+
+fn mixed_orders(mesh: &Mesh, one: Cell, two: Cell, nodes: [usize; 2]) -> MembraneError {
+    let ((element, group), (other, other_group)) = (name(mesh, one), name(mesh, two));
+    let nodes = nodes.map(|node| mesh.number(node));
+    MembraneError::MixedOrders { element, group, other, other_group, nodes }
 }
 
 /// Lets each connected surface face one way: outwards, if its volume says where that is.
 fn spread(
     mesh: &Mesh,
     blocks: &[usize],
-    sides: &[((usize, usize), Vec<Side>)],
+    sides: &[Side],
     is_turned: &mut HashMap<Cell, bool>,
 ) -> Result<(), MembraneError> {
     let mut neighbours: HashMap<Cell, Vec<(Cell, bool)>> = HashMap::new();
-    for (_, found) in sides {
-        if let [a, b] = found[..] {
+    for found in sides.chunk_by(|a, b| a.nodes == b.nodes) {
+        if let [a, b] = found {
             // Neighbours that face the same side go along their common side in opposite senses.
             let is_same = a.is_forward != b.is_forward;
             neighbours.entry(a.cell).or_default().push((b.cell, is_same));
@@ -158,7 +221,7 @@ fn flux(mesh: &Mesh, (b, c): Cell) -> f64 {
 fn chain(
     mesh: &Mesh,
     blocks: &[usize],
-    is_held: &[bool],
+    rims: &Rims<'_>,
     is_turned: &mut HashMap<Cell, bool>,
 ) -> Result<(), MembraneError> {
     let mut at: HashMap<usize, Vec<(Cell, bool)>> = HashMap::new();
@@ -173,9 +236,9 @@ fn chain(
     let mut nodes: Vec<_> = at.iter().collect();
     nodes.sort_by_key(|(node, _)| **node);
     for (node, ends) in &nodes {
-        let number = mesh.numbers.get(**node).copied().unwrap_or(**node as u64 + 1);
+        let number = mesh.number(**node);
         let (element, group) = name(mesh, ends[0].0);
-        let is_closed = is_held[**node] || mesh.nodes[**node][0] <= 1e-9 * size;
+        let is_closed = rims.holds(**node) || mesh.nodes[**node][0] <= 1e-9 * size;
         match ends.len() {
             1 if !is_closed => return Err(MembraneError::Hole { element, group, nodes: [number; 2] }),
             1 | 2 => (),
@@ -241,6 +304,26 @@ pub(crate) fn backwards<T, const N: usize>(kind: CellKind, mut nodes: [T; N]) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::structure::Support;
+
+    /// As [`super::oriented`], with one part `skin` or `wall` and the nodes of `held` fixed.
+    fn oriented(mesh: &Mesh, held: &[usize]) -> Result<Turned, MembraneError> {
+        let mut mesh = mesh.clone();
+        let part = match mesh.blocks[0].kind {
+            CellKind::Line2 => Part::Revolved { layers: Vec::new() },
+            _ => Part::Membrane { sheet: None, warp: [1.0, 0.0, 0.0] },
+        };
+        let parts = [(mesh.blocks[0].group.clone(), part)];
+        mesh.blocks.push(Block {
+            group: "rim".to_owned(),
+            kind: CellKind::Point,
+            cells: held.to_vec(),
+            numbers: held.iter().map(|node| *node as u64).collect(),
+            pattern: None,
+        });
+        let supports = [("rim".to_owned(), Support::Fixed)];
+        super::oriented(&mesh, &parts, &Rims::new(&mesh, &supports)?)
+    }
 
     /// A tetrahedron's surface, some of its faces inside out.
     fn tetrahedron() -> Mesh {
@@ -261,7 +344,7 @@ mod tests {
     #[test]
     fn a_closed_surface_faces_outwards() {
         let mesh = tetrahedron();
-        let turned = oriented(&mesh, &[0], &[false; 4]).unwrap();
+        let turned = oriented(&mesh, &[]).unwrap();
         let volume: f64 =
             (0..4).map(|c| flux(&mesh, (0, c)) * if turned.is_turned(0, c) { -1.0 } else { 1.0 }).sum();
         assert!((volume - 1.0 / 6.0).abs() < 1e-15);
@@ -271,19 +354,19 @@ mod tests {
     fn a_hole_a_branch_and_a_twist_are_named() {
         let mut mesh = tetrahedron();
         let face = mesh.blocks[0].cells.split_off(9);
-        let error = oriented(&mesh, &[0], &[false; 4]).err().unwrap();
+        let error = oriented(&mesh, &[]).err().unwrap();
         assert!(matches!(error, MembraneError::Hole { nodes: [11, 13], .. }), "{error}");
         // Held at its rim it closes.
-        assert!(oriented(&mesh, &[0], &[true, false, true, true]).is_ok());
+        assert!(oriented(&mesh, &[0, 2, 3]).is_ok());
         mesh.blocks[0].cells.extend(face.iter().chain(&face));
         mesh.blocks[0].numbers.push(25);
-        let error = oriented(&mesh, &[0], &[false; 4]).err().unwrap();
+        let error = oriented(&mesh, &[]).err().unwrap();
         assert!(matches!(error, MembraneError::Branch { count: 3, .. }), "{error}");
         // A strip of triangles with a half twist, held at its edge.
         let strip = [[0, 1, 2], [1, 2, 3], [2, 3, 4], [3, 4, 0], [4, 0, 1]];
         mesh.nodes = (0..5).map(|i| [f64::from(i).cos(), f64::from(i).sin(), f64::from(i * i)]).collect();
         mesh.blocks[0].cells = strip.concat();
-        let error = oriented(&mesh, &[0], &[true; 5]).err().unwrap();
+        let error = oriented(&mesh, &[0, 1, 2, 3, 4]).err().unwrap();
         assert!(matches!(error, MembraneError::Twisted { .. }), "{error}");
     }
 
@@ -301,11 +384,11 @@ mod tests {
             }],
         };
         let mesh = line([0.0, 1.0, 2.0], vec![0, 1, 2, 1]);
-        let turned = oriented(&mesh, &[0], &[true, false, true]).unwrap();
+        let turned = oriented(&mesh, &[0, 2]).unwrap();
         assert_eq!([turned.is_turned(0, 0), turned.is_turned(0, 1)], [false, true]);
         let down = line([2.0, 1.0, 0.0], vec![0, 1, 1, 2]);
-        assert!(oriented(&down, &[0], &[true, false, true]).unwrap().is_turned(0, 1));
-        let error = oriented(&mesh, &[0], &[true, false, false]).err().unwrap();
+        assert!(oriented(&down, &[0, 2]).unwrap().is_turned(0, 1));
+        let error = oriented(&mesh, &[0]).err().unwrap();
         assert!(matches!(error, MembraneError::Hole { nodes: [3, 3], .. }), "{error}");
     }
 }

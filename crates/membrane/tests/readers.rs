@@ -836,3 +836,90 @@ fn swapped_and_repeated_words_never_panic() {
         }
     }
 }
+
+/// Bytes, lines and lengths changed at random.
+struct Vandal {
+    state: u64,
+}
+
+impl Vandal {
+    fn below(&mut self, bound: usize) -> usize {
+        // Numbers of Knuth's MMIX, so that a failure comes again.
+        self.state =
+            self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        usize::try_from(self.state >> 33).unwrap() % bound.max(1)
+    }
+
+    fn lines(&mut self, bytes: &[u8]) -> Vec<u8> {
+        let mut lines: Vec<&[u8]> = bytes.split_inclusive(|byte| *byte == b'\n').collect();
+        let (from, to) = (self.below(lines.len()), self.below(lines.len()));
+        match self.below(3) {
+            0 => lines.swap(from, to),
+            1 => lines.insert(to, lines[from]),
+            _ => drop(lines.remove(to)),
+        }
+        lines.concat()
+    }
+
+    fn change(&mut self, mut bytes: Vec<u8>) -> Vec<u8> {
+        if bytes.is_empty() {
+            return bytes;
+        }
+        let at = self.below(bytes.len());
+        match self.below(8) {
+            0 | 1 => bytes[at] = u8::try_from(self.below(256)).unwrap(),
+            2 => bytes[at] ^= 1 << self.below(8),
+            3 => drop(bytes.remove(at)),
+            4 => bytes.insert(at, b"0123456789-. $<\"\n"[self.below(17)]),
+            5 => bytes.truncate(at),
+            _ => return self.lines(&bytes),
+        }
+        bytes
+    }
+}
+
+/// What is wrong, where, and what to write instead; and never the size that a damaged count claims.
+#[track_caller]
+fn is_clear(answer: Result<Mesh, bulge_membrane::MeshError>, size: usize) {
+    match answer {
+        Ok(mesh) => {
+            is_sound(&mesh);
+            let numbers = mesh.nodes.len() + mesh.blocks.iter().map(|block| block.cells.len()).sum::<usize>();
+            assert!(numbers <= 4 * size, "{numbers} numbers in {size} bytes");
+        }
+        Err(error) => {
+            let place = error.file.strip_prefix("bad").expect("the name of the file");
+            let has_line =
+                place.strip_prefix(':').is_some_and(|line| line.parse::<u64>().is_ok_and(|n| n > 0));
+            // Binary data have no lines, and what is missing from a file is nowhere.
+            let names = |word: &str| error.what.contains(word);
+            let has_what =
+                ["file", "byte", "section", "node", "element", "cell", "array", "mesh", "data", "text", "$"];
+            assert!(has_line || (place.is_empty() && has_what.into_iter().any(names)), "{error}");
+            assert!(
+                !error.what.is_empty() && error.what.len() < 300 && !error.what.contains('\n'),
+                "{error}"
+            );
+            assert!(!error.instead.is_empty(), "{error}");
+        }
+    }
+}
+
+#[test]
+fn vandalised_files_have_clear_messages() {
+    let mut vandal = Vandal { state: 7 };
+    let mut refused = 0;
+    for (_, bytes) in GMSH.iter().chain(&VTK) {
+        for _ in 0..600 {
+            let mut damaged = bytes.to_vec();
+            for _ in 0..=vandal.below(4) {
+                damaged = vandal.change(damaged);
+            }
+            let answer = Mesh::from_bytes(&damaged, "bad");
+            refused += usize::from(answer.is_err());
+            is_clear(answer, damaged.len());
+        }
+    }
+    // Most of it does harm.
+    assert!(refused > 2400, "{refused} of 4800");
+}

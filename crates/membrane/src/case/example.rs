@@ -68,7 +68,7 @@ states = 1                      # kept on the way, the last one included
 
 [[step]]
 pressure = \"30 kPa\"
-places = { top = \"0 mm\" }       # of fittings, from those in the mesh; `forces = { top = \"-5 N\" }` of loaded ones
+places = { top = \"0 mm\" }       # of fittings, from those in the mesh; `forces = { top = \"-1 N\" }` of loaded ones
 # contraction = \"10 %\"          # in place of `places`, for a muscle
 states = 4
 # restart = true                # begin with the mesh at rest, not with the state before

@@ -69,7 +69,7 @@ pub(super) fn read(
         check_cells(table, source, group, kind)?;
         let part = part(table, kind, source, materials)?;
         match (parts.iter_mut().find(|(name, _)| name == group), part) {
-            // Layers of a membrane of revolution lie on each other; a membrane in space may lie on another, too.
+            // Layers of a membrane of revolution lie on each other; no others may share a group, which is refused when the structure is built.
             (Some((_, Part::Revolved { layers })), Part::Revolved { layers: more }) => layers.extend(more),
             (_, part) => parts.push((group.to_owned(), part)),
         }

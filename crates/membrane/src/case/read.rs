@@ -4,7 +4,7 @@ use bulge_muscles::settings::{Document, FileKind, Keys, Settings};
 use bulge_muscles::{Dimension, FileError, Muscle, Parameter};
 use std::path::Path;
 
-use super::{Case, materials, parts, source, steps, supports};
+use super::{Case, Ends, materials, parts, source, steps, supports};
 use crate::material::Thread;
 use crate::state::{Copies, Tolerance};
 use crate::structure::Part;
@@ -23,6 +23,9 @@ const TOP: Keys = &[
     ("step", "[[step]]"),
     ("solver", "[solver]"),
 ];
+
+/// Most iterations for one equilibrium.
+const MOST_ITERATIONS: u32 = 100_000;
 
 const SOLVER: Keys = &[("residual", "residual = 1e-10"), ("iterations", "iterations = 300")];
 
@@ -59,11 +62,14 @@ impl Case {
         let materials = materials::read(&settings)?;
         let parts = parts::read(&settings, &source, &materials)?;
         let supports = supports::read(&settings, &source)?;
-        let steps = steps::read(&settings, &source, &supports.fittings)?;
+        supports::check_sectors(&settings, &source, &parts, &supports)?;
+        let ends = Ends::of(&source.mesh, &supports.held, supports.fittings.len());
+        let steps = steps::read(&settings, &source, &supports.fittings, ends)?;
         Ok(Self {
             name: settings.text("name")?.unwrap_or("membrane").to_owned(),
             supports: supports.held,
             fittings: supports.fittings,
+            ends,
             copies: source.copies,
             length: source.length,
             unfolded_radius: source.unfolded_radius,
@@ -95,8 +101,16 @@ fn tolerance(settings: &Settings<'_>) -> Result<Tolerance, FileError> {
     {
         tolerance.residual = residual;
     }
-    if let Some(iterations) = table.count::<u32>("iterations")? {
-        tolerance.iterations = iterations.clamp(1, 100_000) as usize;
+    match table.count::<u32>("iterations")? {
+        None => (),
+        Some(iterations) if (1..=MOST_ITERATIONS).contains(&iterations) => {
+            tolerance.iterations = iterations as usize;
+        }
+        Some(iterations) => {
+            let what = format!("`iterations` is {iterations}, but must be from 1 to {MOST_ITERATIONS}");
+            let instead = "write such as `iterations = 300`";
+            return Err(table.error(table.value_span("iterations"), what, instead));
+        }
     }
     Ok(tolerance)
 }

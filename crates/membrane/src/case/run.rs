@@ -1,6 +1,5 @@
 //! A case run: state after state, each an equilibrium.
 
-use bulge_muscles::FileError;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -45,7 +44,7 @@ pub struct Row {
     pub volume: f64,
     /// Contraction, where the case has a length.
     pub contraction: Option<f64>,
-    /// Force on the last fitting along z, N: what the muscle pulls with.
+    /// Force with which the ends are pulled together, N: what the muscle pulls with.
     #[serde(rename = "force_n")]
     pub force: Option<f64>,
     /// Largest diameter, m.
@@ -86,6 +85,8 @@ pub struct CaseRun<'a> {
     made: usize,
     under_way: Option<(Load, Load)>,
     states: usize,
+    /// The last equilibrium on the way to a state that wasn't reached.
+    rescued: Option<(usize, State)>,
 }
 
 impl Case {
@@ -107,6 +108,7 @@ impl Case {
             made: 0,
             under_way: None,
             states: 0,
+            rescued: None,
         })
     }
 
@@ -114,12 +116,6 @@ impl Case {
     #[must_use]
     pub fn states(&self) -> usize {
         self.steps.iter().map(|step| step.states).sum()
-    }
-
-    /// As [`FileError`], for a case that makes no structure.
-    #[must_use]
-    pub fn refused(origin: &str, error: &CaseError) -> FileError {
-        FileError::whole(origin, error.to_string(), "mend the mesh or the case")
     }
 }
 
@@ -146,42 +142,78 @@ impl CaseRun<'_> {
     /// The next state; `None` after the last. `seen` is told each equilibrium on the way with its share of it.
     ///
     /// # Errors
-    /// [`CaseError::State`]; the states before stand, and the run ends.
+    /// [`CaseError::State`]; the states before stand, and the run ends. [`Self::rescued`] has what was found on the way.
     pub fn advance(
         &mut self,
         seen: impl FnMut(f64, &State),
     ) -> Option<Result<(Row, State, Fields), CaseError>> {
         let step = self.case.steps.get(self.at)?;
+        self.states += 1;
+        Some(self.attempt(step, seen).map_err(|source| {
+            let step = self.at + 1;
+            self.at = self.case.steps.len();
+            CaseError::State { step, state: self.states, source }
+        }))
+    }
+
+    fn attempt(
+        &mut self,
+        step: &Step,
+        mut seen: impl FnMut(f64, &State),
+    ) -> Result<(Row, State, Fields), MembraneError> {
         if self.under_way.is_none() {
             if step.is_restart {
                 self.last = self.solver.at_rest();
                 self.fittings.fill(0.0);
             }
-            self.under_way = Some(self.loads(step));
+            self.under_way = Some(self.loads(step)?);
         }
-        let (begin, end) = self.under_way.clone()?;
+        let Some((begin, end)) = self.under_way.clone() else { return Err(MembraneError::NothingMoves) };
         let share = |made: usize| made as f64 / step.states as f64;
         let (from, to) = (begin.towards(&end, share(self.made)), begin.towards(&end, share(self.made + 1)));
-        self.states += 1;
-        match self.solver.follow(&from, &self.last, &to, seen) {
-            Ok(state) => {
-                self.made += 1;
-                let row_step = self.at + 1;
-                if self.made == step.states {
-                    self.fittings.clone_from(&end.fittings);
-                    (self.at, self.made, self.under_way) = (self.at + 1, 0, None);
-                }
-                let fields = self.solver.fields(&state);
-                let row = self.row(row_step, &state, &fields);
-                self.last = state.clone();
-                Some(Ok((row, state, fields)))
+        let mut on_the_way = None;
+        let followed = self.solver.follow(&from, &self.last, &to, |share, state| {
+            on_the_way = Some(state.clone());
+            seen(share, state);
+        });
+        let state = followed.and_then(|state| self.upright(&state).map(|()| state));
+        let state = match state {
+            Ok(state) => state,
+            Err(error) => {
+                let sound = on_the_way.filter(|state| self.upright(state).is_ok());
+                self.rescued = sound.map(|state| (self.at + 1, state));
+                return Err(error);
             }
-            Err(source) => {
-                let step = self.at + 1;
-                self.at = self.case.steps.len();
-                Some(Err(CaseError::State { step, state: self.states, source }))
-            }
+        };
+        self.made += 1;
+        let row_step = self.at + 1;
+        if self.made == step.states {
+            self.fittings.clone_from(&end.fittings);
+            (self.at, self.made, self.under_way) = (self.at + 1, 0, None);
         }
+        let fields = self.solver.fields(&state);
+        let row = self.row(row_step, &state, &fields);
+        self.last = state.clone();
+        Ok((row, state, fields))
+    }
+
+    /// Refuses a state whose ends have passed each other.
+    fn upright(&self, state: &State) -> Result<(), MembraneError> {
+        let Some(ends) = self.case.ends else { return Ok(()) };
+        let left = ends.distance + ends.apart(&state.fittings);
+        if left > 0.0 {
+            return Ok(());
+        }
+        let what = format!("its ends have passed each other by {:.6} mm", -1e3 * left);
+        Err(MembraneError::Collapsed { what })
+    }
+
+    /// Where a state wasn't reached, the last equilibrium on the way to it, with the number of that state.
+    pub fn rescued(&mut self) -> Option<(Row, State, Fields)> {
+        let (step, state) = self.rescued.take()?;
+        self.last = state.clone();
+        let fields = self.solver.fields(&state);
+        Some((self.row(step, &state, &fields), state, fields))
     }
 
     /// All states; the row of the last.
@@ -206,30 +238,36 @@ impl CaseRun<'_> {
     }
 
     /// The loads at the beginning and at the end of a step, in the same kind of inflation.
-    fn loads(&self, step: &Step) -> (Load, Load) {
+    fn loads(&self, step: &Step) -> Result<(Load, Load), MembraneError> {
         let (begin, end) = match step.filling {
             Filling::Pressure(p) => (Inflation::Pressure(self.last.pressure), Inflation::Pressure(p)),
             Filling::Volume(v) => (Inflation::Volume(self.last.volume), Inflation::Volume(v)),
             Filling::Closed { gamma, ambient } => {
-                let gas = Gas::filling(self.last.volume, self.last.pressure, ambient, gamma);
+                let (volume, pressure) = (self.last.volume, self.last.pressure);
+                if volume <= 0.0 || pressure + ambient <= 0.0 {
+                    return Err(MembraneError::NoGas { volume, pressure: pressure + ambient });
+                }
+                let gas = Gas::filling(volume, pressure, ambient, gamma);
                 (Inflation::Gas(gas), Inflation::Gas(gas))
             }
         };
-        let fittings =
-            self.fittings.iter().zip(&step.fittings).map(|(before, now)| now.unwrap_or(*before)).collect();
-        (Load { inflation: begin, fittings: self.fittings.clone() }, Load { inflation: end, fittings })
+        let now = self.fittings.iter().zip(&step.fittings);
+        let mut fittings: Vec<f64> = now.map(|(before, now)| now.unwrap_or(*before)).collect();
+        if let (Some(ends), Some(contraction), Some(length)) =
+            (self.case.ends, step.contraction, self.case.length)
+        {
+            fittings[ends.moving] = ends.place(contraction, length, self.case.copies, &fittings);
+        }
+        Ok((Load { inflation: begin, fittings: self.fittings.clone() }, Load { inflation: end, fittings }))
     }
 
     fn row(&self, step: usize, state: &State, fields: &Fields) -> Row {
         let summary = fields.summary();
-        let along = self.case.copies.along;
-        let distance = match state.fittings[..] {
-            [] => None,
-            [only] => Some(only),
-            [first, .., last] => Some(last - first),
-        };
-        let contraction =
-            self.case.length.and_then(|length| distance.map(|distance| 0.0 - along * distance / length));
+        let ends = self.case.ends;
+        let contraction = ends.zip(self.case.length).map(|(ends, length)| {
+            // Not -0.
+            0.0 - self.case.copies.along * ends.apart(&state.fittings) / length
+        });
         let [taut, wrinkled, slack] = summary.shares;
         Row {
             state: self.states,
@@ -237,7 +275,7 @@ impl CaseRun<'_> {
             pressure: state.pressure,
             volume: state.volume,
             contraction,
-            force: state.forces.last().copied(),
+            force: ends.map(|ends| ends.sign * state.forces[ends.moving]),
             diameter: 2.0 * summary.radius,
             taut,
             wrinkled,

@@ -2,6 +2,7 @@
 
 use bulge_muscles::settings::{Keys, Settings};
 use bulge_muscles::{Construction, Dimension, FileError, Length, Muscle};
+use std::io::Read as _;
 use std::path::Path;
 
 use super::read::{copies, in_range, name, needed, number, positive};
@@ -25,7 +26,7 @@ const KEYS: Keys = &[
     ("grading", "grading = 3.0"),
 ];
 
-const SCALE: Keys = &[
+pub(super) const SCALE: Keys = &[
     ("unit", "unit = \"mm\""),
     ("around", "around = 1"),
     ("along", "along = 1"),
@@ -99,13 +100,7 @@ fn from_file(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Source, F
             "name a Gmsh (.msh) or VTK (.vtu) mesh beside the case",
         )
     };
-    let size = std::fs::metadata(&path)
-        .map_err(|error| refused(format!("cannot read {}: {error}", path.display())))?;
-    if size.len() > MOST_BYTES {
-        return Err(refused(format!("{} is larger than 2 GiB", path.display())));
-    }
-    let bytes =
-        std::fs::read(&path).map_err(|error| refused(format!("cannot read {}: {error}", path.display())))?;
+    let bytes = bytes(&path).map_err(refused)?;
     let mut mesh = Mesh::from_bytes(&bytes, &path.display().to_string())
         .map_err(|error| FileError::whole(&error.file, error.what.clone(), error.instead.clone()))?;
     let scale = settings.table("scale", "`[scale]`", SCALE)?.ok_or_else(|| settings.missing("scale"))?;
@@ -131,6 +126,29 @@ fn from_file(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Source, F
         supports: Vec::new(),
         fittings: Vec::new(),
     })
+}
+
+/// What is in a mesh file. Only a file has an end: a device may have none, and a pipe keeps us waiting.
+fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+    let unreadable = |error: std::io::Error| format!("cannot read {}: {error}", path.display());
+    let too_large = || format!("{} is larger than 2 GiB", path.display());
+    let known = std::fs::metadata(path).map_err(unreadable)?;
+    if !known.is_file() {
+        return Err(format!("{} is no file", path.display()));
+    }
+    if known.len() > MOST_BYTES {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::new();
+    let size = usize::try_from(known.len()).map_err(|_| too_large())?;
+    bytes.try_reserve_exact(size).map_err(|_| format!("no memory for the bytes of {}", path.display()))?;
+    let file = std::fs::File::open(path).map_err(unreadable)?;
+    // It may have grown.
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(too_large());
+    }
+    Ok(bytes)
 }
 
 /// The keys that a kind of mesh has.

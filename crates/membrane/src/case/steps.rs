@@ -5,7 +5,7 @@ use bulge_muscles::{Dimension, FileError};
 
 use super::read::{in_range, positive};
 use super::source::Source;
-use super::{Filling, Step};
+use super::{Ends, Filling, Step};
 use crate::structure::Fitting;
 
 const KEYS: Keys = &[
@@ -14,7 +14,7 @@ const KEYS: Keys = &[
     ("gas", "gas = \"isothermal\""),
     ("ambient", "ambient = \"1.013 bar\""),
     ("places", "places = { top = \"-5 mm\" }"),
-    ("forces", "forces = { top = \"-5 N\" }"),
+    ("forces", "forces = { top = \"-1 N\" }"),
     ("contraction", "contraction = \"10 %\""),
     ("states", "states = 4"),
     ("restart", "restart = true"),
@@ -30,24 +30,66 @@ pub(super) fn read(
     settings: &Settings<'_>,
     source: &Source,
     fittings: &[(String, Fitting)],
+    ends: Option<Ends>,
 ) -> Result<Vec<Step>, FileError> {
     let tables = settings.tables("step", "a `[[step]]`", KEYS)?.unwrap_or_default();
     if tables.is_empty() {
         return Err(settings.missing("step"));
     }
     let mut steps: Vec<Step> = Vec::new();
+    let mut places = vec![0.0; fittings.len()];
     for table in &tables {
         table.check_keys()?;
-        let step = step(table, source, fittings, steps.last())?;
+        let step = step(table, source, fittings, ends, steps.last())?;
+        if step.is_restart {
+            places.fill(0.0);
+        }
+        for (place, now) in places.iter_mut().zip(&step.fittings) {
+            *place = now.unwrap_or(*place);
+        }
+        if let Some(ends) = ends {
+            are_apart(table, ends, fittings, &places)?;
+            if let (Some(contraction), Some(length)) = (step.contraction, source.length) {
+                places[ends.moving] = ends.place(contraction, length, source.copies, &places);
+            }
+        }
         steps.push(step);
     }
     Ok(steps)
+}
+
+/// The ends can't pass each other.
+fn are_apart(
+    table: &Settings<'_>,
+    ends: Ends,
+    fittings: &[(String, Fitting)],
+    places: &[f64],
+) -> Result<(), FileError> {
+    let is_placed = |fitting: usize| fittings[fitting].1 == Fitting::Placed;
+    if !is_placed(ends.moving) || ends.other.is_some_and(|other| !is_placed(other)) {
+        return Ok(());
+    }
+    let left = ends.distance + ends.apart(places);
+    if left > 0.0 || table.get("places").is_none() {
+        return Ok(());
+    }
+    let what = format!(
+        "the ends would stand {:.6} mm past each other: in the mesh they are {:.6} mm apart",
+        -1e3 * left,
+        1e3 * ends.distance
+    );
+    Err(table.error(
+        table.value_span("places"),
+        what,
+        "write how far each goes from its place in the mesh along z",
+    ))
 }
 
 fn step(
     table: &Settings<'_>,
     source: &Source,
     fittings: &[(String, Fitting)],
+    ends: Option<Ends>,
     before: Option<&Step>,
 ) -> Result<Step, FileError> {
     let states = match table.count::<u32>("states")? {
@@ -61,7 +103,9 @@ fn step(
     let is_restart = table.flag("restart")?.unwrap_or(false);
     // After a restart there is no gas in it, and nothing is as before.
     let filling = filling(table, before.filter(|_| !is_restart))?;
-    Ok(Step { is_restart, filling, fittings: ends(table, source, fittings)?, states })
+    let held = held(table, fittings)?;
+    let contraction = contraction(table, source, fittings, ends, &held)?;
+    Ok(Step { is_restart, filling, fittings: held, contraction, states })
 }
 
 fn filling(table: &Settings<'_>, before: Option<&Step>) -> Result<Filling, FileError> {
@@ -114,12 +158,8 @@ fn filling(table: &Settings<'_>, before: Option<&Step>) -> Result<Filling, FileE
 }
 
 /// What each fitting does.
-fn ends(
-    table: &Settings<'_>,
-    source: &Source,
-    fittings: &[(String, Fitting)],
-) -> Result<Vec<Option<f64>>, FileError> {
-    let mut ends = vec![None; fittings.len()];
+fn held(table: &Settings<'_>, fittings: &[(String, Fitting)]) -> Result<Vec<Option<f64>>, FileError> {
+    let mut held = vec![None; fittings.len()];
     for (key, kind, dimension) in
         [("places", Fitting::Placed, Dimension::LENGTH), ("forces", Fitting::Loaded, Dimension::FORCE)]
     {
@@ -148,40 +188,50 @@ fn ends(
                 };
                 return Err(table.error(value.span(), what, instead));
             }
-            ends[fitting] = Some(table.quantity_of(key, value, dimension)?);
+            held[fitting] = Some(table.quantity_of(key, value, dimension)?);
         }
     }
-    if let Some(contraction) = table.quantity("contraction", Dimension::NONE)? {
-        let Some(length) = source.length else {
-            let what = "a contraction needs the length between the fittings";
-            return Err(table.error(
-                table.key_span("contraction"),
-                what,
-                "add `length` to `[scale]`, or write `places`",
-            ));
-        };
-        let top = fittings.iter().rposition(|(_, kind)| *kind == Fitting::Placed);
-        let Some(top) = top else {
-            let what = "a contraction needs a fitting whose place is prescribed";
-            return Err(table.error(
-                table.key_span("contraction"),
-                what,
-                "add a support of the kind `fitting`",
-            ));
-        };
-        if !(-1.0..1.0).contains(&contraction) {
-            let what = "the contraction is not possible: it must be above -100 % and below 100 %";
-            return Err(table.error(
-                table.value_span("contraction"),
-                what,
-                "write such as `contraction = \"20 %\"`",
-            ));
-        }
-        if ends[top].is_some() {
-            let what = "a step can't prescribe the place of a fitting and a contraction";
-            return Err(table.error(table.key_span("contraction"), what, "keep one of them"));
-        }
-        ends[top] = Some(-contraction * length / source.copies.along);
+    Ok(held)
+}
+
+/// How much nearer the ends come to each other, over the length.
+fn contraction(
+    table: &Settings<'_>,
+    source: &Source,
+    fittings: &[(String, Fitting)],
+    ends: Option<Ends>,
+    held: &[Option<f64>],
+) -> Result<Option<f64>, FileError> {
+    let Some(contraction) = table.quantity("contraction", Dimension::NONE)? else { return Ok(None) };
+    let refused = |what: &str, instead: &str| Err(table.error(table.key_span("contraction"), what, instead));
+    if source.length.is_none() {
+        return refused(
+            "a contraction needs the length between the fittings",
+            "add `length` to `[scale]`, or write `places`",
+        );
     }
-    Ok(ends)
+    let Some(ends) = ends else {
+        return refused(
+            "a contraction needs a fitting whose place is prescribed",
+            "add a support of the kind `fitting`",
+        );
+    };
+    if [Some(ends.moving), ends.other].into_iter().flatten().any(|end| fittings[end].1 == Fitting::Loaded) {
+        return refused(
+            "a contraction can't be prescribed where the force on an end is",
+            "write `forces`, or `motion = \"placed\"` at the support of that end",
+        );
+    }
+    if held[ends.moving].is_some() {
+        return refused(
+            "a step can't prescribe the place of a fitting and a contraction",
+            "keep one of them",
+        );
+    }
+    if !(-1.0..1.0).contains(&contraction) {
+        let what = "the contraction is not possible: it must be above -100 % and below 100 %";
+        let span = table.value_span("contraction");
+        return Err(table.error(span, what, "write such as `contraction = \"20 %\"`"));
+    }
+    Ok(Some(contraction))
 }

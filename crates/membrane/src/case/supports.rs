@@ -6,7 +6,9 @@ use bulge_muscles::{Dimension, FileError};
 use super::parts::group;
 use super::read::{direction, name};
 use super::source::Source;
-use crate::structure::{Fitting, Support};
+use crate::structure::{Fitting, Part, Support};
+use crate::surface::sector;
+use core::f64::consts::TAU;
 
 const KEYS: Keys = &[
     ("group", "group = \"last\""),
@@ -47,6 +49,8 @@ pub(super) struct Supports {
 
 pub(super) fn read(settings: &Settings<'_>, source: &Source) -> Result<Supports, FileError> {
     let mut all = Supports { held: source.supports.clone(), fittings: source.fittings.clone() };
+    // The motions that tables state, by the fittings' names.
+    let mut stated = Vec::new();
     for table in settings.tables("support", "a `[[support]]`", KEYS)?.unwrap_or_default() {
         table.check_keys()?;
         let group = group(&table, "group", source)?;
@@ -64,6 +68,13 @@ pub(super) fn read(settings: &Settings<'_>, source: &Source) -> Result<Supports,
             }
         }
         let support = support(&table, kind, source, &mut all.fittings)?;
+        if let Support::Fitting { fitting } = support {
+            let (name, known) = &mut all.fittings[fitting];
+            set_motion(&table, name, known, &mut stated)?;
+        }
+        if let Support::Cyclic { partner, angle } = &support {
+            check_turn(&table, group, partner, *angle)?;
+        }
         all.held.push((group.to_owned(), support));
     }
     Ok(all)
@@ -96,14 +107,10 @@ fn support(
         }
         Kind::Fitting => {
             let name = name(table, "fitting")?;
-            let motion = table.word("motion", MOTIONS)?;
             let fitting = fittings.iter().position(|(known, _)| known == name).unwrap_or_else(|| {
                 fittings.push((name.to_owned(), Fitting::Placed));
                 fittings.len() - 1
             });
-            if let Some(motion) = motion {
-                fittings[fitting].1 = motion;
-            }
             Support::Fitting { fitting }
         }
         Kind::Cyclic => {
@@ -112,4 +119,70 @@ fn support(
             Support::Cyclic { partner, angle }
         }
     })
+}
+
+/// Gives a fitting the motion that a table states; two tables must say the same.
+fn set_motion(
+    table: &Settings<'_>,
+    name: &str,
+    known: &mut Fitting,
+    stated: &mut Vec<(String, Fitting)>,
+) -> Result<(), FileError> {
+    let Some(motion) = table.word("motion", MOTIONS)? else { return Ok(()) };
+    match stated.iter().find(|(other, _)| other == name) {
+        Some((_, before)) if *before != motion => {
+            let what = format!("the fitting `{name}` has another motion in a `[[support]]` before");
+            return Err(table.error(
+                table.value_span("motion"),
+                what,
+                "state it once, or the same each time",
+            ));
+        }
+        Some(_) => (),
+        None => stated.push((name.to_owned(), motion)),
+    }
+    *known = motion;
+    Ok(())
+}
+
+/// That a cyclic edge has another one as partner.
+fn check_turn(table: &Settings<'_>, group: &str, partner: &str, angle: f64) -> Result<(), FileError> {
+    if group == partner {
+        let what = format!("`{group}` is its own partner");
+        let instead = "name the other edge of the cyclic sector";
+        return Err(table.error(table.value_span("partner"), what, instead));
+    }
+    let turn = angle.rem_euclid(TAU);
+    if turn.min(TAU - turn) > 1e-6 {
+        return Ok(());
+    }
+    let what = "`angle` is no turn: the far edge of a cyclic sector lies at an angle to its partner";
+    Err(table.error(table.value_span("angle"), what, "write 360 degrees over the number of sectors"))
+}
+
+/// That as many sectors as the case says go round the axis, where the supports fix their angle.
+pub(super) fn check_sectors(
+    settings: &Settings<'_>,
+    source: &Source,
+    parts: &[(String, Part)],
+    supports: &Supports,
+) -> Result<(), FileError> {
+    let Some(scale) = settings.table("scale", "`[scale]`", super::source::SCALE)? else { return Ok(()) };
+    // Other faults of the mesh are found when the structure is built.
+    let Ok(Some(angle)) = sector(&source.mesh, parts, &supports.held) else { return Ok(()) };
+    let (around, fitting) = (source.copies.around, TAU / angle);
+    if (fitting - around).abs() < 1e-2 {
+        return Ok(());
+    }
+    let degrees = (angle.to_degrees() * 1e6).round() / 1e6;
+    let what = format!(
+        "`around` is {around}, but the mesh is a sector of {degrees} degrees, of which {around} make {}",
+        (around * angle.to_degrees() * 1e6).round() / 1e6
+    );
+    let instead = if (fitting - fitting.round()).abs() < 1e-2 {
+        format!("write `around = {}`", fitting.round())
+    } else {
+        "mesh a sector of 360 degrees over a whole number".to_owned()
+    };
+    Err(scale.error(scale.value_span("around"), what, instead))
 }

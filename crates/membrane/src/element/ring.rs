@@ -88,7 +88,7 @@ struct Sum {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Carried {
     /// Forces per unit present length along the meridian and around, N/m, and stretches.
-    Sheet { force: [f64; 2], stretch: [f64; 2], tension: Tension },
+    Sheet { force: [f64; 2], stretch: [f64; 2], tension: Tension, folded: f64 },
     /// Tension of each thread, N, its stretch, and its angle to the meridian, rad.
     Threads { tension: f64, stretch: f64, angle: f64 },
 }
@@ -282,7 +282,7 @@ impl<const N: usize> Ring<N> {
                     stretch[1] += share * l2;
                     tension = tension.min(at.tension);
                 }
-                Carried::Sheet { force, stretch, tension }
+                Carried::Sheet { force, stretch, tension, folded: sheet.folded(stretch, tension) }
             }
             RingLayer::Threads { thread, angle, .. } => {
                 let stiffness = match thread {

@@ -40,6 +40,7 @@ pub(crate) struct Carried {
     pub(crate) stretch: [f64; 2],
     pub(crate) direction: Vector,
     pub(crate) tension: Tension,
+    pub(crate) folded: f64,
 }
 
 impl<const N: usize> Triangle<N> {
@@ -159,8 +160,13 @@ impl<const N: usize> Triangle<N> {
     pub(crate) fn carried(&self, x: &[Vector; N]) -> Option<Carried> {
         let sheet = self.sheet.as_ref()?;
         let share = 1.0 / self.points.len() as f64;
-        let mut sum =
-            Carried { force: [0.0; 2], stretch: [0.0; 2], direction: [0.0; 3], tension: Tension::Taut };
+        let mut sum = Carried {
+            force: [0.0; 2],
+            stretch: [0.0; 2],
+            direction: [0.0; 3],
+            tension: Tension::Taut,
+            folded: 0.0,
+        };
         for point in &self.points {
             let f = Self::gradient(point, x);
             let plane = Self::plane(sheet, &f);
@@ -178,6 +184,7 @@ impl<const N: usize> Triangle<N> {
         if size > 0.0 {
             sum.direction = scaled(sum.direction, 1.0 / size);
         }
+        sum.folded = sheet.folded(sum.stretch, sum.tension);
         Some(sum)
     }
 
@@ -216,7 +223,7 @@ fn principal(f: &[Vector; 2], plane: &Plane) -> Carried {
     let direction = add(scaled(f[0], u[0]), scaled(f[1], u[1]));
     let size = norm(direction);
     let direction = if size > 0.0 { scaled(direction, 1.0 / size) } else { [0.0; 3] };
-    Carried { force, stretch, direction, tension: plane.tension }
+    Carried { force, stretch, direction, tension: plane.tension, folded: 0.0 }
 }
 
 /// Adds weight a.(u x v) with a = (x, y, 0), u = x_xi, v = x_eta, its gradient, and - p times its second derivatives.

@@ -120,7 +120,7 @@ impl Law {
         }
     }
 
-    /// Squared stretch across an uncrossed strip that is pulled to the squared stretch c: where the stress across is zero. With its derivative.
+    /// Squared stretch across an uncrossed strip that is pulled to the squared stretch c: where the stress across is zero.
     #[inline]
     pub(crate) fn natural_width(&self, c: f64) -> f64 {
         match *self {

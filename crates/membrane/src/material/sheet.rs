@@ -73,6 +73,18 @@ impl Sheet {
         }
     }
 
+    /// The part of the width that is folded away at these stretches: none where it is taut, though pulled cloth is narrower than it was cut; where
+    /// it is wrinkled, what is missing to the width that it would have by itself.
+    pub(crate) fn folded(&self, stretch: [f64; 2], tension: Tension) -> f64 {
+        let [narrow, wide] = [stretch[0].min(stretch[1]), stretch[0].max(stretch[1])];
+        let width = match (tension, &self.cloth) {
+            (Tension::Taut, _) => return 0.0,
+            (Tension::Wrinkled, Cloth::Isotropic(law)) if wide > 1.0 => law.natural_width(wide * wide).sqrt(),
+            _ => 1.0,
+        };
+        (1.0 - narrow / width).max(0.0)
+    }
+
     #[inline]
     fn principal_of(&self, law: &Law, c1: f64, c2: f64) -> Principal {
         if !self.wrinkles {

@@ -5,8 +5,8 @@ use super::map::{Map, Vector, dot, minus};
 use crate::VtkError;
 use std::collections::{HashMap, HashSet};
 
-/// Most points of a file: VTK counts them with 32 bits in places.
-const MOST_POINTS: u32 = i32::MAX as u32;
+/// Most points of a file: some 3 GB, which is about what a picture is worth.
+const MOST_POINTS: u32 = 20_000_000;
 
 /// How a part is copied: mirrored at the plane of its lobe, turned, and mirrored at its middle.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -15,14 +15,22 @@ pub struct MembraneSeries {
 }
 
 impl MembraneSeries {
-    /// An empty series in the folder `dir`, which is created if needed; nothing is written before the first state.
+    /// An empty series in the folder `dir`, which is created if needed. The files of an earlier series of this name are removed: its states
+    /// would pass for those of this one. Nothing is written before the first state.
     ///
     /// # Errors
-    /// The stem is no file name, or the folder can't be created.
+    /// The stem is no file name, the folder can't be created, or a file of an earlier series can't be removed.
     pub fn new(dir: impl AsRef<Path>, stem: &str) -> Result<Self, VtkError> {
         check_stem(stem)?;
         create(dir.as_ref())?;
-        Ok(Self { dir: dir.as_ref().to_path_buf(), stem: stem.to_owned(), times: Vec::new() })
+        let series = Self { dir: dir.as_ref().to_path_buf(), stem: stem.to_owned(), times: Vec::new() };
+        remove(&series.path())?;
+        // Numbered without a gap.
+        let mut member = 0;
+        while remove(&series.dir.join(member_name(stem, member, "vtu")))? {
+            member += 1;
+        }
+        Ok(series)
     }
 
     /// Writes one more state, then the `.pvd` with the time of each; the path of the state's file. After an error the series is as before.
@@ -48,5 +56,14 @@ impl MembraneSeries {
     #[must_use]
     pub fn states(&self) -> usize {
         self.times.len()
+    }
+}
+
+/// Whether there was such a file.
+fn remove(path: &Path) -> Result<bool, VtkError> {
+    match std::fs::remove_file(path) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(false),
+        Err(source) => Err(VtkError::File { path: path.to_path_buf(), action: "remove the earlier", source }),
     }
 }
