@@ -89,7 +89,11 @@ def fit(program: str, guess: tuple[float, float]) -> None:
         length = 1.0
         while length > 0.05:
             trial = (at[0] + length * step[0], at[1] + length * step[1])
-            after = residuals(trial)
+            try:
+                after = residuals(trial)
+            except subprocess.CalledProcessError:
+                # A cloth that doesn't reach round its fibres.
+                after = [math.inf]
             if rms(after) < rms(now):
                 break
             length *= 0.5

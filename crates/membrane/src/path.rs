@@ -64,6 +64,7 @@ impl Solver {
         let (mut done, mut step) = (0.0, 1.0_f64);
         let mut last = from.clone();
         let mut older: Option<(f64, State)> = None;
+        let mut said = None;
         // From a mesh at rest it may be a long way; from an equilibrium it isn't.
         let patience = self.tolerance.iterations;
         if from.iterations > 0 {
@@ -95,10 +96,14 @@ impl Solver {
                 }
                 Err(error) => {
                     step *= 0.5;
-                    if step < smallest(before, &last, load) || self.effort.factorisations >= self.deadline {
+                    let is_late = self.effort.factorisations >= self.deadline;
+                    // An attempt that was cut off says nothing.
+                    let error = if is_late { said.unwrap_or(error) } else { error };
+                    if is_late || step < smallest(before, &last, load) {
                         self.tolerance.iterations = patience.min(PATIENCE);
                         return self.beyond(before, last, load, done, seen).unwrap_or(Err(error));
                     }
+                    said = Some(error);
                 }
             }
         }

@@ -5,8 +5,8 @@ use super::map::{Map, Vector, dot, minus};
 use crate::VtkError;
 use std::collections::{HashMap, HashSet};
 
-/// Most points of a file: some 3 GB, which is about what a picture is worth.
-const MOST_POINTS: u32 = 20_000_000;
+/// Most points of a file, which then has some 500 MB.
+const MOST_POINTS: u32 = 5_000_000;
 
 /// How a part is copied: mirrored at the plane of its lobe, turned, and mirrored at its middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
