@@ -11,7 +11,7 @@ use crate::pair::{Factors, Pair, Weights};
 use crate::spline::{Double, Number};
 
 /// Points whose places are found before any is looked up, so that the steps of several points overlap. An even number.
-const BLOCK: usize = 32;
+const BLOCK: usize = 8;
 /// Most pairs of outputs.
 const PAIRS: usize = crate::format::MOST_OUTPUTS / 2;
 
@@ -199,7 +199,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         }
         let twice = |i: usize| [Pair::both(edge.0[i]), Pair::both(edge_by.0[i])];
         let places = self.both_places(&start, twice(0), twice(1));
-        if !self.is_on(places.u.0[0]) {
+        if !places.is_inside[0] {
             return None;
         }
         self.samples_at::<N>(&places, 0, i)
@@ -212,7 +212,9 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let below = (s * plane.factor + pole).reciprocal();
         let part = scale * below;
         let u = part * s;
+        let is_inside = u.0.map(|u| u <= 1.0 + 4.0 * f64::EPSILON && u >= self.least_u);
         let (row, t) = plane.across.at(u);
+        let u = u.at_most(1.0);
         let (column, w) = plane.along.at(start.q);
         Places {
             row,
@@ -220,18 +222,12 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
             t,
             w,
             u,
-            over: if self.least_u > 0.0 { u.at_most(1.0).reciprocal() } else { Pair::both(1.0) },
+            over: if self.least_u > 0.0 { u.reciprocal() } else { Pair::both(1.0) },
             own_u: part * (pole * below) * s_by,
-            shift: (s * below) * (scale_by - part * pole_by),
-            own_v: start.own_v,
-            is_inside: [false; 2],
+            shift: (s * below) * (scale_by - part * pole_by) * start.own_v,
+            own_v: plane.along_by * start.own_v,
+            is_inside,
         }
-    }
-
-    /// Whether a first coordinate is on the table.
-    #[inline]
-    fn is_on(&self, u: f64) -> bool {
-        u <= 1.0 + 4.0 * f64::EPSILON && u >= self.least_u
     }
 
     /// Values and derivatives of a pair of outputs at one of two points.
@@ -259,16 +255,16 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let g_v = across.mean([high[0] - low[0], high[1] - low[1]]);
         // The factors, and the chain rule.
         let (own_u, own_v) = (only(&place.own_u), only(&place.own_v));
-        let [factor, fall] = plane.factors[i].at(only(&place.u).at_most(1.0), only(&place.over));
+        let [factor, fall] = plane.factors[i].at(only(&place.u), only(&place.over));
         let by_u = g_u * (factor * plane.across_by) - g * fall;
-        let by_v = g_v * (factor * (plane.along_by * own_v)) + by_u * (only(&place.shift) * own_v);
+        let by_v = g_v * (factor * own_v) + by_u * only(&place.shift);
         Some([g * factor, by_u * own_u, by_v])
     }
 
     /// [`Lookup::at_each`] of splines where A is 2.
     pub(crate) fn each_in_plane<N: Number>(&self, points: &[[f64; A]], found: &mut [Option<[Sample<A>; O]>]) {
+        let mut places = [Places::default(); BLOCK / 2];
         for (points, found) in points.chunks(BLOCK).zip(found.chunks_mut(BLOCK)) {
-            let mut places = [Places::default(); BLOCK / 2];
             for (two, place) in points.chunks(2).zip(&mut places) {
                 let last = two[two.len() - 1];
                 self.two_places(Pair([two[0][0], last[0]]), Pair([two[0][1], last[1]]), place);
@@ -302,7 +298,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         to.is_inside = array::from_fn(|k| {
             let is_along = y.0[k] >= plane.low[1].0[0] && y.0[k] <= plane.high[1];
             let is_across = start.distance.0[k] >= self.least && x.0[k] <= plane.high[0];
-            is_along && is_across && self.is_on(to.u.0[k])
+            is_along && is_across && to.is_inside[k]
         });
     }
 
