@@ -178,6 +178,19 @@ mod tests {
         [c1 * cos * cos + c2 * sin * sin, c1 * sin * sin + c2 * cos * cos, (c1 - c2) * sin * cos]
     }
 
+    /// Half of the natural width is half folded away: 1/sqrt(l) of rubber that is pulled to l.
+    #[test]
+    fn folds_are_what_is_missing_to_the_natural_width() {
+        let rubber = isotropic(Law::NeoHooke { shear: 1.3 }, true, 0.0);
+        let folded = |l: f64, across: f64| {
+            rubber.folded([l, across], rubber.principal(l * l, across * across).tension)
+        };
+        assert!((folded(1.44, 0.5 / 1.2) - 0.5).abs() < 1e-12);
+        assert!((folded(1.44, 0.99 / 1.2) - 0.01).abs() < 1e-12);
+        assert!(folded(1.44, 1.01 / 1.2) == 0.0 && folded(1.44, 1.44) == 0.0);
+        assert!((folded(0.9, 0.7) - 0.3).abs() < 1e-12);
+    }
+
     /// Stress and tangent against differences of fourth order in each component of C. With E = (C - 1)/2 over (11, 22, 2 x 12), a step of
     /// C11 is half as large a step of E11, one of C12 as large a one of 2 E12.
     fn check(sheet: &Sheet, c: [f64; 3], what: &str) {
