@@ -19,8 +19,9 @@ struct Step {
 struct Guard {
     /// Multiple of the unit matrix that is added to the stiffness.
     shift: f64,
-    /// Whether the last step was made with the stiffness under a dead pressure.
+    /// Whether the last step was made with the stiffness under a dead pressure, and whether this one begins with it.
     was_dead: bool,
+    is_dead: bool,
 }
 
 /// What is known where the iteration stands.
@@ -176,10 +177,15 @@ impl Solver {
                 Inflation::Volume(_) => (*pressure, Closure::Pressure),
             };
             *pressure = p;
-            self.work(y, p);
+            // Far from equilibrium most attempts with the whole stiffness are in vain: only every third is made after one that was.
+            guard.is_dead = guard.was_dead && last > 0.03 && !(self.effort.iterations + 1).is_multiple_of(3);
+            self.work(y, if guard.is_dead { 0.0 } else { p });
             let now = self.now(load, y, p);
             last = now.residual;
             if now.ratio <= 1.0 {
+                if guard.is_dead {
+                    self.work(y, p);
+                }
                 let inertia = self.factorise(0.0);
                 if let Inertia::Negative(negative) = inertia {
                     let (_, negative) = self.step(&now.gradient, closure, negative);
@@ -219,11 +225,7 @@ impl Solver {
         // What rounding leaves of the potential.
         let floor = 1e-13 * (self.totals.energy.abs() + now.potential.abs());
         let mut trial = y.to_vec();
-        // Far from equilibrium most attempts with the whole stiffness are in vain: only every third is made after one that was.
-        let mut is_dead = guard.was_dead && now.residual > 0.03 && !self.effort.iterations.is_multiple_of(3);
-        if is_dead {
-            self.work(y, 0.0);
-        }
+        let mut is_dead = guard.is_dead;
         for _ in 0..SHIFTS {
             let applied = if is_dead { guard.shift } else { 0.0 };
             let (step, negative) = match self.factorise(applied) {
