@@ -78,6 +78,7 @@ pub const CHECKS: &[fn() -> Check] = &[
     membrane::cloth::sectors,
     membrane::cloth::airbag,
     membrane::cloth::wrinkled_panel,
+    membrane::cloth::wrinkled_panel_order,
     tables::lookups,
     tables::gradients,
     meridian::first_integral,
