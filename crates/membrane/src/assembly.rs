@@ -234,7 +234,8 @@ fn with_room<T>(count: usize) -> Result<Vec<T>, TryReserveError> {
     Ok(all)
 }
 
-fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, TryReserveError> {
+/// A vector of one value, or an error where memory is short.
+pub(crate) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, TryReserveError> {
     let mut all = with_room(count)?;
     all.resize(count, value);
     Ok(all)

@@ -3,6 +3,7 @@
 //! By faer: the order of elimination and the places of L are found once for a structure, numbers for each matrix. D counts the negative
 //! eigenvalues (Sylvester's law of inertia): none in a stable equilibrium.
 
+use crate::assembly::filled;
 use crate::error::MembraneError;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::{LdltParams, LdltRegularization};
@@ -118,10 +119,7 @@ impl Factor {
 
 /// Room for numbers of a matrix of so many unknowns.
 pub(crate) fn zeros(count: usize, unknowns: usize) -> Result<Vec<f64>, MembraneError> {
-    let mut values = Vec::new();
-    values.try_reserve_exact(count).map_err(|_| MembraneError::Memory { unknowns })?;
-    values.resize(count, 0.0);
-    Ok(values)
+    filled(count, 0.0).map_err(|_| MembraneError::Memory { unknowns })
 }
 
 #[cfg(test)]
