@@ -68,6 +68,8 @@ pub const CHECKS: &[fn() -> Check] = &[
     membrane::discs::hencky,
     membrane::discs::rubber_discs,
     membrane::discs::mylar,
+    membrane::discs::mylar_of_triangles,
+    membrane::discs::order_of_mylar,
     membrane::muscles::pleated,
     membrane::muscles::braided,
     membrane::muscles::braided_with_bladder,
