@@ -7,8 +7,8 @@ use crate::state::State;
 
 /// The smallest step, over the whole path; of a pressure that rises far, over the pressure reached.
 const SMALLEST: f64 = 1.0 / 1024.0;
-/// Factorisations for one path, over the iterations allowed for one equilibrium.
-const BUDGET: usize = 20;
+/// Factorisations for one path, or as many as twice the iterations allowed for one equilibrium.
+const BUDGET: usize = 6000;
 /// Volumes that are tried to see whether the pressure falls, and the first of these steps over the volume.
 const VOLUMES: usize = 60;
 const FIRST_VOLUME: f64 = 0.01;
@@ -34,11 +34,12 @@ impl Solver {
         mut seen: impl FnMut(f64, &State),
     ) -> Result<State, MembraneError> {
         let patience = self.tolerance.iterations;
-        self.deadline = self.effort.factorisations + BUDGET * patience;
+        let budget = BUDGET.max(2 * patience);
+        self.deadline = self.effort.factorisations + budget;
         let found = match self.steps(before, from, load, &mut seen) {
             // A flat or slack mesh has no volume to begin with: gas comes first.
             Err(_) if matches!(load.inflation, Inflation::Volume(_)) && from.iterations == 0 => {
-                self.deadline = self.effort.factorisations + BUDGET * patience;
+                self.deadline = self.effort.factorisations + budget;
                 self.inflated(before, from, load).and_then(|first| {
                     let begun = Load {
                         inflation: Inflation::Volume(first.volume),

@@ -10,13 +10,14 @@ pub struct Tolerance {
     pub residual: f64,
     /// Stretch of an inextensible thread.
     pub stretch: f64,
-    /// Most iterations for one equilibrium.
+    /// Most iterations for one equilibrium. Some tens do for most; slack cloth that is blown up from a flat mesh folds and unfolds on its way, the more
+    /// often the finer the mesh: a square airbag of 28800 triangles takes 350.
     pub iterations: usize,
 }
 
 impl Default for Tolerance {
     fn default() -> Self {
-        Self { residual: 1e-10, stretch: 1e-11, iterations: 300 }
+        Self { residual: 1e-10, stretch: 1e-11, iterations: 2000 }
     }
 }
 

@@ -526,7 +526,7 @@ fn iterations_out_of_range() {
     for count in ["0", "100001", "1000000000"] {
         refused(
             read(count),
-            &[&format!("`iterations` is {count}, but must be from 1 to 100000"), "iterations = 300"],
+            &[&format!("`iterations` is {count}, but must be from 1 to 100000"), "iterations = 2000"],
         );
     }
 }

@@ -75,5 +75,5 @@ states = 4
 
 [solver]
 residual = 1e-10                # of the forces at a node
-iterations = 300                # for one state
+iterations = 2000               # for one state
 ";

@@ -27,7 +27,7 @@ const TOP: Keys = &[
 /// Most iterations for one equilibrium.
 const MOST_ITERATIONS: u32 = 100_000;
 
-const SOLVER: Keys = &[("residual", "residual = 1e-10"), ("iterations", "iterations = 300")];
+const SOLVER: Keys = &[("residual", "residual = 1e-10"), ("iterations", "iterations = 2000")];
 
 impl Case {
     /// Reads a case file; [`super::CASE_EXAMPLE`] has every key. The mesh and the muscle that it names stand beside it.
@@ -108,7 +108,7 @@ fn tolerance(settings: &Settings<'_>) -> Result<Tolerance, FileError> {
         }
         Some(iterations) => {
             let what = format!("`iterations` is {iterations}, but must be from 1 to {MOST_ITERATIONS}");
-            let instead = "write such as `iterations = 300`";
+            let instead = "write such as `iterations = 2000`";
             return Err(table.error(table.value_span("iterations"), what, instead));
         }
     }
