@@ -16,6 +16,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("effects", &["numerics", "muscles", "fibre"]),
     ("model", &["numerics", "muscles", "fibre", "effects", "measurements"]),
     ("inference", &["numerics", "muscles", "effects", "measurements", "model"]),
+    ("design", &["numerics", "muscles", "fibre", "effects", "model"]),
     ("sweep", &["numerics", "muscles", "fibre", "effects", "model", "table"]),
     ("vtk", &["muscles", "fibre", "membrane"]),
     (
@@ -30,6 +31,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "effects",
             "model",
             "inference",
+            "design",
             "sweep",
         ],
     ),

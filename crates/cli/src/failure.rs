@@ -1,5 +1,6 @@
 //! What went wrong, as one message and an exit status.
 
+use bulge_design::size::SizeError;
 use bulge_effects::CatalogueError;
 use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
@@ -50,6 +51,8 @@ pub(crate) enum Failure {
     #[error("{0}")]
     NotConverged(String),
     #[error("{0}")]
+    Size(Box<SizeError>),
+    #[error("{0}")]
     Sweep(Box<SweepError>),
     #[error("{0}")]
     Tabulate(Box<TabulateError>),
@@ -90,6 +93,7 @@ impl Failure {
             },
             Self::Model(error) => model_status(error),
             Self::Extended(_) | Self::Outside(_) => 3,
+            Self::Size(error) if matches!(**error, SizeError::Muscle { .. }) => 3,
             Self::Tabulate(error) => match error.as_ref() {
                 TabulateError::Build(BuildError::NoValue(_)) => 3,
                 _ => 1,
@@ -141,6 +145,7 @@ boxed!(
     Measurement(MeasurementError),
     Inference(InferenceError),
     Model(ModelError),
+    Size(SizeError),
     Sweep(SweepError),
     Tabulate(TabulateError),
     Export(ExportError)

@@ -8,6 +8,7 @@
 //! - [`effects`] what acts; the catalogue of physical effects and force laws,
 //! - [`model`] what it predicts along a measured history,
 //! - [`inference`] whether that matches; fits and the ladder of errors,
+//! - [`design`] puts them to use; sizing,
 //! - [`sweep`] runs families of muscles over their parameters, and makes certified tables of them,
 //! - [`table`] looks such tables up, without std,
 //! - [`vtk`] what it looks like in ParaView,
@@ -27,6 +28,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub use bulge_design as design;
 pub use bulge_effects as effects;
 pub use bulge_fibre as fibre;
 pub use bulge_inference as inference;

@@ -17,6 +17,7 @@ mod next;
 mod plan;
 mod shape;
 mod simulate;
+mod size;
 mod sketch;
 mod sweep;
 mod table;
@@ -58,6 +59,8 @@ enum Command {
     Table(table::TableCommand),
     /// Model against measurement: where it fails, and how the error falls as effects are added
     Compare(compare::CompareCommand),
+    /// From a load over a stroke to muscles, lengths and pressures
+    Size(Box<size::SizeCommand>),
     /// Which physical effect is missing, and how sure that is
     Diagnose(diagnose::DiagnoseCommand),
     /// Fit effects to measurements, and write the muscle with what was learnt
@@ -97,6 +100,7 @@ fn main() -> ExitCode {
         Command::Membrane(command) => command.run(),
         Command::Sweep(command) => command.run(),
         Command::Table(command) => command.run(),
+        Command::Size(command) => command.run(),
         Command::Compare(command) => command.run(),
         Command::Diagnose(command) => command.run(),
         Command::Fit(command) => command.run(),

@@ -197,7 +197,6 @@ impl Solver {
                 }
             }
             self.effort.iterations += 1;
-            if std::env::var_os("TRACE").is_some() { eprintln!("it {} res {:.3e} pot {:.10e} shift {:.2e} dead {} fact {}", self.effort.iterations, now.residual, now.potential, guard.shift / self.mean_diagonal(), guard.was_dead, self.effort.factorisations); }
             if !self.improve(load, &now, closure, &mut guard, y) {
                 // Nothing lowers the energy of what is in equilibrium: a mesh at rest without load, for one.
                 if now.ratio <= 1.0 {

@@ -2,14 +2,11 @@
 
 use crate::PlotError;
 use crate::axis::{Axis, range};
+use crate::drawing::{Area, LINE, SCALE, bar, chart, failed, finish, pixels, text, titled};
 use crate::palette;
 use bulge_fibre::Response;
-use plotters::coord::Shift;
-use plotters::prelude::{
-    ChartBuilder, Color, DrawingArea, IntoDrawingArea, IntoFont, LineSeries, PathElement, RGBColor,
-    SVGBackend, Text, TextStyle, WHITE,
-};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::prelude::{Color, IntoDrawingArea, LineSeries, PathElement, SVGBackend};
+use plotters::style::text_anchor::HPos;
 
 /// One isobaric curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,21 +36,12 @@ pub fn characteristics_svg(title: &str, curves: &[Curve]) -> Result<String, Plot
     check(curves)?;
     let mut svg = String::new();
     draw(&mut svg, title, curves)?;
-    Ok(finish(&svg, curves.len()))
+    Ok(finish(&svg, SIZE, curves.len()))
 }
 
 /// Size of the picture in pixels.
 const SIZE: (u32, u32) = (1160, 470);
-/// Plotters rounds to whole units: it draws this many times as large, and the viewer scales back.
-const SCALE: u32 = 10;
-const LINE: u32 = 2 * SCALE;
-const TITLE_HEIGHT: u32 = 50;
 const LEGEND_WIDTH: u32 = 130;
-const INK: RGBColor = RGBColor(34, 34, 34);
-const GRID: RGBColor = RGBColor(222, 222, 222);
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
 /// A quantity of a response, in the unit of its axis.
 #[derive(Clone, Copy)]
 struct Quantity {
@@ -99,19 +87,9 @@ fn check(curves: &[Curve]) -> Result<(), PlotError> {
     Ok(())
 }
 
-fn failed(reason: impl std::fmt::Display) -> PlotError {
-    PlotError::Drawing { reason: reason.to_string() }
-}
-
 fn draw(svg: &mut String, title: &str, curves: &[Curve]) -> Result<(), PlotError> {
-    let (width, height) = (SIZE.0 * SCALE, SIZE.1 * SCALE);
-    let paper = SVGBackend::with_string(svg, (width, height)).into_drawing_area();
-    paper.fill(&WHITE).map_err(failed)?;
-    let (head, body) = paper.split_vertically(TITLE_HEIGHT * SCALE);
-    // Control characters aren't allowed in XML.
-    let title = title.replace(char::is_control, " ");
-    text(&head, &title, (pixels(SIZE.0) / 2, pixels(TITLE_HEIGHT) / 2), 21, HPos::Center)?;
-
+    let paper = SVGBackend::with_string(svg, (SIZE.0 * SCALE, SIZE.1 * SCALE)).into_drawing_area();
+    let body = titled(&paper, title, SIZE.0)?;
     let (plots, legend) = body.split_horizontally((SIZE.0 - LEGEND_WIDTH) * SCALE);
     let (left, right) = plots.split_horizontally((SIZE.0 - LEGEND_WIDTH) * SCALE / 2);
     panel(&left, FORCE, curves)?;
@@ -120,43 +98,9 @@ fn draw(svg: &mut String, title: &str, curves: &[Curve]) -> Result<(), PlotError
     paper.present().map_err(failed)
 }
 
-/// A length in pixels as a coordinate of the drawing.
-fn pixels(length: u32) -> i32 {
-    i32::try_from(length * SCALE).unwrap_or(i32::MAX)
-}
-
-fn style(size: u32) -> TextStyle<'static> {
-    ("sans-serif", size * SCALE).into_font().color(&INK)
-}
-
-fn text(area: &Area, words: &str, at: (i32, i32), size: u32, side: HPos) -> Result<(), PlotError> {
-    let style = style(size).pos(Pos::new(side, VPos::Center));
-    area.draw(&Text::new(words.to_owned(), at, style)).map_err(failed)
-}
-
 fn panel(area: &Area, quantity: Quantity, curves: &[Curve]) -> Result<(), PlotError> {
     let (x, y) = (CONTRACTION.axis(curves)?, quantity.axis(curves)?);
-    let mut chart = ChartBuilder::on(area)
-        .margin_right(22 * SCALE)
-        .margin_bottom(14 * SCALE)
-        .margin_left(12 * SCALE)
-        .margin_top(10 * SCALE)
-        .x_label_area_size(52 * SCALE)
-        .y_label_area_size(74 * SCALE)
-        .build_cartesian_2d(x, y)
-        .map_err(failed)?;
-    chart
-        .configure_mesh()
-        .x_desc(CONTRACTION.name)
-        .y_desc(quantity.name)
-        .label_style(style(15))
-        .axis_desc_style(style(17))
-        .axis_style(INK.stroke_width(SCALE))
-        .bold_line_style(GRID.stroke_width(SCALE))
-        .light_line_style(WHITE.mix(0.0))
-        .set_all_tick_mark_size(5 * SCALE)
-        .draw()
-        .map_err(failed)?;
+    let mut chart = chart(area, (x, CONTRACTION.name), (y, quantity.name))?;
     for (i, curve) in curves.iter().enumerate() {
         let points = curve.points.iter().map(|r| ((CONTRACTION.read)(r), (quantity.read)(r)));
         let line = palette::colour(i, curves.len()).stroke_width(LINE);
@@ -184,38 +128,11 @@ fn legend(area: &Area, curves: &[Curve]) -> Result<(), PlotError> {
     Ok(())
 }
 
-/// "2 bar", "0.125 bar": four digits, without trailing zeros.
-fn bar(pressure_pa: f64) -> String {
-    let value = pressure_pa / 1e5;
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    // Adding zero turns -0 into 0.
-    let rounded = rounded + 0.0;
-    if rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) {
-        format!("{rounded} bar")
-    } else {
-        format!("{rounded:e} bar")
-    }
-}
-
-/// Scales the drawing back and adds the dashes, for which plotters would draw every dash as a line of its own. Text can't be mistaken for
-/// an attribute: its quotation marks are escaped.
-fn finish(svg: &str, n: usize) -> String {
-    let size = |factor: u32| format!(r#"width="{}" height="{}""#, SIZE.0 * factor, SIZE.1 * factor);
-    let mut svg = svg.replacen(&size(SCALE), &size(1), 1);
-    for i in 0..n {
-        if let Some(dashes) = palette::dashes(i, n, LINE) {
-            let RGBColor(r, g, b) = palette::colour(i, n);
-            let stroke = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\"");
-            svg = svg.replace(&stroke, &format!(r#"{stroke} stroke-dasharray="{dashes}""#));
-        }
-    }
-    svg
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use bulge_fibre::{Convergence, Method};
+    use plotters::prelude::RGBColor;
 
     fn response(pressure_pa: f64, contraction: f64) -> Response {
         Response {

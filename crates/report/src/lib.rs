@@ -1,7 +1,7 @@
 //! Plots of pneumatic muscle characteristics, and the reports of comparisons and diagnoses.
 //!
 //! [`characteristics_svg`] draws force and volume against contraction, one curve for every pressure, as an SVG that stands for itself.
-//! [`comparison`] turns a [`bulge_inference::Comparison`] into one page with plots and tables, [`diagnosis`] a
+//! [`sizing_svg`] draws isobars with the way of a load. [`comparison`] turns a [`bulge_inference::Comparison`] into one page with plots and tables, [`diagnosis`] a
 //! [`bulge_inference::Diagnosis`]. Letters stay letters: no font is needed to draw.
 //! The same input gives the same bytes.
 //!
@@ -10,10 +10,13 @@ mod axis;
 mod characteristics;
 pub mod comparison;
 pub mod diagnosis;
+mod drawing;
 mod error;
 mod interval;
 mod palette;
+mod sizing;
 
 pub use characteristics::{Curve, characteristics_svg};
 pub use error::PlotError;
 pub use interval::with_interval;
+pub use sizing::sizing_svg;

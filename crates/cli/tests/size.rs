@@ -1,0 +1,117 @@
+//! `bulge size` as a user sees it: S4's example, and what it says of mistaken loads.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod support;
+
+use support::{Folder, bulge, failure, json};
+
+const LIFT: [&str; 5] = ["size", "--force", "500 N", "--stroke", "50 mm"];
+
+fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    LIFT.iter().copied().chain(more.iter().copied()).collect()
+}
+
+/// S4: 500 N after 50 mm ask for 345 mm at 4.5 bar.
+#[test]
+fn the_example_of_s4_with_its_picture() {
+    let folder = Folder::new("size-s4");
+    let plot = folder.path("size.svg");
+    let given = ["--muscle", "dmsp-20", "--pressure", "4.5 bar,4 bar", "--json", "--plot", &plot];
+    let document = json(&with(&given));
+    assert_eq!(document["schema"], "bulge.size/1");
+    let choices = document["choices"].as_array().unwrap();
+    let number = |i: usize, key: &str| choices[i][key].as_f64().unwrap();
+    // The kinder one first.
+    assert!((number(0, "pressure_pa") - 4e5).abs() < 1e-9 && (number(1, "pressure_pa") - 4.5e5).abs() < 1e-9);
+    assert!((number(1, "length_m") - 0.345).abs() < 0.0015, "{}", number(1, "length_m"));
+    assert!((choices[1]["contraction"][1].as_f64().unwrap() - 0.145).abs() < 0.001);
+    let points = choices[1]["points"].as_array().unwrap();
+    assert_eq!((points.len(), points[0]["holding_pressure_pa"].as_f64()), (2, Some(0.0)));
+    assert!((points[1]["available_n"].as_f64().unwrap() / 500.0 - 1.0).abs() < 0.002);
+    assert_eq!(folder.names(), ["size.svg"]);
+    let svg = std::fs::read_to_string(plot).unwrap();
+    assert!(svg.starts_with("<svg") && svg.contains("dmsp-20 of 409.0 mm at 4.00 bar"));
+}
+
+#[test]
+fn all_muscles_are_looked_through() {
+    let text = bulge(&with(&["--top", "3"]));
+    let text = String::from_utf8_lossy(&text.stdout).into_owned();
+    for words in [
+        "500.0 N after 50.00 mm",
+        "the kindest: dmsp-40",
+        "more: --top",
+        "dmsp-10 at 1.00 bar: it may carry 375 N",
+        "scaled from 20 mm",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let found = json(&with(&["--json"]));
+    let choices = found["choices"].as_array().unwrap();
+    let of = |name: &str| choices.iter().filter(|choice| choice["family"] == name).count();
+    assert!(of("ppam-2-r16") > 2 && of("dmsp-20") > 3 && of("dmsp-40") > 5 && of("dmsp-10") == 0);
+    // Lengths end at ten strokes unless it is said otherwise.
+    assert!(choices.iter().all(|choice| choice["length_m"].as_f64().unwrap() <= 0.5 + 1e-9));
+    let kilograms = json(&[
+        "size", "--force", "50 kg", "--stroke", "50 mm", "--length", "400 mm", "--muscle", "dmsp-20",
+        "--json",
+    ]);
+    assert!((kilograms["load"][1]["force_n"].as_f64().unwrap() - 490.3325).abs() < 1e-9);
+    assert!((kilograms["choices"][0]["pressure_pa"].as_f64().unwrap() - 4e5).abs() < 2e3);
+}
+
+/// A muscle file with what was learnt of it, and a law of the papers, size as well.
+#[test]
+fn learnt_muscles_and_laws() {
+    let folder = Folder::new("size-learnt");
+    let plain = "name = \"mine\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10.725 mm\"\nbraid_angle = \"25 deg\"\nends = \"clamped\"\nwall = \"2 mm\"\n";
+    let rubber = format!("{plain}[effects.bladder-elasticity]\nc10 = \"0.2 MPa\"\n");
+    let [plain, rubber] = [("plain.toml", plain), ("rubber.toml", rubber.as_str())]
+        .map(|(name, text)| folder.write(name, text));
+    let pressure = |muscle: &str| {
+        let found = json(&[
+            "size", "--force", "400 N", "--stroke", "30 mm", "--length", "250 mm", "--muscle", muscle,
+            "--json",
+        ]);
+        found["choices"][0]["pressure_pa"].as_f64().unwrap()
+    };
+    assert!(pressure(&rubber) > 1.05 * pressure(&plain), "rubber takes pressure");
+    let law =
+        json(&with(&["--muscle", "dmsp-20-400", "--law", "sarosi-5-branch", "--length", "400 mm", "--json"]));
+    assert!(law["choices"][0]["basis"].as_str().unwrap().starts_with("sarosi-5-branch"));
+}
+
+#[test]
+fn mistakes_are_named() {
+    for (given, status, words) in [
+        (vec!["size", "--force", "500", "--stroke", "50 mm"], 1, "--force: `500` has no unit"),
+        (vec!["size", "--force", "x kg", "--stroke", "50 mm"], 1, "`x kg` is no mass"),
+        (vec!["size", "--force", "500 N", "--stroke", "0 mm"], 1, "the load has no stroke"),
+        (vec!["size", "--force", "0 N", "--stroke", "5 mm"], 1, "0 N everywhere"),
+        (vec!["size", "--load", "50 mm"], 1, "`50 mm` is no travel with its force"),
+        (
+            vec!["size", "--load", "50 mm: 5 N, 20 mm: 5 N"],
+            1,
+            "point 2 of the load lies at the travel 0.02 m",
+        ),
+        (with(&["--muscle", "nosuch"]), 1, "no shipped muscle is called `nosuch`"),
+        (with(&["--law", "nosuch", "--muscle", "dmsp-20-400"]), 1, "there is no force law `nosuch`"),
+        (with(&["--law", "sarosi-6"]), 1, "dmsp-10 stands for the law of S4"),
+        (with(&["--law", "sarosi-6", "--muscle", "ppam-2-r16"]), 1, "sarosi-6 is not for ppam-2-r16"),
+        (
+            with(&["--law", "sarosi-6", "--table", "x", "--muscle", "dmsp-20-400"]),
+            1,
+            "has no numbers called `x`",
+        ),
+        (with(&["--pressure", "-1 bar"]), 1, "the pressure is -100000"),
+        (with(&["--margin", "-100 %"]), 1, "above -100 %"),
+        (with(&["--max-contraction", "120 %"]), 1, "the largest contraction is 1.2"),
+        (with(&["--max-length", "-1 m"]), 1, "the longest length is -1"),
+        (with(&["--pressure", "1 bar", "--muscle", "dmsp-20"]), 3, "none of these muscles carries 500.0 N"),
+    ] {
+        let (found, message) = failure(&given);
+        assert_eq!(found, status, "{given:?}: {message}");
+        assert!(message.contains(words), "{given:?}: {message}");
+    }
+}

@@ -1,0 +1,345 @@
+//! Muscles of one kind in every length: what they pull, and what they bear.
+
+use bulge_effects::Known;
+use bulge_effects::law::{CoefficientTable, Law, LawGeometry, LawPoint};
+use bulge_fibre::{Approach, BRAIDED_SLENDERNESS, FibreError, Given, PLEATED_SLENDERNESS};
+use bulge_model::{Extended, ExtendedError};
+use bulge_muscles::{Kind, Muscle, MuscleError, Parameter, Pressure, Quantity};
+use serde::Serialize;
+
+use super::SizeError;
+
+/// What a kind of muscle bears.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Limits {
+    /// Highest gauge pressure \[Pa\].
+    pub pressure_pa: f64,
+    /// Smallest and largest contraction.
+    pub contraction: [f64; 2],
+    /// Shortest and longest muscle that can be had \[m\].
+    pub length_m: [f64; 2],
+    /// Largest force that it may carry \[N\].
+    pub force_n: f64,
+}
+
+impl Limits {
+    /// Of a Festo fluidic muscle of 20 mm, as its maker states them: 6 bar, contractions to 25 %, 40 mm to 9 m, 1500 N.
+    pub const FLUIDIC: Self =
+        Self { pressure_pa: 6e5, contraction: [0.0, 0.25], length_m: [0.04, 9.0], force_n: 1500.0 };
+    /// Of a pleated muscle: 3 bar and 3000 N as S1 tested it, 5 to 35 % as it recommends for the life of the fibres, and lengths about those that were
+    /// built.
+    pub const PLEATED: Self =
+        Self { pressure_pa: 3e5, contraction: [0.05, 0.35], length_m: [0.03, 1.0], force_n: 3000.0 };
+
+    /// Those of a kind.
+    #[must_use]
+    pub const fn of(kind: Kind) -> Self {
+        match kind {
+            Kind::Pleated => Self::PLEATED,
+            Kind::Braided => Self::FLUIDIC,
+        }
+    }
+
+    fn check(&self) -> Result<(), SizeError> {
+        let wish = |what, value, range| Err(SizeError::Wish { what, value, range });
+        if !(self.pressure_pa > 0.0 && self.pressure_pa.is_finite()) {
+            return wish("highest pressure", self.pressure_pa, "a pressure above 0");
+        }
+        let [low, high] = self.contraction;
+        if !(-1.0..1.0).contains(&low) {
+            return wish("contraction where the muscle begins", low, "between -100 % and 100 %");
+        }
+        if !(high > low && high < 1.0) {
+            return wish("largest contraction", high, "beyond that where the muscle begins, and below 100 %");
+        }
+        let [low, high] = self.length_m;
+        if !(low > 0.0 && low.is_finite()) {
+            return wish("shortest length", low, "a length above 0");
+        }
+        if !(high >= low && high.is_finite()) {
+            return wish("longest length", high, "no shorter than the shortest one");
+        }
+        if !(self.force_n > 0.0 && self.force_n.is_finite()) {
+            return wish("largest force", self.force_n, "a force above 0");
+        }
+        Ok(())
+    }
+}
+
+/// Where the force comes from.
+#[derive(Debug, Clone)]
+enum Source {
+    /// A force law of the papers, times the scale of the cross-section.
+    Law { law: &'static Law, geometry: LawGeometry, coefficients: Vec<f64>, scale: f64 },
+    /// The equilibrium of a muscle, with the effects that are known of it.
+    Net { muscle: Box<Muscle>, known: Vec<Known>, is_similar: bool },
+}
+
+/// Muscles that differ by their length.
+#[derive(Debug, Clone)]
+pub struct Family {
+    name: String,
+    diameter_m: f64,
+    limits: Limits,
+    basis: String,
+    source: Source,
+}
+
+impl Family {
+    /// Muscles whose force a law gives, with the numbers of a table, or typical ones.
+    ///
+    /// # Errors
+    /// Limits that make no sense.
+    pub fn of_law(
+        name: &str,
+        law: &'static Law,
+        table: Option<&'static CoefficientTable>,
+        muscle: &Muscle,
+        limits: Limits,
+    ) -> Result<Self, SizeError> {
+        limits.check()?;
+        let geometry = LawGeometry::from(muscle);
+        let basis = match table {
+            Some(table) => format!("{} with {} ({})", law.name, table.name, table.source),
+            None => format!("{} with typical numbers", law.name),
+        };
+        let coefficients = law.start(&geometry, table);
+        let source = Source::Law { law, geometry, coefficients, scale: 1.0 };
+        Ok(Self { name: name.to_owned(), diameter_m: 2.0 * geometry.radius, limits, basis, source })
+    }
+
+    /// Muscles like this one in every length, by the equilibrium of their fibres and with the effects that are known of it. Lengths are held to the
+    /// slenderness for which meridians are computed, [`PLEATED_SLENDERNESS`] or [`BRAIDED_SLENDERNESS`].
+    ///
+    /// # Errors
+    /// Limits that make no sense.
+    pub fn of_muscle(muscle: &Muscle, known: Vec<Known>, mut limits: Limits) -> Result<Self, SizeError> {
+        let radius = muscle.radius().si().max(muscle.end_radius().si());
+        let [low, high] = limits.length_m;
+        let least = muscle.radius().si().min(muscle.end_radius().si());
+        let [stocky, slender] = if muscle.is_pleated() { PLEATED_SLENDERNESS } else { BRAIDED_SLENDERNESS };
+        // Just inside, so that rounding doesn't lead out.
+        limits.length_m = [low.max(radius * stocky * (1.0 + 1e-9)), high.min(least * slender * (1.0 - 1e-9))];
+        limits.check()?;
+        let effects: Vec<&str> = known.iter().map(|(effect, _)| effect.card().name).collect();
+        let basis = if effects.is_empty() {
+            "equilibrium".to_owned()
+        } else {
+            format!("equilibrium with {}", effects.join(", "))
+        };
+        Ok(Self {
+            name: muscle.name().to_owned(),
+            diameter_m: 2.0 * muscle.radius().si(),
+            limits,
+            basis,
+            source: Source::Net { muscle: Box::new(muscle.clone()), known, is_similar: false },
+        })
+    }
+
+    /// The same with every radius in proportion to the length, as S1 asks for pleated muscles of another length: they keep their slenderness l0/R, and
+    /// with it force over p l0^2 and the room that their cloth needs. Only where no effects are known of the muscle, since their numbers hold for its own
+    /// radius; otherwise, and of a law, the family stays as it is.
+    #[must_use]
+    pub fn similar(mut self) -> Self {
+        if let Source::Net { known, is_similar, .. } = &mut self.source
+            && known.is_empty()
+            && !*is_similar
+        {
+            *is_similar = true;
+            self.basis += ", radius in proportion to the length";
+        }
+        self
+    }
+
+    /// Muscles of another diameter that are alike in their cross-section: at equal pressure and contraction the force goes with the diameter's square, and
+    /// so does its limit.
+    /// A family whose force is an equilibrium stays as it is: state the other radius in its muscle.
+    #[must_use]
+    pub fn scaled(mut self, name: &str, diameter_m: f64) -> Self {
+        if let Source::Law { scale, .. } = &mut self.source {
+            let ratio = diameter_m / self.diameter_m;
+            *scale *= ratio * ratio;
+            self.limits.force_n *= ratio * ratio;
+            self.basis = format!("{}, scaled from {:.0} mm", self.basis, 1e3 * self.diameter_m);
+            self.diameter_m = diameter_m;
+            name.clone_into(&mut self.name);
+        }
+        self
+    }
+
+    /// The same with other limits.
+    ///
+    /// # Errors
+    /// Limits that make no sense.
+    pub fn with_limits(mut self, limits: Limits) -> Result<Self, SizeError> {
+        limits.check()?;
+        self.limits = limits;
+        Ok(self)
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its nominal diameter \[m\]; of a muscle file twice the radius.
+    #[must_use]
+    pub fn diameter_m(&self) -> f64 {
+        self.diameter_m
+    }
+
+    /// What it bears.
+    #[must_use]
+    pub fn limits(&self) -> Limits {
+        self.limits
+    }
+
+    /// Where its forces come from, in words.
+    #[must_use]
+    pub fn basis(&self) -> &str {
+        &self.basis
+    }
+
+    /// The muscle of a length \[m\].
+    ///
+    /// # Errors
+    /// A length that this muscle can't have.
+    pub fn at(&self, length_m: f64) -> Result<CutMuscle<'_>, SizeError> {
+        let wrong = |why: String| SizeError::Muscle { family: self.name.clone(), length_m, why };
+        let mut diameter_m = self.diameter_m;
+        let pull = match &self.source {
+            Source::Law { law, geometry, coefficients, scale } => Pull::Law {
+                law,
+                geometry: LawGeometry { length: length_m, ..*geometry },
+                coefficients,
+                scale: *scale,
+            },
+            Source::Net { muscle, known, is_similar } => {
+                let factor = if *is_similar { length_m / muscle.length().si() } else { 1.0 };
+                diameter_m *= factor;
+                let muscle = stretched(muscle, length_m, factor).map_err(|error| wrong(error.to_string()))?;
+                let extended = Extended::new(&muscle, known).map_err(|error| wrong(error.to_string()))?;
+                Pull::Net(Box::new(extended))
+            }
+        };
+        Ok(CutMuscle { family: self, length_m, diameter_m, pull })
+    }
+}
+
+/// Lengths across a muscle.
+const ACROSS: [Parameter; 5] = [
+    Parameter::Radius,
+    Parameter::FittingRadius,
+    Parameter::PleatDepth,
+    Parameter::ClothCircumference,
+    Parameter::UnfoldedRadius,
+];
+
+/// A muscle of another length, and all across it by a factor.
+fn stretched(muscle: &Muscle, length_m: f64, factor: f64) -> Result<Muscle, MuscleError> {
+    let mut changed = muscle.with(Parameter::Length, length_m)?;
+    for parameter in ACROSS {
+        if let (Some(value), true) = (muscle.get(parameter), factor.to_bits() != 1.0_f64.to_bits()) {
+            changed = changed.with(parameter, factor * value)?;
+        }
+    }
+    Ok(changed)
+}
+
+/// How a muscle of one length pulls.
+#[derive(Debug)]
+enum Pull<'a> {
+    Law { law: &'static Law, geometry: LawGeometry, coefficients: &'a [f64], scale: f64 },
+    Net(Box<Extended>),
+}
+
+/// A muscle of a family and a length.
+#[derive(Debug)]
+pub struct CutMuscle<'a> {
+    family: &'a Family,
+    length_m: f64,
+    diameter_m: f64,
+    pull: Pull<'a>,
+}
+
+impl CutMuscle<'_> {
+    /// Its family.
+    #[must_use]
+    pub fn family(&self) -> &Family {
+        self.family
+    }
+
+    /// Its length \[m\].
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.length_m
+    }
+
+    /// Its nominal diameter \[m\].
+    #[must_use]
+    pub fn diameter_m(&self) -> f64 {
+        self.diameter_m
+    }
+
+    /// What it pulls at a gauge pressure \[Pa\] and a contraction \[N\]: 0 where it would push, or without pressure; infinite where fibres that don't
+    /// stretch are straight.
+    ///
+    /// # Errors
+    /// No equilibrium was found, for another reason than these.
+    pub fn force_n(&self, pressure_pa: f64, contraction: f64) -> Result<f64, SizeError> {
+        if pressure_pa <= 0.0 {
+            return Ok(0.0);
+        }
+        let wrong = |why: String| SizeError::Muscle {
+            family: self.family.name.clone(),
+            length_m: self.length_m,
+            why,
+        };
+        match &self.pull {
+            Pull::Law { law, geometry, coefficients, scale } => {
+                // As it lifts: laws that tell the directions apart give less force to a muscle that shortens.
+                let at = LawPoint { pressure: pressure_pa, contraction, direction: 1.0 };
+                if !law.is_defined_at(at) {
+                    return Ok(f64::INFINITY);
+                }
+                Ok((scale * law.force(at, geometry, coefficients)).max(0.0))
+            }
+            Pull::Net(extended) => {
+                let pressure = Pressure::pa(pressure_pa);
+                match extended.solve(pressure, Given::Contraction(contraction), Approach::Auto) {
+                    Ok(found) => Ok(found.force_n.max(0.0)),
+                    Err(ExtendedError::Equilibrium(error)) => match *error {
+                        FibreError::BeyondLimit { .. }
+                        | FibreError::WouldPush { .. }
+                        | FibreError::Slack { .. } => Ok(0.0),
+                        FibreError::TooLong { .. } => Ok(f64::INFINITY),
+                        other => Err(wrong(other.to_string())),
+                    },
+                    Err(error) => Err(wrong(error.to_string())),
+                }
+            }
+        }
+    }
+
+    /// Contractions and forces of an isobar, from where the muscle begins to where it ends or pulls no more; none where the force is infinite.
+    ///
+    /// # Errors
+    /// As [`CutMuscle::force_n`].
+    pub fn isobar(&self, pressure_pa: f64, points: usize) -> Result<Vec<[f64; 2]>, SizeError> {
+        let [low, high] = self.family.limits.contraction;
+        let last = points.max(2) - 1;
+        let mut isobar = Vec::with_capacity(points);
+        for k in 0..=last {
+            let contraction = low + (high - low) * k as f64 / last as f64;
+            let force = self.force_n(pressure_pa, contraction)?;
+            if force.is_finite() {
+                isobar.push([contraction, force]);
+            }
+            if force == 0.0 {
+                break;
+            }
+        }
+        Ok(isobar)
+    }
+}

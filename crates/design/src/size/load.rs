@@ -1,0 +1,137 @@
+//! What a muscle has to pull, and how far.
+
+use serde::Serialize;
+
+use super::SizeError;
+
+/// Force that is needed after a travel.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LoadPoint {
+    /// Travel from where the muscle begins \[m\], 0 or more.
+    pub travel_m: f64,
+    /// Force that it must pull there \[N\], 0 or more.
+    pub force_n: f64,
+}
+
+/// Forces over a stroke, linear between the points.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct LoadCase {
+    points: Vec<LoadPoint>,
+}
+
+/// Places at which the load is looked at from one point to the next.
+const BETWEEN: usize = 8;
+
+impl LoadCase {
+    /// A load through points in the order of their travel.
+    ///
+    /// # Errors
+    /// No point beyond the beginning, points out of order, a number that is negative or not finite, or no force at all.
+    pub fn new(points: Vec<LoadPoint>) -> Result<Self, SizeError> {
+        let mut before = f64::NEG_INFINITY;
+        for (i, LoadPoint { travel_m, force_n }) in points.iter().enumerate() {
+            for (what, value) in [("travel", *travel_m), ("force", *force_n)] {
+                if !(value >= 0.0 && value.is_finite()) {
+                    return Err(SizeError::Load { point: i + 1, what, value });
+                }
+            }
+            if *travel_m <= before {
+                return Err(SizeError::Order { point: i + 1, travel_m: *travel_m });
+            }
+            before = *travel_m;
+        }
+        if before <= 0.0 {
+            return Err(SizeError::NoStroke);
+        }
+        if points.iter().all(|point| point.force_n == 0.0) {
+            return Err(SizeError::NoForce);
+        }
+        Ok(Self { points })
+    }
+
+    /// A force at rest, and one after the stroke.
+    ///
+    /// # Errors
+    /// As [`LoadCase::new`].
+    pub fn lift(stroke_m: f64, at_rest_n: f64, contracted_n: f64) -> Result<Self, SizeError> {
+        let point = |travel_m, force_n| LoadPoint { travel_m, force_n };
+        if stroke_m == 0.0 {
+            return Err(SizeError::NoStroke);
+        }
+        Self::new(vec![point(0.0, at_rest_n), point(stroke_m, contracted_n)])
+    }
+
+    /// The points.
+    #[must_use]
+    pub fn points(&self) -> &[LoadPoint] {
+        &self.points
+    }
+
+    /// The whole travel \[m\].
+    #[must_use]
+    pub fn stroke_m(&self) -> f64 {
+        self.points.last().map_or(0.0, |point| point.travel_m)
+    }
+
+    /// The largest force \[N\].
+    #[must_use]
+    pub fn largest_n(&self) -> f64 {
+        self.points.iter().fold(0.0, |most, point| most.max(point.force_n))
+    }
+
+    /// The points, and places between them.
+    #[must_use]
+    pub fn path(&self) -> Vec<LoadPoint> {
+        let mut path = Vec::with_capacity(BETWEEN * self.points.len());
+        for pair in self.points.windows(2) {
+            let [a, b] = [pair[0], pair[1]];
+            path.extend((0..BETWEEN).map(|k| {
+                let part = k as f64 / BETWEEN as f64;
+                let mix = |a: f64, b: f64| a + part * (b - a);
+                LoadPoint { travel_m: mix(a.travel_m, b.travel_m), force_n: mix(a.force_n, b.force_n) }
+            }));
+        }
+        path.extend(self.points.last());
+        path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(travel_m: f64, force_n: f64) -> LoadPoint {
+        LoadPoint { travel_m, force_n }
+    }
+
+    #[test]
+    fn a_load_goes_through_its_points() {
+        let load = LoadCase::new(vec![point(0.0, 100.0), point(0.02, 500.0), point(0.05, 200.0)]).unwrap();
+        assert_eq!((load.stroke_m(), load.largest_n(), load.points().len()), (0.05, 500.0, 3));
+        let path = load.path();
+        assert_eq!(
+            (path.len(), path[0], path[8], path[16]),
+            (17, point(0.0, 100.0), point(0.02, 500.0), point(0.05, 200.0))
+        );
+        assert!((path[4].travel_m - 0.01).abs() < 1e-15 && (path[4].force_n - 300.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        let load = |points: &[(f64, f64)]| {
+            LoadCase::new(points.iter().map(|(x, f)| point(*x, *f)).collect()).unwrap_err()
+        };
+        assert_eq!(load(&[]), SizeError::NoStroke);
+        assert_eq!(load(&[(0.0, 5.0)]), SizeError::NoStroke);
+        assert_eq!(LoadCase::lift(0.0, 1.0, 2.0), Err(SizeError::NoStroke));
+        assert_eq!(load(&[(0.0, 0.0), (0.1, 0.0)]), SizeError::NoForce);
+        assert_eq!(load(&[(0.1, 1.0), (0.1, 2.0)]), SizeError::Order { point: 2, travel_m: 0.1 });
+        assert!(matches!(
+            load(&[(0.0, 1.0), (f64::NAN, 2.0)]),
+            SizeError::Load { point: 2, what: "travel", .. }
+        ));
+        assert!(matches!(load(&[(0.0, -1.0)]), SizeError::Load { point: 1, what: "force", .. }));
+        assert!(matches!(load(&[(0.1, f64::INFINITY)]), SizeError::Load { point: 1, what: "force", .. }));
+    }
+}
