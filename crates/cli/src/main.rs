@@ -11,6 +11,7 @@ mod elements;
 mod failure;
 mod files;
 mod fit;
+mod joint;
 mod membrane;
 mod muscle;
 mod next;
@@ -61,6 +62,8 @@ enum Command {
     Compare(compare::CompareCommand),
     /// From a load over a stroke to muscles, lengths and pressures
     Size(Box<size::SizeCommand>),
+    /// Two antagonistic muscles on a joint: angle, torque, stiffness, pressures
+    Joint(Box<joint::JointCommand>),
     /// Which physical effect is missing, and how sure that is
     Diagnose(diagnose::DiagnoseCommand),
     /// Fit effects to measurements, and write the muscle with what was learnt
@@ -101,6 +104,7 @@ fn main() -> ExitCode {
         Command::Sweep(command) => command.run(),
         Command::Table(command) => command.run(),
         Command::Size(command) => command.run(),
+        Command::Joint(command) => command.run(),
         Command::Compare(command) => command.run(),
         Command::Diagnose(command) => command.run(),
         Command::Fit(command) => command.run(),

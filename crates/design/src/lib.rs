@@ -1,7 +1,13 @@
-//! Muscles put to use: which one lifts a load, at what length and pressure.
+//! Muscles put to use.
 //!
-//! [`size`] goes from a load over a stroke to muscles, lengths and pressures (S4, "Sizing Fluidic Muscle Using Static Force Model").
+//! - [`size`] goes from a load over a stroke to muscles, lengths and pressures (S4, "Sizing Fluidic Muscle Using Static Force Model"),
+//! - [`sensing`] is a muscle that feels its own contraction, by the resistance of a channel of liquid metal around it (S3, section 5),
+//! - [`heat`] is how warm a muscle gets that is charged and discharged again and again, with and without an inner pipe (S3, section 4).
 //!
-//! Deliberately absent: files, units and prices. A choice is a value with numbers in it; the command line reads and prints.
+//! S3 is "Study on Mechanical Behaviour of Pneumatic Artificial Muscle and Methods to Improve it".
+//!
+//! Deliberately absent: files, units and prices. An answer is a value with numbers in it; the command line reads and prints.
 
+pub mod heat;
+pub mod sensing;
 pub mod size;

@@ -19,4 +19,4 @@ mod sizing;
 pub use characteristics::{Curve, characteristics_svg};
 pub use error::PlotError;
 pub use interval::with_interval;
-pub use sizing::sizing_svg;
+pub use sizing::{lines_svg, sizing_svg};

@@ -1,4 +1,4 @@
-//! Isobars of a muscle with the way of a load.
+//! Lines with a legend: isobars of a muscle with the way of a load, torques of a joint.
 
 use crate::PlotError;
 use crate::axis::{Axis, range};
@@ -8,8 +8,8 @@ use plotters::prelude::{Circle, Color, IntoDrawingArea, LineSeries, PathElement,
 use plotters::style::text_anchor::HPos;
 
 /// Size of the picture in pixels.
-const SIZE: (u32, u32) = (760, 500);
-const LEGEND_WIDTH: u32 = 150;
+const SIZE: (u32, u32) = (780, 500);
+const LEGEND_WIDTH: u32 = 170;
 const ROW_HEIGHT: i32 = 24;
 const CONTRACTION: &str = "contraction [%]";
 const FORCE: &str = "force [N]";
@@ -34,9 +34,28 @@ pub fn sizing_svg(
     load: &[[f64; 2]],
 ) -> Result<String, PlotError> {
     check(isobars, load)?;
-    let mut svg = String::new();
-    draw(&mut svg, title, isobars, load)?;
-    Ok(finish(&svg, SIZE, isobars.len()))
+    let percent =
+        |points: &[[f64; 2]]| points.iter().map(|[x, force]| [100.0 * x, *force]).collect::<Vec<_>>();
+    let lines: Vec<_> = isobars.iter().map(|(pressure, points)| (bar(*pressure), percent(points))).collect();
+    drawn(title, [CONTRACTION, FORCE], &lines, &percent(load))
+}
+
+/// Draws lines with their names against two axes, the first one lowest in the legend. As an SVG document.
+///
+/// # Errors
+/// No line, one of fewer than 2 points, or a value that isn't finite.
+pub fn lines_svg(
+    title: &str,
+    axes: [&str; 2],
+    lines: &[(String, Vec<[f64; 2]>)],
+) -> Result<String, PlotError> {
+    if lines.is_empty() {
+        return Err(PlotError::NoCurves);
+    }
+    if let Some((_, points)) = lines.iter().find(|(_, points)| points.len() < 2) {
+        return Err(PlotError::Lengths { what: "point(s) of a line", expected: 2, found: points.len() });
+    }
+    drawn(title, axes, lines, &[])
 }
 
 fn check(isobars: &[(f64, Vec<[f64; 2]>)], load: &[[f64; 2]]) -> Result<(), PlotError> {
@@ -52,71 +71,75 @@ fn check(isobars: &[(f64, Vec<[f64; 2]>)], load: &[[f64; 2]]) -> Result<(), Plot
             return Err(PlotError::TooFewPoints { pressure_pa, found: points.len() });
         }
     }
-    for (quantity, k) in [(CONTRACTION, 0), (FORCE, 1)] {
-        if let Some(value) = all(isobars, load).map(|point| point[k]).find(|value| !value.is_finite()) {
-            return Err(PlotError::Value { quantity: quantity.to_owned(), value });
-        }
-    }
     Ok(())
 }
 
-/// Contractions in per cent, and forces, of everything.
-fn all<'a>(
-    isobars: &'a [(f64, Vec<[f64; 2]>)],
-    load: &'a [[f64; 2]],
-) -> impl Iterator<Item = [f64; 2]> + use<'a> {
-    isobars.iter().flat_map(|(_, points)| points).chain(load).map(percent)
-}
-
-fn percent([contraction, force]: &[f64; 2]) -> [f64; 2] {
-    [100.0 * contraction, *force]
+/// Lines, and a load over them if there is one.
+fn drawn(
+    title: &str,
+    names: [&str; 2],
+    lines: &[(String, Vec<[f64; 2]>)],
+    load: &[[f64; 2]],
+) -> Result<String, PlotError> {
+    let all = || lines.iter().flat_map(|(_, points)| points).chain(load);
+    let axis = |k: usize| {
+        let values = || all().map(move |point| point[k]);
+        let quantity = names[k].to_owned();
+        if let Some(value) = values().find(|value| !value.is_finite()) {
+            return Err(PlotError::Value { quantity, value });
+        }
+        Axis::around(values()).ok_or_else(|| {
+            let (low, high) = range(values()).unwrap_or((f64::MIN, f64::MAX));
+            PlotError::Value { quantity, value: high - low }
+        })
+    };
+    let axes = [axis(0)?, axis(1)?];
+    let mut svg = String::new();
+    draw(&mut svg, title, (names, axes), lines, load)?;
+    Ok(finish(&svg, SIZE, lines.len()))
 }
 
 fn draw(
     svg: &mut String,
     title: &str,
-    isobars: &[(f64, Vec<[f64; 2]>)],
+    (names, axes): ([&str; 2], [Axis; 2]),
+    lines: &[(String, Vec<[f64; 2]>)],
     load: &[[f64; 2]],
 ) -> Result<(), PlotError> {
     let paper = SVGBackend::with_string(svg, (SIZE.0 * SCALE, SIZE.1 * SCALE)).into_drawing_area();
     let body = titled(&paper, title, SIZE.0)?;
     let (plot, legend) = body.split_horizontally((SIZE.0 - LEGEND_WIDTH) * SCALE);
-    let axis = |quantity: &'static str, k: usize| {
-        let values = || all(isobars, load).map(move |point| point[k]);
-        Axis::around(values()).ok_or_else(|| {
-            let (low, high) = range(values()).unwrap_or((f64::MIN, f64::MAX));
-            PlotError::Span { quantity, low, high }
-        })
-    };
-    let mut chart = chart(&plot, (axis(CONTRACTION, 0)?, CONTRACTION), (axis(FORCE, 1)?, FORCE))?;
-    let point = |point: &[f64; 2]| {
-        let [contraction, force] = percent(point);
-        (contraction, force)
-    };
-    for (i, (_, points)) in isobars.iter().enumerate() {
-        let line = palette::colour(i, isobars.len()).stroke_width(LINE);
+    let mut chart = chart(&plot, (axes[0], names[0]), (axes[1], names[1]))?;
+    let point = |[x, y]: &[f64; 2]| (*x, *y);
+    for (i, (_, points)) in lines.iter().enumerate() {
+        let line = palette::colour(i, lines.len()).stroke_width(LINE);
         chart.draw_series(LineSeries::new(points.iter().map(point), line)).map_err(failed)?;
     }
-    chart
-        .draw_series(LineSeries::new(load.iter().map(point), INK.stroke_width(LINE + SCALE)))
-        .map_err(failed)?;
-    chart
-        .draw_series(load.iter().map(|at| Circle::new(point(at), 5 * SCALE, INK.filled())))
-        .map_err(failed)?;
-    named(&legend, isobars)?;
+    if !load.is_empty() {
+        chart
+            .draw_series(LineSeries::new(load.iter().map(point), INK.stroke_width(LINE + SCALE)))
+            .map_err(failed)?;
+        chart
+            .draw_series(load.iter().map(|at| Circle::new(point(at), 5 * SCALE, INK.filled())))
+            .map_err(failed)?;
+    }
+    named(&legend, lines, !load.is_empty())?;
     paper.present().map_err(failed)
 }
 
-/// Highest pressure on top, as the lines lie; the load last.
-fn named(area: &Area, isobars: &[(f64, Vec<[f64; 2]>)]) -> Result<(), PlotError> {
+/// The last line on top, as isobars lie; the load last.
+fn named(area: &Area, lines: &[(String, Vec<[f64; 2]>)], has_load: bool) -> Result<(), PlotError> {
     let scale = pixels(1);
     let row = |row: i32| (22 + row * ROW_HEIGHT) * scale;
     let mut last = 0;
-    for (k, (i, (pressure, _))) in (0..).zip(isobars.iter().enumerate().rev()) {
-        let line = palette::colour(i, isobars.len()).stroke_width(LINE);
+    for (k, (i, (name, _))) in (0..).zip(lines.iter().enumerate().rev()) {
+        let line = palette::colour(i, lines.len()).stroke_width(LINE);
         area.draw(&PathElement::new(vec![(0, row(k)), (38 * scale, row(k))], line)).map_err(failed)?;
-        text(area, &bar(*pressure), (46 * scale, row(k)), 16, HPos::Left)?;
+        text(area, name, (46 * scale, row(k)), 16, HPos::Left)?;
         last = k + 1;
+    }
+    if !has_load {
+        return Ok(());
     }
     let line = INK.stroke_width(LINE + SCALE);
     area.draw(&PathElement::new(vec![(0, row(last)), (38 * scale, row(last))], line)).map_err(failed)?;
@@ -163,6 +186,9 @@ mod tests {
         );
         let endless = [(1e5, vec![[0.0, f64::INFINITY], [0.1, 1.0]])];
         assert!(sizing_svg("a", &endless, &load).unwrap_err().to_string().contains("force [N] is inf"));
+        let lines = [("a".to_owned(), vec![[0.0, 1.0]])];
+        assert!(lines_svg("a", ["x", "y"], &lines).unwrap_err().to_string().contains("1 point(s) of a line"));
+        assert_eq!(lines_svg("a", ["x", "y"], &[]), Err(PlotError::NoCurves));
         let nowhere = [(f64::NAN, vec![[0.0, 1.0], [0.1, 1.0]])];
         assert!(matches!(sizing_svg("a", &nowhere, &load), Err(PlotError::Pressure { curve: 0, .. })));
     }

@@ -9,12 +9,14 @@
 mod field;
 mod file;
 mod geometry;
+mod stand;
 #[cfg(test)]
 mod tests;
 
 pub use field::{JointField, JointOutput};
 pub use file::JOINT_EXAMPLE;
 pub use geometry::{Linkage, Side};
+pub use stand::{Closed, Outside, Readings, SideStand, Stand};
 
 use bulge_fibre::Approach;
 use bulge_muscles::{Muscle, Quantity as _};
@@ -54,9 +56,45 @@ pub enum JointError {
         /// The range \[rad\].
         range: [f64; 2],
     },
+    /// A stiffness that the range of pressures doesn't give at an angle.
+    #[error(
+        "no pressures in the joint's range give {stiffness:.4} N m/rad at {:.4} deg: there it is {:.4} to {:.4} N m/rad",
+        angle.to_degrees(), range[0], range[1]
+    )]
+    Stiffness {
+        /// Angle \[rad\].
+        angle: f64,
+        /// Asked stiffness \[N m/rad\].
+        stiffness: f64,
+        /// Least and most \[N m/rad\].
+        range: [f64; 2],
+    },
+    /// An angle that no pressures hold.
+    #[error(
+        "no pressures in the joint's range hold {:.4} deg under {outside:.4} N m from outside: the torque is {:.4} to {:.4} N m there",
+        angle.to_degrees(), range[0], range[1]
+    )]
+    Held {
+        /// Angle \[rad\].
+        angle: f64,
+        /// Torque from outside \[N m\].
+        outside: f64,
+        /// Least and most torque with it \[N m\].
+        range: [f64; 2],
+    },
+    /// A closed muscle that has lost its pressure.
+    #[error("the closed {} has no pressure left at {:.4} deg: {pressure_pa:.0} Pa below the air around it; fill it more", side.name(), angle.to_degrees())]
+    Empty {
+        /// Which muscle.
+        side: Side,
+        /// Angle \[rad\].
+        angle: f64,
+        /// Gauge pressure that its gas would have \[Pa\].
+        pressure_pa: f64,
+    },
     /// The muscles turn the joint beyond an end of its range.
     #[error(
-        "no angle without load at {} Pa and {} Pa: the torque is {:.4} N m at {:.4} deg and {:.4} N m at {:.4} deg; choose pressures closer to each other, or a wider range",
+        "no rest at {} Pa and {} Pa: the torque is {:.4} N m at {:.4} deg and {:.4} N m at {:.4} deg; choose pressures closer to each other, or a wider range",
         pressures[0], pressures[1], torques[0], range[0].to_degrees(), torques[1], range[1].to_degrees()
     )]
     NoRest {

@@ -22,7 +22,10 @@ pub use design::{Coordinate, Layout};
 pub use family::{Family, FamilyError, Member};
 pub use file::SWEEP_EXAMPLE;
 pub use folder::{Promise, write_durably};
-pub use joint::{JOINT_EXAMPLE, Joint, JointError, JointField, JointMuscle, JointOutput, Linkage, Side};
+pub use joint::{
+    Closed, JOINT_EXAMPLE, Joint, JointError, JointField, JointMuscle, JointOutput, Linkage, Outside,
+    Readings, Side, SideStand, Stand,
+};
 pub use muscle_field::MuscleField;
 pub use output::Output;
 pub use plan::Plan;

@@ -245,7 +245,7 @@ fn what_has_no_answer() {
         "{error}"
     );
     let error = joint.angle(3e5, 1e4).unwrap_err().to_string();
-    assert!(error.contains("no angle without load") && error.contains("at 25.0000 deg"), "{error}");
+    assert!(error.contains("no rest at") && error.contains("at 25.0000 deg"), "{error}");
 }
 
 #[test]

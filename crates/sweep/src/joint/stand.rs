@@ -1,0 +1,482 @@
+//! How a joint stands: under a load, at an angle, for a wanted angle and stiffness, and with its valves shut.
+
+use bulge_numerics::root::illinois;
+use serde::Serialize;
+
+use super::{Joint, JointError, JointMuscle, Side};
+use crate::output::Output;
+
+/// Ambient pressure \[Pa\].
+const AMBIENT: f64 = bulge_fibre::AMBIENT_PRESSURE;
+/// Pressures are found to this part of their range, and angles to this part of theirs.
+const TOLERANCE: f64 = 1e-12;
+/// Rounds in which the volume of a closed muscle follows its pressure.
+const ROUNDS: usize = 50;
+
+/// One muscle of a joint that stands.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SideStand {
+    /// Which one.
+    pub side: Side,
+    /// Gauge pressure \[Pa\].
+    pub pressure_pa: f64,
+    /// Contraction.
+    pub contraction: f64,
+    /// Pull \[N\].
+    pub force_n: f64,
+    /// Its part of the torque \[N m\]: negative for the antagonist.
+    pub torque_nm: f64,
+    /// Gas that it holds \[m^3\].
+    pub volume_m3: f64,
+}
+
+/// How a joint stands.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Stand {
+    /// Its angle \[rad\].
+    pub angle_rad: f64,
+    /// Torque of both muscles \[N m\]. What holds the joint there from outside is the negative of it.
+    pub torque_nm: f64,
+    /// -dM/dtheta at constant pressures \[N m/rad\].
+    pub stiffness_nm_per_rad: f64,
+    /// The same with both valves shut, slowly (isothermal) \[N m/rad\].
+    pub isothermal_nm_per_rad: f64,
+    /// And fast (adiabatic, exponent 1.4) \[N m/rad\].
+    pub adiabatic_nm_per_rad: f64,
+    /// Agonist and antagonist.
+    pub sides: [SideStand; 2],
+}
+
+/// Standard deviations of what an outside torque is computed from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Readings {
+    /// Of each pressure \[Pa\].
+    pub pressure_pa: f64,
+    /// Of the angle \[rad\].
+    pub angle_rad: f64,
+    /// Of the force that the model says of each muscle \[N\]: what a fit leaves.
+    pub force_n: f64,
+}
+
+/// An outside torque with its standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Outside {
+    /// Torque on the joint from outside \[N m\], positive where it turns the joint to positive angles.
+    pub torque_nm: f64,
+    /// Its standard deviation \[N m\].
+    pub sd_nm: f64,
+    /// What pressures, angle and forces contribute to it \[N m\].
+    pub from_nm: [f64; 3],
+}
+
+/// A joint whose valves are shut.
+#[derive(Debug, Clone)]
+pub struct Closed<'a> {
+    joint: &'a Joint,
+    /// P V^n of each muscle.
+    constant: [f64; 2],
+    exponent: f64,
+    dead_m3: [f64; 2],
+}
+
+impl JointMuscle {
+    /// Outputs of the muscle alone at an angle and a pressure.
+    fn at<const N: usize>(
+        &self,
+        joint: &Joint,
+        angle: f64,
+        pressure: f64,
+        outputs: [Output; N],
+    ) -> Result<(f64, [f64; N]), JointError> {
+        let contraction = self.contraction(&joint.linkage, angle);
+        let mut values = [0.0; N];
+        let member = self.family.member(&[contraction, pressure]);
+        member
+            .and_then(|member| member.outputs(contraction, &outputs, &mut values))
+            .map_err(|error| self.failed(angle, pressure, error))?;
+        Ok((contraction, values))
+    }
+}
+
+impl Joint {
+    /// How the joint stands at an angle \[rad\] and the gauge pressures of agonist and antagonist \[Pa\].
+    ///
+    /// ```text
+    /// K = sum over both of  K_l m^2 - F dm/dtheta        m = -dl/dtheta, K_l = dF/dl of the muscle: open, or closed with its gas
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Joint::torque`].
+    pub fn stand(&self, angle: f64, pressures: [f64; 2]) -> Result<Stand, JointError> {
+        self.inside(angle)?;
+        let mut stiffness = [0.0; 3];
+        let mut sides = Vec::with_capacity(2);
+        for (muscle, pressure) in self.muscles.iter().zip(pressures) {
+            let asked = [
+                Output::Force,
+                Output::Volume,
+                Output::Stiffness,
+                Output::StiffnessIsothermal,
+                Output::StiffnessAdiabatic,
+            ];
+            let (contraction, [force, volume, open, slow, fast]) = muscle.at(self, angle, pressure, asked)?;
+            let reach = self.linkage.at(muscle.side, angle);
+            for (sum, along) in stiffness.iter_mut().zip([open, slow, fast]) {
+                *sum += along * reach.arm * reach.arm - force * reach.arm_by_angle;
+            }
+            sides.push(SideStand {
+                side: muscle.side,
+                pressure_pa: pressure,
+                contraction,
+                force_n: force,
+                torque_nm: force * reach.arm,
+                volume_m3: volume,
+            });
+        }
+        let [open, slow, fast] = stiffness;
+        let sides = [sides[0], sides[1]];
+        Ok(Stand {
+            angle_rad: angle,
+            torque_nm: sides[0].torque_nm + sides[1].torque_nm,
+            stiffness_nm_per_rad: open,
+            isothermal_nm_per_rad: slow,
+            adiabatic_nm_per_rad: fast,
+            sides,
+        })
+    }
+
+    /// Where the joint rests under an outside torque \[N m\], positive where it turns the joint to positive angles.
+    ///
+    /// # Errors
+    /// [`JointError::NoRest`] if it isn't in the range of angles, or [`JointError::Muscle`].
+    pub fn rest(&self, pressures: [f64; 2], outside: f64) -> Result<Stand, JointError> {
+        let torque = |angle: f64| {
+            Ok(self.pulls(angle, pressures)?.map(|pull| pull.torque).iter().sum::<f64>() + outside)
+        };
+        let angle = self.balanced(torque, pressures)?;
+        self.stand(angle, pressures)
+    }
+
+    /// The angle at which a falling torque vanishes.
+    fn balanced(
+        &self,
+        torque: impl Fn(f64) -> Result<f64, JointError>,
+        pressures: [f64; 2],
+    ) -> Result<f64, JointError> {
+        let [low, high] = self.angle;
+        let torques = [torque(low)?, torque(high)?];
+        if !(torques[0] >= 0.0 && torques[1] <= 0.0) {
+            return Err(JointError::NoRest { pressures, torques, range: self.angle });
+        }
+        first(|failed| {
+            illinois(|angle| kept(torque(angle), failed), low, high, TOLERANCE * (high - low).abs())
+        })
+    }
+
+    /// The outside torque that holds the joint at an angle against both muscles, as S1 (section 4.2) estimates the force of an operator from the pressures,
+    /// with its standard deviation:
+    ///
+    /// ```text
+    /// M_out = -M(theta, p1, p2)     var M_out = sum (dM/dp_i s_p)^2 + (K s_theta)^2 + sum (m_i s_F)^2
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Joint::torque`].
+    pub fn outside(&self, angle: f64, pressures: [f64; 2], sd: Readings) -> Result<Outside, JointError> {
+        let stand = self.stand(angle, pressures)?;
+        let (mut by_pressure, mut by_force) = (0.0_f64, 0.0_f64);
+        for (muscle, pressure) in self.muscles.iter().zip(pressures) {
+            by_pressure =
+                by_pressure.hypot(muscle.by_pressure(&self.linkage, angle, pressure)? * sd.pressure_pa);
+            by_force = by_force.hypot(self.linkage.at(muscle.side, angle).arm * sd.force_n);
+        }
+        let by_angle = (stand.stiffness_nm_per_rad * sd.angle_rad).abs();
+        let from = [by_pressure, by_angle, by_force];
+        let sd_nm = from.iter().map(|part| part * part).sum::<f64>().sqrt();
+        Ok(Outside { torque_nm: -stand.torque_nm, sd_nm, from_nm: from })
+    }
+
+    /// The antagonist's pressure that holds an angle under an outside torque beside a pressure of the agonist; the end of the range where none does.
+    fn partner(&self, angle: f64, agonist: f64, outside: f64) -> Result<f64, JointError> {
+        let [low, high] = self.pressure;
+        let torque = |p: f64| {
+            Ok(self.pulls(angle, [agonist, p])?.map(|pull| pull.torque).iter().sum::<f64>() + outside)
+        };
+        first(|failed| illinois(|p| kept(torque(p), failed), low, high, TOLERANCE * high))
+    }
+
+    /// The pressures of agonist and antagonist that hold an angle \[rad\] under an outside torque \[N m\] with a stiffness \[N m/rad\] at constant
+    /// pressures: the difference of the pressures sets the angle, their sum the stiffness (S1, section 4.1).
+    ///
+    /// # Errors
+    /// [`JointError::Stiffness`] with the stiffnesses that the range of pressures allows there, or [`JointError::Held`] if none holds the angle.
+    pub fn pressures_for(&self, angle: f64, stiffness: f64, outside: f64) -> Result<Stand, JointError> {
+        self.inside(angle)?;
+        let range = self.agonists(angle, outside)?;
+        let stand = |agonist: f64| self.stand(angle, [agonist, self.partner(angle, agonist, outside)?]);
+        let ends = [stand(range[0])?.stiffness_nm_per_rad, stand(range[1])?.stiffness_nm_per_rad];
+        let [least, most] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        let slack = 1e-9 * most.abs();
+        if !(stiffness >= least - slack && stiffness <= most + slack) {
+            return Err(JointError::Stiffness { angle, stiffness, range: [least, most] });
+        }
+        let agonist = first(|failed| {
+            let missing = |p: f64| kept(stand(p).map(|stand| stand.stiffness_nm_per_rad - stiffness), failed);
+            illinois(missing, range[0], range[1], TOLERANCE * range[1])
+        })?;
+        stand(agonist)
+    }
+
+    /// The agonist's pressures beside which a pressure of the antagonist holds the angle.
+    fn agonists(&self, angle: f64, outside: f64) -> Result<[f64; 2], JointError> {
+        let [low, high] = self.pressure;
+        let [one, other] = &self.muscles;
+        let own = |p: f64| Ok::<_, JointError>(one.pull(&self.linkage, angle, p)?.torque + outside);
+        let against = |p: f64| Ok::<_, JointError>(-other.pull(&self.linkage, angle, p)?.torque);
+        // Rising in p: what the agonist must reach, and must not pass.
+        let [weakest, strongest] = [against(low)?, against(high)?];
+        let reached = |torque: f64| {
+            first(|failed| {
+                illinois(|p| kept(own(p).map(|own| own - torque), failed), low, high, TOLERANCE * high)
+            })
+        };
+        if own(high)? < weakest || own(low)? > strongest {
+            return Err(JointError::Held {
+                angle,
+                outside,
+                range: [own(low)? - strongest, own(high)? - weakest],
+            });
+        }
+        let from = if own(low)? >= weakest { low } else { reached(weakest)? };
+        let to = if own(high)? <= strongest { high } else { reached(strongest)? };
+        Ok([from, to])
+    }
+
+    /// The joint with its valves shut where it stands: each muscle keeps P (V + V_dead)^n, n from 1 (slow, isothermal) to 1.4 (fast, adiabatic), with the dead
+    /// volume of fittings and tubes \[m^3\] of each.
+    ///
+    /// # Errors
+    /// As [`Joint::torque`].
+    pub fn closed(
+        &self,
+        angle: f64,
+        pressures: [f64; 2],
+        exponent: f64,
+        dead_m3: [f64; 2],
+    ) -> Result<Closed<'_>, JointError> {
+        let stand = self.stand(angle, pressures)?;
+        let constant = |i: usize| {
+            let side = stand.sides[i];
+            (side.pressure_pa + AMBIENT) * (side.volume_m3 + dead_m3[i]).powf(exponent)
+        };
+        Ok(Closed { joint: self, constant: [constant(0), constant(1)], exponent, dead_m3 })
+    }
+}
+
+impl Closed<'_> {
+    /// Gauge pressures of both at an angle \[Pa\].
+    ///
+    /// # Errors
+    /// [`JointError::Empty`] where a muscle has no gauge pressure left, or [`JointError::Muscle`].
+    pub fn pressures(&self, angle: f64) -> Result<[f64; 2], JointError> {
+        let mut pressures = [0.0; 2];
+        for (i, muscle) in self.joint.muscles.iter().enumerate() {
+            // Of fibres that don't stretch the volume doesn't depend on the pressure: one round; of others little: a few.
+            let mut p = self.joint.pressure[1];
+            for _ in 0..ROUNDS {
+                let (_, [volume]) = muscle.at(self.joint, angle, p, [Output::Volume])?;
+                let next = self.constant[i] / (volume + self.dead_m3[i]).powf(self.exponent) - AMBIENT;
+                if next <= 0.0 {
+                    return Err(JointError::Empty { side: muscle.side, angle, pressure_pa: next });
+                }
+                let step = (next - p).abs();
+                p = next;
+                if step <= 1e-12 * (p + AMBIENT) {
+                    break;
+                }
+            }
+            pressures[i] = p;
+        }
+        Ok(pressures)
+    }
+
+    /// Where it rests under an outside torque \[N m\].
+    ///
+    /// # Errors
+    /// As [`Joint::rest`] and [`Closed::pressures`].
+    pub fn rest(&self, outside: f64) -> Result<Stand, JointError> {
+        let torque = |angle: f64| {
+            let pressures = self.pressures(angle)?;
+            Ok(self.joint.pulls(angle, pressures)?.map(|pull| pull.torque).iter().sum::<f64>() + outside)
+        };
+        let middle = 0.5 * (self.joint.angle[0] + self.joint.angle[1]);
+        let angle = self.joint.balanced(torque, self.pressures(middle)?)?;
+        self.joint.stand(angle, self.pressures(angle)?)
+    }
+
+    /// Torque of both muscles at an angle \[N m\].
+    ///
+    /// # Errors
+    /// As [`Closed::pressures`].
+    pub fn torque(&self, angle: f64) -> Result<f64, JointError> {
+        self.joint.inside(angle)?;
+        let pressures = self.pressures(angle)?;
+        Ok(self.joint.pulls(angle, pressures)?.map(|pull| pull.torque).iter().sum())
+    }
+}
+
+/// A value, or NaN and the first error kept.
+fn kept(value: Result<f64, JointError>, failed: &mut Option<JointError>) -> f64 {
+    value.unwrap_or_else(|error| {
+        failed.get_or_insert(error);
+        f64::NAN
+    })
+}
+
+/// What a search finds, or the first error on its way.
+fn first(search: impl FnOnce(&mut Option<JointError>) -> f64) -> Result<f64, JointError> {
+    let mut failed = None;
+    let found = search(&mut failed);
+    failed.map_or(Ok(found), Err)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PULLEY: &str = "muscle = \"ppam-2-r16\"\nkind = \"pulley\"\nradius = \"40 mm\"\ncontraction = \"20 %\"\nangle = \"-25 deg..25 deg\"\npressure = \"0.5 bar..3 bar\"\n";
+    const LEVER: &str = "muscle = \"ppam-2-r16\"\nkind = \"lever\"\narm = \"40 mm\"\nbase = \"150 mm\"\nlever_angle = \"80 deg\"\ncontraction = \"20 %\"\nangle = \"-25..20 deg\"\npressure = \"0.5..3 bar\"\n";
+    const BRAIDS: &str = "muscle = \"dmsp-20-250\"\nkind = \"pulley\"\nradius = \"30 mm\"\ncontraction = \"12 %\"\nangle = \"-20 deg..20 deg\"\npressure = \"1 bar..6 bar\"\n";
+
+    fn joint(text: &str) -> Joint {
+        Joint::from_toml(text, "j.toml", None).unwrap()
+    }
+
+    /// Torque and stiffness as the other functions have them; the torque of a pulley is the difference of the forces times its radius.
+    #[test]
+    fn a_stand_is_torque_and_stiffness() {
+        for text in [PULLEY, LEVER, BRAIDS] {
+            let joint = joint(text);
+            for angle in [-0.2, 0.0, 0.15] {
+                let stand = joint.stand(angle, [2e5, 1.5e5]).unwrap();
+                let (torque, stiffness) =
+                    (joint.torque(angle, 2e5, 1.5e5).unwrap(), joint.stiffness(angle, 2e5, 1.5e5).unwrap());
+                assert!((stand.torque_nm - torque).abs() < 1e-9 * torque.abs().max(1.0));
+                let off = (stand.stiffness_nm_per_rad - stiffness).abs() / stiffness;
+                assert!(off < 1e-7, "{off:e}");
+                if text == PULLEY {
+                    let [one, other] = stand.sides.map(|side| side.force_n);
+                    assert!((stand.torque_nm - 0.04 * (one - other)).abs() < 1e-9);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_load_turns_the_joint_until_the_muscles_hold_it() {
+        for text in [PULLEY, LEVER, BRAIDS] {
+            let joint = joint(text);
+            let free = joint.rest([2e5, 2.1e5], 0.0).unwrap();
+            assert!((free.angle_rad - joint.angle(2e5, 2.1e5).unwrap()).abs() < 1e-8);
+            let loaded = joint.rest([2e5, 2.1e5], 1.5).unwrap();
+            assert!((loaded.torque_nm + 1.5).abs() < 1e-7 && loaded.angle_rad > free.angle_rad);
+            // A small load turns it by load over stiffness.
+            let small = joint.rest([2e5, 2.1e5], 1e-3).unwrap();
+            let turned = (small.angle_rad - free.angle_rad) * free.stiffness_nm_per_rad / 1e-3;
+            assert!((turned - 1.0).abs() < 1e-3, "{turned}");
+            assert!(matches!(joint.rest([2e5, 2.1e5], 1e3), Err(JointError::NoRest { .. })));
+        }
+    }
+
+    /// The way back: from the angle and the stiffness of a stand to its pressures.
+    #[test]
+    fn pressures_for_angle_and_stiffness() {
+        for text in [PULLEY, LEVER, BRAIDS] {
+            let joint = joint(text);
+            for (pressures, outside) in [([2e5, 1.6e5], 0.0), ([1.8e5, 2.2e5], 0.0), ([2.2e5, 2e5], -1.0)] {
+                let there = joint.rest(pressures, outside).unwrap();
+                let found =
+                    joint.pressures_for(there.angle_rad, there.stiffness_nm_per_rad, outside).unwrap();
+                for (side, p) in found.sides.iter().zip(pressures) {
+                    assert!((side.pressure_pa / p - 1.0).abs() < 1e-6, "{} {p}", side.pressure_pa);
+                }
+                let Err(JointError::Stiffness { range: [least, most], .. }) =
+                    joint.pressures_for(there.angle_rad, 1e6, outside)
+                else {
+                    panic!("no joint is as stiff")
+                };
+                assert!(least < there.stiffness_nm_per_rad && there.stiffness_nm_per_rad < most);
+                // Both ends of the range can be had.
+                for stiffness in [least, most] {
+                    let end = joint.pressures_for(there.angle_rad, stiffness, outside).unwrap();
+                    assert!((end.stiffness_nm_per_rad / stiffness - 1.0).abs() < 1e-6);
+                    assert!((end.torque_nm + outside).abs() < 1e-5);
+                }
+            }
+            assert!(matches!(joint.pressures_for(0.0, 10.0, 1e4), Err(JointError::Held { .. })));
+        }
+    }
+
+    /// What is held from outside is what is asked for; its standard deviation against many noisy readings.
+    #[test]
+    fn an_outside_torque_with_its_uncertainty() {
+        let joint = joint(LEVER);
+        let sd = Readings { pressure_pa: 800.0, angle_rad: 2e-3, force_n: 6.0 };
+        let loaded = joint.rest([2e5, 1.6e5], 2.0).unwrap();
+        let found = joint.outside(loaded.angle_rad, [2e5, 1.6e5], sd).unwrap();
+        assert!((found.torque_nm - 2.0).abs() < 1e-6);
+        let mut random = bulge_numerics::Random::new(3, 0);
+        let (mut sum, mut squares) = (0.0, 0.0);
+        let count = 4000;
+        for _ in 0..count {
+            let mut noise = |size: f64| size * random.normal();
+            let pressures = [2e5 + noise(800.0), 1.6e5 + noise(800.0)];
+            let angle = loaded.angle_rad + noise(2e-3);
+            let stand = joint.stand(angle, pressures).unwrap();
+            let arms = [Side::Agonist, Side::Antagonist].map(|side| joint.linkage.at(side, angle).arm);
+            let torque = -stand.torque_nm + arms[0] * noise(6.0) + arms[1] * noise(6.0);
+            sum += torque;
+            squares += (torque - 2.0).powi(2);
+        }
+        let spread = (squares / f64::from(count)).sqrt();
+        assert!((sum / f64::from(count) - 2.0).abs() < 0.1 * spread);
+        assert!((spread / found.sd_nm - 1.0).abs() < 0.05, "{spread} {}", found.sd_nm);
+        let whole = found.from_nm.iter().map(|part| part * part).sum::<f64>().sqrt();
+        assert!((whole / found.sd_nm - 1.0).abs() < 1e-12);
+    }
+
+    /// Shut valves: the stiffness is minus the slope of the closed torque, slow and fast; the gas is the same everywhere; dead volume makes it softer, and
+    /// endless dead volume as soft as open valves.
+    #[test]
+    fn closed_muscles_are_stiffer() {
+        for text in [PULLEY, LEVER, BRAIDS] {
+            let joint = joint(text);
+            let there = joint.rest([2e5, 1.8e5], 0.0).unwrap();
+            let (angle, pressures) = (there.angle_rad, [2e5, 1.8e5]);
+            for (exponent, stiffness) in
+                [(1.0, there.isothermal_nm_per_rad), (1.4, there.adiabatic_nm_per_rad)]
+            {
+                let closed = joint.closed(angle, pressures, exponent, [0.0; 2]).unwrap();
+                let found = closed.pressures(angle).unwrap();
+                assert!(found.iter().zip(pressures).all(|(a, b)| (a / b - 1.0).abs() < 1e-9));
+                let h = 1e-4;
+                let slope =
+                    -(closed.torque(angle + h).unwrap() - closed.torque(angle - h).unwrap()) / (2.0 * h);
+                println!("{exponent}: {stiffness} {slope}");
+                assert!((slope / stiffness - 1.0).abs() < 1e-6, "{slope} {stiffness}");
+                assert!(stiffness > 1.05 * there.stiffness_nm_per_rad);
+                let loaded = closed.rest(1.0).unwrap();
+                assert!((loaded.torque_nm + 1.0).abs() < 1e-7);
+                for (side, before) in loaded.sides.iter().zip(there.sides) {
+                    let gas = |side: SideStand| (side.pressure_pa + AMBIENT) * side.volume_m3.powf(exponent);
+                    assert!((gas(*side) / gas(before) - 1.0).abs() < 1e-9);
+                }
+                let open = joint.rest(pressures, 1.0).unwrap();
+                let roomy = joint.closed(angle, pressures, exponent, [1e-4; 2]).unwrap().rest(1.0).unwrap();
+                let endless = joint.closed(angle, pressures, exponent, [1e3; 2]).unwrap().rest(1.0).unwrap();
+                assert!(loaded.angle_rad < roomy.angle_rad && roomy.angle_rad < open.angle_rad);
+                assert!((endless.angle_rad / open.angle_rad - 1.0).abs() < 1e-6);
+            }
+        }
+    }
+}
