@@ -1,5 +1,7 @@
 //! What went wrong, as one message and an exit status.
 
+use bulge_design::heat::HeatError;
+use bulge_design::sensing::SensingError;
 use bulge_design::size::SizeError;
 use bulge_effects::CatalogueError;
 use bulge_effects::user::EffectFileError;
@@ -53,6 +55,10 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Size(Box<SizeError>),
     #[error("{0}")]
+    Sensing(Box<SensingError>),
+    #[error("{0}")]
+    Heat(Box<HeatError>),
+    #[error("{0}")]
     Sweep(Box<SweepError>),
     #[error("{0}")]
     Tabulate(Box<TabulateError>),
@@ -93,6 +99,19 @@ impl Failure {
             },
             Self::Model(error) => model_status(error),
             Self::Extended(_) | Self::Outside(_) => 3,
+            Self::Sensing(error) => match error.as_ref() {
+                SensingError::Equilibrium { .. }
+                | SensingError::Overstrained { .. }
+                | SensingError::NotMonotone { .. }
+                | SensingError::NoChange
+                | SensingError::NoPlace { .. } => 3,
+                _ => 1,
+            },
+            Self::Heat(error) => match error.as_ref() {
+                HeatError::Invalid { .. } => 1,
+                HeatError::Choked { .. } => 3,
+                HeatError::Step { .. } | HeatError::NotPeriodic { .. } => 4,
+            },
             Self::Size(error) if matches!(**error, SizeError::Muscle { .. }) => 3,
             Self::Tabulate(error) => match error.as_ref() {
                 TabulateError::Build(BuildError::NoValue(_)) => 3,
@@ -146,6 +165,8 @@ boxed!(
     Inference(InferenceError),
     Model(ModelError),
     Size(SizeError),
+    Sensing(SensingError),
+    Heat(HeatError),
     Sweep(SweepError),
     Tabulate(TabulateError),
     Export(ExportError)

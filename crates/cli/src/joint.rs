@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments::{list, quantity};
+use crate::arguments::{in_unit, list, quantity};
 use crate::failure::Failure;
 use crate::files;
 use crate::text::{shown, significant, table};
@@ -56,13 +56,13 @@ pub(crate) struct JointCommand {
     #[arg(long, requires = "closed", allow_hyphen_values = true)]
     dead_volume: Option<String>,
     /// Standard deviation of each pressure reading
-    #[arg(long, default_value = "0 Pa")]
+    #[arg(long, default_value = "0 Pa", allow_hyphen_values = true)]
     pressure_sd: String,
     /// Standard deviation of the angle reading
-    #[arg(long, default_value = "0 deg")]
+    #[arg(long, default_value = "0 deg", allow_hyphen_values = true)]
     angle_sd: String,
     /// Standard deviation of the model's force: what `bulge fit` leaves
-    #[arg(long, default_value = "0 N")]
+    #[arg(long, default_value = "0 N", allow_hyphen_values = true)]
     force_sd: String,
     /// Draw the torque against the angle at several pairs of pressures
     #[arg(long, value_name = "FILE.svg")]
@@ -78,7 +78,7 @@ impl JointCommand {
         let pressures = self.pressures()?;
         let angle = self.angle.as_deref().map(|text| quantity::<Angle>("--angle", text)).transpose()?;
         let angle = angle.map(Quantity::si);
-        let torque = self.torque.as_deref().map_or(Ok(0.0), |text| in_unit("--torque", text, TORQUE))?;
+        let torque = self.torque.as_deref().map_or(Ok(0.0), |text| in_unit("--torque", text, &TORQUE))?;
         let wrong = |option, what: &str| Err(Failure::Value { option, what: what.to_owned() });
         let (document, text) = match (pressures, angle, &self.stiffness) {
             (Some(pressures), None, _) if self.closed.is_some() => self.shut(&joint, pressures, torque)?,
@@ -100,7 +100,7 @@ impl JointCommand {
                 (json!({ "stand": stand, "outside": outside, "readings": readings }), text)
             }
             (None, Some(angle), Some(stiffness)) => {
-                let stiffness = in_unit("--stiffness", stiffness, STIFFNESS)?;
+                let stiffness = in_unit("--stiffness", stiffness, &STIFFNESS)?;
                 let stand = joint.pressures_for(angle, stiffness, torque)?;
                 (json!({ "stand": stand }), standing("stands", &stand, torque))
             }
@@ -201,22 +201,6 @@ const STIFFNESS: [(&str, f64); 4] = [
     ("N m/deg", 57.295_779_513_082_32),
     ("Nm/deg", 57.295_779_513_082_32),
 ];
-
-/// A number with one of some units, in the first of them.
-fn in_unit(option: &'static str, text: &str, units: [(&str, f64); 4]) -> Result<f64, Failure> {
-    let text = text.trim();
-    let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE".contains(c));
-    let (number, unit) = (&text[..text.len() - unit.len()], unit.trim());
-    let factor = units.iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor);
-    match (number.trim().parse::<f64>(), factor) {
-        (Ok(number), Some(factor)) if number.is_finite() => Ok(number * factor),
-        _ => {
-            let what =
-                format!("`{text}` can't be read: write such as \"2 {}\" (or {})", units[0].0, units[2].0);
-            Err(Failure::Value { option, what })
-        }
-    }
-}
 
 fn degrees(angle: f64) -> String {
     // A rest at zero is no angle of 1e-12.

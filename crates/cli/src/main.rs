@@ -11,11 +11,13 @@ mod elements;
 mod failure;
 mod files;
 mod fit;
+mod heat;
 mod joint;
 mod membrane;
 mod muscle;
 mod next;
 mod plan;
+mod sense;
 mod shape;
 mod simulate;
 mod size;
@@ -62,6 +64,10 @@ enum Command {
     Compare(compare::CompareCommand),
     /// From a load over a stroke to muscles, lengths and pressures
     Size(Box<size::SizeCommand>),
+    /// A channel of liquid metal around a muscle: resistance against contraction
+    Sense(Box<sense::SenseCommand>),
+    /// How warm a muscle gets that is charged again and again
+    Heat(Box<heat::HeatCommand>),
     /// Two antagonistic muscles on a joint: angle, torque, stiffness, pressures
     Joint(Box<joint::JointCommand>),
     /// Which physical effect is missing, and how sure that is
@@ -105,6 +111,8 @@ fn main() -> ExitCode {
         Command::Table(command) => command.run(),
         Command::Size(command) => command.run(),
         Command::Joint(command) => command.run(),
+        Command::Sense(command) => command.run(),
+        Command::Heat(command) => command.run(),
         Command::Compare(command) => command.run(),
         Command::Diagnose(command) => command.run(),
         Command::Fit(command) => command.run(),

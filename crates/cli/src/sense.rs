@@ -1,0 +1,248 @@
+//! `bulge sense`: a channel of liquid metal wound round a muscle, whose resistance tells the contraction.
+
+use bulge_design::sensing::{
+    Curve, EGAIN_RESISTIVITY_OHM_M, Goal, Layer, Linearity, Options, Placement, Range, Reference, Search,
+    Sensor, Winding,
+};
+use bulge_muscles::units::{self, Quantity};
+use bulge_muscles::{Length, Pressure, Ratio};
+use bulge_report::lines_svg;
+use clap::Args;
+use serde_json::json;
+use std::f64::consts::PI;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use crate::arguments::{extended, in_unit, quantity};
+use crate::failure::Failure;
+use crate::files;
+use crate::text::{significant, table};
+
+/// Units of a resistance.
+const RESISTANCE: [(&str, f64); 4] = [("ohm", 1.0), ("mohm", 1e-3), ("uohm", 1e-6), ("kohm", 1e3)];
+/// Rows of the table.
+const ROWS: usize = 11;
+/// Zones of the search for the best place.
+const CENTRES: usize = 81;
+
+/// A channel of liquid metal wound round a muscle, whose resistance tells the contraction (S3, section 5).
+///
+/// The channel lies in an elastomer outside the fibres and goes with them: as the muscle bulges, it gets longer and thinner. Resistance against contraction, how
+/// straight that is, what a noise of the resistance makes of the contraction, and where on the muscle to wind.
+#[derive(Debug, Args)]
+pub(crate) struct SenseCommand {
+    /// Muscle file, or name of a shipped muscle
+    muscle: String,
+    /// Gauge pressure
+    #[arg(long, default_value = "1 bar", allow_hyphen_values = true)]
+    pressure: String,
+    /// Range of contractions
+    #[arg(long, default_value = "5 %..30 %", allow_hyphen_values = true)]
+    contraction: String,
+    /// Points of the range, 11 or more
+    #[arg(long, default_value_t = 101)]
+    points: usize,
+    /// Turns of the channel
+    #[arg(long, default_value_t = 20.0, allow_hyphen_values = true)]
+    turns: f64,
+    /// Where it is wound, from a fitting, in parts of the fibre's length
+    #[arg(long, default_value = "30 %..70 %", allow_hyphen_values = true)]
+    zone: String,
+    /// Diameter of the channel, round, as it is made
+    #[arg(long, default_value = "0.25 mm", allow_hyphen_values = true)]
+    channel: String,
+    /// How far its centre lies outside the fibres
+    #[arg(long, default_value = "0.5 mm", allow_hyphen_values = true)]
+    offset: String,
+    /// Standard deviation of the resistance that is read
+    #[arg(long, default_value = "1 mohm", allow_hyphen_values = true)]
+    noise: String,
+    /// Seek the best place for a zone of this width, such as "40 %"
+    #[arg(long, allow_hyphen_values = true)]
+    best: Option<String>,
+    /// What is best: a gauge factor of at least so much, and as straight as can be; without it the most sensitive place
+    #[arg(long, requires = "best")]
+    least_gauge_factor: Option<f64>,
+    /// Write all points as CSV ("-": to standard output)
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Draw the resistance against the contraction
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    /// Your own effects, where the muscle file states them
+    #[arg(long, value_name = "FILE")]
+    effects: Option<PathBuf>,
+    /// One JSON document on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl SenseCommand {
+    pub(crate) fn run(&self) -> Result<String, Failure> {
+        let (muscle, extended) = extended(&self.muscle, self.effects.as_deref())?;
+        let pressure = quantity::<Pressure>("--pressure", &self.pressure)?;
+        let (from, to) = ends(("--contraction", &self.contraction))?;
+        let range = Range { from, to, points: self.points };
+        let noise = in_unit("--noise", &self.noise, &RESISTANCE)?;
+        let sensor = Sensor::new(&extended, pressure, self.winding()?, Reference::Rest, Options::default())?;
+        let placed = self.best.as_deref().map(|width| self.placed(&sensor, range, width)).transpose()?;
+        let sensor = match &placed {
+            Some(placed) => sensor.rewound(placed.winding)?,
+            None => sensor,
+        };
+        let curve = sensor.curve(range)?;
+        let resolution = curve.resolution(noise)?;
+        let mut wrote = String::new();
+        let to_stdout = self.csv.as_deref() == Some(Path::new("-"));
+        if let Some(path) = self.csv.as_deref().filter(|_| !to_stdout) {
+            files::write(path, csv(&curve).as_bytes())?;
+            let _ = writeln!(wrote, "  wrote {}", path.display());
+        }
+        if let Some(path) = &self.plot {
+            files::write(path, drawn(muscle.name(), &curve)?.as_bytes())?;
+            let _ = writeln!(wrote, "  wrote {}", path.display());
+        }
+        if self.json {
+            let document = json!({
+                "schema": "bulge.sensing/1",
+                "muscle": muscle.name(),
+                "winding": sensor.winding(),
+                "curve": curve,
+                "resolution": resolution,
+                "scanned": placed.as_ref().map(|placed| &placed.scanned),
+            });
+            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+        }
+        if to_stdout {
+            return Ok(csv(&curve));
+        }
+        let heading = format!("{} at {pressure}\n\n", muscle.name());
+        let worst = format!(
+            "  {} {} of noise are {} % of contraction at worst, {} mm (at {} %)\n",
+            significant(1e3 * noise, 3),
+            "mohm",
+            significant(100.0 * resolution.worst, 2),
+            significant(1e3 * resolution.worst_m, 2),
+            significant(100.0 * resolution.worst_at, 3)
+        );
+        Ok(heading
+            + &wound(sensor.winding(), &sensor)
+            + &rows(&curve)
+            + &straight(&curve)
+            + &worst
+            + &best(placed.as_ref())
+            + &wrote)
+    }
+
+    fn winding(&self) -> Result<Winding, Failure> {
+        let (start, end) = ends(("--zone", &self.zone))?;
+        let channel = quantity::<Length>("--channel", &self.channel)?.si();
+        Ok(Winding {
+            start,
+            end,
+            turns: self.turns,
+            section_m2: 0.25 * PI * channel * channel.abs(),
+            offset_m: quantity::<Length>("--offset", &self.offset)?.si(),
+            layer: Layer::Thinning,
+            resistivity_ohm_m: EGAIN_RESISTIVITY_OHM_M,
+        })
+    }
+
+    fn placed(&self, sensor: &Sensor, range: Range, width: &str) -> Result<Placement, Failure> {
+        let width = quantity::<Ratio>("--best", width)?.si();
+        let goal = match self.least_gauge_factor {
+            Some(least_sensitivity) => Goal::MostLinear { least_sensitivity },
+            None => Goal::MostSensitive,
+        };
+        let search = Search { range, widths: [width; 2], width_steps: 1, centres: CENTRES, goal };
+        Ok(sensor.best_place(&search)?)
+    }
+}
+
+/// Both ends of a range of parts.
+fn ends((option, text): (&'static str, &str)) -> Result<(f64, f64), Failure> {
+    let (from, to) = units::parse_range::<Ratio>(text)
+        .map_err(|source| Failure::Option { option, source: Box::new(source) })?;
+    Ok((from.si(), to.si()))
+}
+
+fn wound(winding: &Winding, sensor: &Sensor) -> String {
+    format!(
+        "  {} turns of a channel {} mm wide, {} mm outside the fibres, from {} to {} % of them: {} mm, {} ohm at rest\n\n",
+        significant(winding.turns, 4),
+        significant(1e3 * winding.diameter_m(), 3),
+        significant(1e3 * winding.offset_m, 3),
+        significant(100.0 * winding.start, 3),
+        significant(100.0 * winding.end, 3),
+        significant(1e3 * sensor.reference_length_m(), 4),
+        significant(sensor.reference_resistance_ohm(), 4)
+    )
+}
+
+fn rows(curve: &Curve) -> String {
+    let heading = ["contraction", "resistance", "change", "gauge factor", "largest strain"];
+    let units = ["%", "ohm", "%", "", "%"];
+    let mut rows = vec![heading.map(String::from).to_vec(), units.map(String::from).to_vec()];
+    let every = (curve.readings.len() - 1).div_ceil(ROWS - 1).max(1);
+    for (reading, slope) in curve.readings.iter().zip(&curve.sensitivity).step_by(every) {
+        rows.push(vec![
+            significant(100.0 * reading.contraction, 4),
+            significant(reading.resistance_ohm, 5),
+            significant(100.0 * reading.relative_change, 4),
+            significant(*slope, 4),
+            significant(100.0 * reading.largest_strain, 3),
+        ]);
+    }
+    table(&rows)
+}
+
+fn straight(curve: &Curve) -> String {
+    let Some(Linearity { mean_sensitivity, best_fit_percent, terminal_percent, .. }) = curve.linearity else {
+        return "\n  the resistance doesn't change\n".to_owned();
+    };
+    format!(
+        "\n  gauge factor {} in the mean; off the best straight line by {} % of full scale, off that through both ends by {} %\n",
+        significant(mean_sensitivity, 4),
+        significant(best_fit_percent, 3),
+        significant(terminal_percent, 3)
+    )
+}
+
+fn best(placed: Option<&Placement>) -> String {
+    let Some(placed) = placed else { return String::new() };
+    format!(
+        "  the best of {} places: the middle of the zone at {} % of the fibres\n",
+        placed.scanned.len(),
+        significant(100.0 * placed.best.centre, 4)
+    )
+}
+
+fn csv(curve: &Curve) -> String {
+    let mut text = "contraction [-],resistance [ohm],change [-],gauge_factor [-],channel_length [m],largest_strain [-]\n".to_owned();
+    for (reading, slope) in curve.readings.iter().zip(&curve.sensitivity) {
+        let _ = writeln!(
+            text,
+            "{},{},{},{slope},{},{}",
+            reading.contraction,
+            reading.resistance_ohm,
+            reading.relative_change,
+            reading.channel_length_m,
+            reading.largest_strain
+        );
+    }
+    text
+}
+
+/// The curve and the best straight line.
+fn drawn(title: &str, curve: &Curve) -> Result<String, Failure> {
+    let read: Vec<[f64; 2]> =
+        curve.readings.iter().map(|at| [100.0 * at.contraction, at.resistance_ohm]).collect();
+    let mut lines = Vec::new();
+    if let Some(line) = &curve.linearity {
+        let ends = [read.first(), read.last()].into_iter().flatten();
+        let points = ends.map(|[x, _]| [*x, line.intercept_ohm + line.slope_ohm * x / 100.0]).collect();
+        lines.push(("best straight line".to_owned(), points));
+    }
+    lines.push(("channel".to_owned(), read));
+    Ok(lines_svg(title, ["contraction [%]", "resistance [ohm]"], &lines)?)
+}

@@ -1,0 +1,113 @@
+//! `bulge sense` and `bulge heat` as a user sees them.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod support;
+
+use serde_json::Value;
+use support::{Folder, bulge, failure, json};
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+/// The resistance rises as the muscle bulges; the table, the CSV and the JSON are one curve.
+#[test]
+fn a_channel_tells_the_contraction() {
+    let folder = Folder::new("sense");
+    let (plot, csv) = (folder.path("sense.svg"), folder.path("sense.csv"));
+    let document = json(&["sense", "ppam-2-r16", "--json", "--plot", &plot, "--csv", &csv]);
+    assert_eq!(document["schema"], "bulge.sensing/1");
+    let readings = document["curve"]["readings"].as_array().unwrap();
+    let resistances: Vec<f64> = readings.iter().map(|at| number(&at["resistance_ohm"])).collect();
+    assert_eq!(resistances.len(), 101);
+    assert!(resistances.windows(2).all(|pair| pair[1] > pair[0]));
+    // rho L/A of 20 turns at rest: a helix of 16.5 mm on 44 mm.
+    let length = ((20.0 * std::f64::consts::TAU * 0.0165).powi(2) + 0.044_f64.powi(2)).sqrt();
+    let rest = 29.4e-8 * length / (0.25 * std::f64::consts::PI * 0.25e-3 * 0.25e-3);
+    assert!((number(&document["curve"]["reference_resistance_ohm"]) / rest - 1.0).abs() < 1e-9);
+    // 1 mohm over the slope of the last two points.
+    let slope = (resistances[100] - resistances[99]) / 0.0025;
+    assert!((number(&document["resolution"]["worst"]) * slope / 1e-3 - 1.0).abs() < 0.01);
+    let written = std::fs::read_to_string(csv).unwrap();
+    assert_eq!(written.lines().count(), 102);
+    assert!(written.lines().last().unwrap().starts_with("0.3,"));
+    assert!(std::fs::read_to_string(plot).unwrap().contains("resistance [ohm]"));
+    assert_eq!(folder.names().len(), 2);
+    let text = bulge(&[
+        "sense",
+        "dmsp-20-250",
+        "--contraction",
+        "2 %..25 %",
+        "--best",
+        "20 %",
+        "--least-gauge-factor",
+        "2",
+    ]);
+    let text = String::from_utf8(text.stdout).unwrap();
+    assert!(
+        text.contains("the best of 81 places: the middle of the zone at 10") && text.contains("gauge factor"),
+        "{text}"
+    );
+}
+
+/// As S3 reports: the end without a pipe is hottest; a longer pipe cools the end and warms the inlet, a wider one the other way.
+#[test]
+fn pipes_cool_the_closed_end() {
+    let folder = Folder::new("heat");
+    let plot = folder.path("heat.svg");
+    let document = json(&["heat", "--cells", "20", "--json", "--plot", &plot]);
+    assert_eq!(document["schema"], "bulge.heat/1");
+    let cases = document["cases"].as_array().unwrap();
+    let of = |key: &str| -> Vec<f64> { cases.iter().map(|case| number(&case["solution"][key])).collect() };
+    let (end, inlet, hottest) = (of("end_rise_k"), of("inlet_rise_k"), of("hottest_rise_k"));
+    assert!(end[0] > end[1] && end[1] > end[3] && end[3] > end[2], "{end:?}");
+    assert!(inlet[2] > inlet[1] && inlet[2] > inlet[3] && inlet[1] > inlet[0], "{inlet:?}");
+    assert!(hottest[1..].iter().all(|rise| *rise < hottest[0]));
+    for case in cases {
+        let solution = &case["solution"];
+        assert!((number(&solution["heat_out_j"]) / number(&solution["enthalpy_in_j"]) - 1.0).abs() < 1e-4);
+    }
+    assert!(std::fs::read_to_string(plot).unwrap().contains("100 x 4.0 mm"));
+    let text =
+        String::from_utf8(bulge(&["heat", "--cells", "10", "--pipe", "none,150 mm x 4 mm"]).stdout).unwrap();
+    assert!(
+        text.contains("closed end") && text.contains("150 x 4.0 mm") && text.contains("no life"),
+        "{text}"
+    );
+}
+
+#[test]
+fn mistakes_are_named() {
+    let folder = Folder::new("design-mistakes");
+    // Along fibres that don't stretch nothing is felt.
+    let rigid =
+        "name = \"rigid\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n";
+    let rigid = folder.write("rigid.toml", rigid);
+    for (given, status, words) in [
+        (vec!["sense", "ppam-2-r16", "--turns", "5000"], 1, "take fewer turns"),
+        (vec!["sense", "ppam-2-r16", "--zone", "70 %..30 %"], 1, "from 0.7 to 0.3"),
+        (vec!["sense", "ppam-2-r16", "--channel", "-1 mm"], 1, "section of the channel"),
+        (vec!["sense", "ppam-2-r16", "--points", "3"], 1, "11 to 10001"),
+        (vec!["sense", "ppam-2-r16", "--noise", "1"], 1, "--noise: `1` can't be read"),
+        (
+            vec!["sense", "ppam-2-r16", "--contraction", "5 %..60 %"],
+            3,
+            "the limit of this muscle is 41.8497 %",
+        ),
+        (vec!["sense", &rigid, "--turns", "0", "--offset", "0 mm"], 3, "this winding feels nothing"),
+        (
+            vec!["sense", "ppam-2-r16", "--best", "20 %", "--least-gauge-factor", "99"],
+            3,
+            "none of the 81 zones",
+        ),
+        (vec!["heat", "--pipe", "4"], 1, "`4` is no pipe"),
+        (vec!["heat", "--pipe", "300 mm x 4 mm"], 1, "length of the pipe"),
+        (vec!["heat", "--period", "1"], 1, "--period: `1` can't be read"),
+        (vec!["heat", "--pressure", "5 bar..1 bar"], 1, "high gauge pressure"),
+        (vec!["heat", "--port", "0.2 mm", "--pipe", "none"], 3, "Mach"),
+    ] {
+        let (found, message) = failure(&given);
+        assert!(found == status && message.contains(words), "{given:?}: {found} {message}");
+    }
+}
