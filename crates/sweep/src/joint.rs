@@ -8,6 +8,7 @@
 
 mod field;
 mod file;
+mod four_bar;
 mod geometry;
 mod stand;
 #[cfg(test)]
@@ -15,7 +16,8 @@ mod tests;
 
 pub use field::{JointField, JointOutput};
 pub use file::JOINT_EXAMPLE;
-pub use geometry::{Linkage, Side};
+pub use four_bar::FourBar;
+pub use geometry::{Drive, Linkage, Side};
 pub use stand::{Closed, Outside, Readings, SideStand, Stand};
 
 use bulge_fibre::Approach;

@@ -23,8 +23,8 @@ pub use family::{Family, FamilyError, Member};
 pub use file::SWEEP_EXAMPLE;
 pub use folder::{Promise, write_durably};
 pub use joint::{
-    Closed, JOINT_EXAMPLE, Joint, JointError, JointField, JointMuscle, JointOutput, Linkage, Outside,
-    Readings, Side, SideStand, Stand,
+    Closed, Drive, FourBar, JOINT_EXAMPLE, Joint, JointError, JointField, JointMuscle, JointOutput, Linkage,
+    Outside, Readings, Side, SideStand, Stand,
 };
 pub use muscle_field::MuscleField;
 pub use output::Output;

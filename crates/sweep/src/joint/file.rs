@@ -5,7 +5,7 @@ use bulge_muscles::{Angle, Dimension, FileError, Length, Parameter, Quantity as 
 use std::f64::consts::PI;
 use std::path::Path;
 
-use super::{Joint, JointMuscle, JointOutput, Linkage, Side};
+use super::{Drive, FourBar, Joint, JointMuscle, JointOutput, Linkage, Side};
 use crate::file::scale::Scale;
 use crate::file::wish;
 
@@ -18,11 +18,17 @@ name = \"knee\"
 muscle = \"ppam-2-r16\"           # both: a muscle file, beside this one, or a shipped muscle
 # agonist = \"ppam-2-r16\"        # or each
 # antagonist = \"ppam-2-r11\"
-kind = \"pulley\"                 # or \"lever\"
+kind = \"pulley\"                 # or \"lever\"; or \"four-bar\", with the pulley or the lever on its crank
 radius = \"40 mm\"                # of the pulley
 # arm = \"40 mm\"                 # of a lever: from the joint's axis to the attachment on the moving link,
 # base = \"150 mm\"               # to the attachment on the base,
 # lever_angle = \"90 deg\"        # and the angle between both at the joint's angle 0; mirrored for the antagonist
+# ground = \"100 mm\"             # of a four-bar linkage: from the crank's pivot to the joint's axis,
+# crank = \"40 mm\"               # crank,
+# coupler = \"90 mm\"             # coupler,
+# rocker = \"50 mm\"              # from the joint's axis to the coupler's end on the moving link,
+# rocker_angle = \"115 deg\"       # and its angle against the line from the crank's pivot through the joint's axis, at the angle 0
+# crossed = false               # whether the coupler crosses that line
 contraction = \"20 %\"            # of both muscles at the angle 0
 # agonist_contraction = \"20 %\"  # or of each
 # antagonist_contraction = \"18 %\"
@@ -49,6 +55,12 @@ const TOP: Keys = &[
     ("arm", "arm = \"40 mm\""),
     ("base", "base = \"150 mm\""),
     ("lever_angle", "lever_angle = \"90 deg\""),
+    ("ground", "ground = \"100 mm\""),
+    ("crank", "crank = \"40 mm\""),
+    ("coupler", "coupler = \"90 mm\""),
+    ("rocker", "rocker = \"50 mm\""),
+    ("rocker_angle", "rocker_angle = \"115 deg\""),
+    ("crossed", "crossed = false"),
     ("contraction", "contraction = \"15 %\""),
     ("agonist_contraction", "agonist_contraction = \"15 %\""),
     ("antagonist_contraction", "antagonist_contraction = \"15 %\""),
@@ -154,29 +166,71 @@ fn each(
     }
 }
 
+/// Keys of a pulley, of a lever, and of a four-bar linkage beside these.
+const PULLEY: &[&str] = &["radius"];
+const LEVER: &[&str] = &["arm", "base", "lever_angle"];
+const FOUR_BAR: &[&str] = &["ground", "crank", "coupler", "rocker", "rocker_angle", "crossed"];
+
 fn linkage(settings: &Settings<'_>) -> Result<Linkage, FileError> {
-    let kind = settings.word("kind", &[("pulley", false), ("lever", true)])?;
-    let is_lever = kind.ok_or_else(|| settings.missing("kind"))?;
-    let strange: &[&str] = if is_lever { &["radius"] } else { &["arm", "base", "lever_angle"] };
-    if let Some(key) = strange.iter().find(|key| settings.get(key).is_some()) {
-        let (this, other) = if is_lever { ("lever", "pulley") } else { ("pulley", "lever") };
-        let what = format!("a {this} has no `{key}`");
-        let instead = format!("delete `{key}`, or write `kind = \"{other}\"`");
-        return Err(settings.error(settings.key_span(key), what, instead));
-    }
-    let positive = |key: &'static str, value: f64| {
-        let stated = settings.get(key).ok_or_else(|| settings.missing(key))?;
-        if value > 0.0 {
-            return Ok(value);
+    let kinds =
+        [("pulley", [true, false, false]), ("lever", [false, true, false]), ("four-bar", [true, true, true])];
+    let kind = settings.word("kind", &kinds)?.ok_or_else(|| settings.missing("kind"))?;
+    let [is_pulley, is_lever, is_four_bar] = kind;
+    for (keys, belongs) in [(PULLEY, is_pulley), (LEVER, is_lever), (FOUR_BAR, is_four_bar)] {
+        let strange = keys.iter().find(|key| settings.get(key).is_some());
+        if let (Some(key), false) = (strange, belongs) {
+            let this = if is_lever { "lever" } else { "pulley" };
+            let other = if keys == FOUR_BAR {
+                "four-bar"
+            } else if is_lever {
+                "pulley"
+            } else {
+                "lever"
+            };
+            let what = format!("a {this} has no `{key}`");
+            let instead = format!("delete `{key}`, or write `kind = \"{other}\"`");
+            return Err(settings.error(settings.key_span(key), what, instead));
         }
-        Err(settings.unreadable(key, stated, format!("`{key}` is {value}, but must be > 0")))
-    };
-    let length = |key| positive(key, settings.size::<Length>(key)?);
-    if !is_lever {
-        return Ok(Linkage::Pulley { radius: length("radius")? });
     }
-    let lever_angle = positive("lever_angle", settings.size::<Angle>("lever_angle")?)?;
-    Ok(Linkage::Lever { arm: length("arm")?, base: length("base")?, lever_angle })
+    let has = |keys: &'static [&'static str]| keys.iter().find(|key| settings.get(key).is_some()).copied();
+    let drive = match (is_four_bar, has(PULLEY), has(LEVER)) {
+        (true, Some(_), Some(key)) => {
+            let what = format!("the crank has a pulley (`radius`) and a lever (`{key}`)");
+            return Err(settings.error(settings.key_span(key), what, "delete one of the two"));
+        }
+        (true, Some(_), None) | (false, _, _) if is_pulley => {
+            Drive::Pulley { radius: length(settings, "radius")? }
+        }
+        _ => Drive::Lever {
+            arm: length(settings, "arm")?,
+            base: length(settings, "base")?,
+            lever_angle: positive(settings, "lever_angle", settings.size::<Angle>("lever_angle")?)?,
+        },
+    };
+    if !is_four_bar {
+        return Ok(drive.linkage());
+    }
+    let bar = FourBar {
+        ground: length(settings, "ground")?,
+        crank: length(settings, "crank")?,
+        coupler: length(settings, "coupler")?,
+        rocker: length(settings, "rocker")?,
+        rocker_angle: positive(settings, "rocker_angle", settings.size::<Angle>("rocker_angle")?)?,
+        is_crossed: settings.flag("crossed")?.unwrap_or(false),
+    };
+    Ok(Linkage::FourBar { bar, drive })
+}
+
+fn positive(settings: &Settings<'_>, key: &'static str, value: f64) -> Result<f64, FileError> {
+    let stated = settings.get(key).ok_or_else(|| settings.missing(key))?;
+    if value > 0.0 {
+        return Ok(value);
+    }
+    Err(settings.unreadable(key, stated, format!("`{key}` is {value}, but must be > 0")))
+}
+
+fn length(settings: &Settings<'_>, key: &'static str) -> Result<f64, FileError> {
+    positive(settings, key, settings.size::<Length>(key)?)
 }
 
 fn range(settings: &Settings<'_>, key: &'static str, scale: &Scale) -> Result<[f64; 2], FileError> {
@@ -233,13 +287,33 @@ fn check(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
         let instead = "write such as `pressure = \"0.5 bar..3 bar\"`";
         return Err(settings.error(settings.value_span("pressure"), what, instead));
     }
+    check_bars(settings, joint)?;
     check_lever(settings, joint)?;
     joint.muscles.iter().try_for_each(|muscle| check_muscle(settings, joint, muscle))
 }
 
+/// Links that don't close, or whose crank stands still, for either muscle: the antagonist's are the mirror image.
+fn check_bars(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
+    let Linkage::FourBar { bar, .. } = joint.linkage else { return Ok(()) };
+    let [low, high] = joint.angle;
+    let most = high.abs().max(low.abs());
+    let Some(angle) = bar.fault([-most, most]) else { return Ok(()) };
+    let what = format!(
+        "the four-bar linkage of one of the muscles doesn't close, or stands at a dead centre, at the angle {:.4} deg",
+        // Without the sign of a zero.
+        angle.to_degrees() + 0.0
+    );
+    let instead = "write a narrower range of `angle`, or other lengths of the links";
+    Err(settings.error(settings.value_span("angle"), what, instead))
+}
+
 /// A lever that is turned through its dead centre pulls the other way from there on.
 fn check_lever(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
-    let Linkage::Lever { lever_angle, .. } = joint.linkage else { return Ok(()) };
+    let (Linkage::Lever { lever_angle, .. }
+    | Linkage::FourBar { drive: Drive::Lever { lever_angle, .. }, .. }) = joint.linkage
+    else {
+        return Ok(());
+    };
     let room = lever_angle.min(PI - lever_angle);
     if room <= 0.0 {
         let what =
@@ -247,7 +321,14 @@ fn check_lever(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> 
         let instead = "write such as `lever_angle = \"90 deg\"`";
         return Err(settings.error(settings.value_span("lever_angle"), what, instead));
     }
-    if let Some(angle) = joint.angle.into_iter().find(|angle| angle.abs() >= room) {
+    let turn = |angle: f64| match joint.linkage {
+        Linkage::FourBar { bar, .. } => [angle, -angle]
+            .map(|angle| bar.turn(angle).map_or(f64::INFINITY, |turn| turn.turn.abs()))
+            .into_iter()
+            .fold(0.0, f64::max),
+        _ => angle.abs(),
+    };
+    if let Some(angle) = joint.angle.into_iter().find(|angle| turn(*angle) >= room) {
         let at = room.to_degrees().copysign(angle);
         let what = format!(
             "a lever is at its dead centre at the angle {at:.4} deg: beyond it the muscle would turn the joint the other way"

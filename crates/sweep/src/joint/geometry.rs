@@ -1,6 +1,8 @@
-//! How muscles act on a joint: a pulley, or levers with the law of cosines.
+//! How muscles act on a joint: a pulley, levers with the law of cosines, or either of them on the crank of a four-bar linkage.
 
 use serde::Serialize;
+
+use super::four_bar::{FourBar, Turn};
 
 /// Which of the two muscles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -49,6 +51,43 @@ pub enum Linkage {
         /// Angle phi(0) between both at the joint's angle 0 \[rad\].
         lever_angle: f64,
     },
+    /// A four-bar linkage from the joint to a crank, on which the muscle pulls.
+    FourBar {
+        /// Its links.
+        bar: FourBar,
+        /// How the muscle turns the crank.
+        drive: Drive,
+    },
+}
+
+/// How a muscle turns the crank of a four-bar linkage.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case", tag = "kind")]
+pub enum Drive {
+    /// As [`Linkage::Pulley`].
+    Pulley {
+        /// Its radius \[m\].
+        radius: f64,
+    },
+    /// As [`Linkage::Lever`], with the angle at the joint's angle 0.
+    Lever {
+        /// From the crank's pivot to the attachment on the crank \[m\].
+        arm: f64,
+        /// From the crank's pivot to the attachment on the base \[m\].
+        base: f64,
+        /// Angle between both at the joint's angle 0 \[rad\].
+        lever_angle: f64,
+    },
+}
+
+impl Drive {
+    /// The same on the joint itself.
+    pub(super) const fn linkage(self) -> Linkage {
+        match self {
+            Self::Pulley { radius } => Linkage::Pulley { radius },
+            Self::Lever { arm, base, lever_angle } => Linkage::Lever { arm, base, lever_angle },
+        }
+    }
 }
 
 /// What an angle of the joint means for a muscle.
@@ -88,6 +127,17 @@ impl Linkage {
                     arm_by_angle: (by_phi * by_phi - arm * base * cos) / distance,
                 }
             }
+            Self::FourBar { bar, drive } => {
+                // The antagonist's links are the mirror image: chi(-theta) turned round. Outside the range that was checked nothing is pulled.
+                let still = Turn { turn: f64::NAN, ratio: f64::NAN, bend: f64::NAN };
+                let Turn { turn, ratio, bend } = bar.turn(sign * angle).unwrap_or(still);
+                let there = drive.linkage().at(side, sign * turn);
+                Reach {
+                    shortening: there.shortening,
+                    arm: there.arm * ratio,
+                    arm_by_angle: there.arm_by_angle * ratio * ratio + there.arm * sign * bend,
+                }
+            }
         }
     }
 
@@ -96,6 +146,7 @@ impl Linkage {
         match *self {
             Self::Pulley { .. } => None,
             Self::Lever { arm, base, lever_angle } => Some(distance(arm, base, lever_angle)),
+            Self::FourBar { drive, .. } => drive.linkage().distance(),
         }
     }
 }
@@ -131,6 +182,45 @@ mod tests {
         // Its height over the line between the attachments is the arm.
         let right = Linkage::Lever { arm: 0.03, base: 0.04, lever_angle: std::f64::consts::FRAC_PI_2 };
         assert!((right.at(Side::Agonist, 0.0).arm - 0.024).abs() < 1e-15);
+    }
+
+    /// Shortening, arm and its slope through a four-bar linkage, for both muscles, and the antagonist as the mirror image.
+    #[test]
+    fn a_four_bar_linkage_gears_the_arm() {
+        let bar = FourBar {
+            ground: 0.1,
+            crank: 0.04,
+            coupler: 0.09,
+            rocker: 0.05,
+            rocker_angle: 2.0,
+            is_crossed: false,
+        };
+        let lever = Drive::Lever { arm: 0.03, base: 0.16, lever_angle: 1.4 };
+        for drive in [Drive::Pulley { radius: 0.02 }, lever] {
+            let linkage = Linkage::FourBar { bar, drive };
+            for angle in [-0.35, -0.1, 0.0, 0.2, 0.38] {
+                for side in [Side::Agonist, Side::Antagonist] {
+                    let at = |angle: f64| linkage.at(side, angle);
+                    let found = at(angle);
+                    let h = 1e-5;
+                    let [up, down] = [at(angle + h), at(angle - h)];
+                    assert!((found.arm - (up.shortening - down.shortening) / (2.0 * h)).abs() < 1e-9);
+                    assert!((found.arm_by_angle - (up.arm - down.arm) / (2.0 * h)).abs() < 1e-8);
+                    assert!(found.arm * side.sign() > 0.0);
+                }
+                let (one, other) = (linkage.at(Side::Agonist, angle), linkage.at(Side::Antagonist, -angle));
+                assert!(
+                    (one.shortening - other.shortening).abs() < 1e-15 && (one.arm + other.arm).abs() < 1e-15
+                );
+            }
+        }
+        // A parallelogram is no gear.
+        let bar = FourBar { coupler: 0.1, rocker: 0.04, ..bar };
+        let (geared, plain) = (Linkage::FourBar { bar, drive: lever }, lever.linkage());
+        for angle in [-0.3, 0.25] {
+            let [one, other] = [geared, plain].map(|linkage| linkage.at(Side::Antagonist, angle));
+            assert!((one.shortening - other.shortening).abs() < 1e-14 && (one.arm - other.arm).abs() < 1e-14);
+        }
     }
 
     #[test]

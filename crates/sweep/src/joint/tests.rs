@@ -274,3 +274,60 @@ fn a_certified_table() {
     let exact = joint.stiffness(0.1, 2e5, 1e5).unwrap();
     assert!((stiffness.value / exact - 1.0).abs() < 1e-4 && (torque.gradient[0] / exact + 1.0).abs() < 1e-2);
 }
+
+const FOUR_BAR: &str = "muscle = \"ppam-2-r16\"\nkind = \"four-bar\"\nradius = \"40 mm\"\nground = \"100 mm\"\ncrank = \"40 mm\"\ncoupler = \"100 mm\"\nrocker = \"40 mm\"\nrocker_angle = \"86 deg\"\ncontraction = \"20 %\"\nangle = \"-25 deg..25 deg\"\npressure = \"0.5 bar..3 bar\"\n";
+
+/// A parallelogram is the pulley itself; other links gear it: torque times angle is what it was, work in is work out.
+#[test]
+fn a_four_bar_linkage_loses_no_work() {
+    let (plain, same) = (read(PULLEY), read(FOUR_BAR));
+    for angle in [-0.4, 0.0, 0.3] {
+        let [a, b] = [&plain, &same].map(|joint| joint.torque(angle, 2e5, 1.4e5).unwrap());
+        assert!((a - b).abs() < 1e-9 * a.abs().max(1.0), "{a} {b}");
+        let [a, b] = [&plain, &same].map(|joint| joint.stiffness(angle, 2e5, 1.4e5).unwrap());
+        assert!((a / b - 1.0).abs() < 1e-9);
+    }
+    let geared = FOUR_BAR.replace("rocker = \"40 mm\"", "rocker = \"60 mm\"").replace("86 deg", "100 deg");
+    let geared = geared
+        .replace("\"100 mm\"\nrocker", "\"95 mm\"\nrocker")
+        .replace("-25 deg..25 deg", "-15 deg..15 deg");
+    let joint = read(&geared);
+    // Torque of the agonist along the way, against force times shortening.
+    let steps = 200;
+    let (low, high) = (-0.25, 0.25);
+    let at = |k: u32| low + (high - low) * f64::from(k) / f64::from(steps);
+    let pull = |angle: f64| joint.muscles()[0].pull(&joint.linkage(), angle, 2e5).unwrap();
+    let work: f64 = (0..steps)
+        .map(|k| {
+            (pull(at(k)).torque + 4.0 * pull(f64::midpoint(at(k), at(k + 1))).torque + pull(at(k + 1)).torque)
+                / 6.0
+        })
+        .sum::<f64>()
+        * (high - low)
+        / f64::from(steps);
+    let muscle = preset("ppam-2-r16").unwrap();
+    let problem = Problem::new(&muscle, Pressure::pa(2e5)).unwrap();
+    let [from, to] = [low, high].map(|angle| pull(angle).contraction);
+    let force = |k: u32| {
+        let contraction = from + (to - from) * f64::from(k) / f64::from(2 * steps);
+        let given = bulge_fibre::Given::Contraction(contraction);
+        problem.solve(given, bulge_fibre::Approach::Auto).unwrap().force_n
+    };
+    let done: f64 =
+        (0..steps).map(|k| (force(2 * k) + 4.0 * force(2 * k + 1) + force(2 * k + 2)) / 6.0).sum::<f64>()
+            * (to - from)
+            * 0.11
+            / f64::from(steps);
+    assert!((work / done - 1.0).abs() < 1e-7, "{work} {done}");
+    assert!(pull(0.1).torque > 1.1 * plain.muscles()[0].pull(&plain.linkage(), 0.1, 2e5).unwrap().torque);
+    refused(
+        FOUR_BAR,
+        "-25 deg..25 deg",
+        "-120 deg..120 deg",
+        &["four-bar linkage", "at the angle", "narrower range"],
+    );
+    refused(FOUR_BAR, "coupler = \"100 mm\"", "coupler = \"1 mm\"", &["doesn't close", "at the angle 0"]);
+    refused(FOUR_BAR, "radius = ", "arm = \"9 mm\"\nradius = ", &["a pulley (`radius`) and a lever (`arm`)"]);
+    refused(FOUR_BAR, "crank = \"40 mm\"\n", "", &["crank"]);
+    refused(PULLEY, "kind", "crank = \"4 mm\"\nkind", &["a pulley has no `crank`", "four-bar"]);
+}

@@ -1,0 +1,169 @@
+//! The air in a muscle: closed, flowing in and out through a valve, and what a stroke costs.
+//!
+//! Dry air as an ideal gas. Pressures `p` are gauge pressures, `P = p + p0` absolute ones.
+//!
+//! ```text
+//! P (V + Vd) = m R T          R = 287.05 J/(kg K),  gamma = 1.4,  cp = gamma R/(gamma - 1),  cv = R/(gamma - 1)
+//! ```
+//!
+//! | symbol | what | unit |
+//! |---|---|---|
+//! | p, P, p0 | gauge, absolute and ambient pressure (101325 Pa unless stated) | Pa |
+//! | V | volume of the muscle that holds the gas, `Response::volume_m3` (circular sections) | m^3 |
+//! | Vd | dead volume of fittings and tubes, >= 0 | m^3 |
+//! | m, T | mass and temperature of the gas in V + Vd | kg, K |
+//! | e, l, F | contraction, length, pull | 1, m, N |
+//!
+//! Two volumes. The gas fills `volume_m3`. What it passes on to the fibres is p dV of `volume_polygon_m3`, the volume between flat cloth, since
+//! F dl = -p dV holds with that one. Both are the same for braids and for continuous fibres. Between n fibres the second is
+//! a = (n/2 pi) sin(2 pi/n) of the first (0.9959 for n = 40): of the work of the gas the part 1 - a doesn't reach the load.
+//!
+//! - [`ClosedMuscle`]: the valve shut, P (V + Vd)^n = const; pressure, force, and the contraction under a force.
+//! - [`StiffnessSplit`]: what the geometry and what the enclosed gas gives to dF/dl.
+//! - [`Orifice`]: the flow of a valve after ISO 6358.
+//! - [`Filling`]: filling and venting over time, against a [`Load`].
+//! - [`Stroke`]: air, energy and efficiency of a cycle.
+//!
+//! Left out: humidity, real gas (below 10 bar its compressibility differs from 1 by less than 0.5 %), waves in tubes, inertia of the load.
+
+mod chamber;
+mod closed;
+mod cycle;
+mod filling;
+mod muscle;
+mod orifice;
+mod stiffness;
+
+pub use chamber::{Chamber, Inside, LEAST_PRESSURE_PA, Load};
+pub use closed::{ClosedMuscle, ClosedState};
+pub use cycle::{CycleResult, Lift, Stroke};
+pub use filling::{Energy, Filling, GasModel, History, Sample, Supply};
+pub use orifice::{Orifice, REFERENCE_DENSITY, REFERENCE_TEMPERATURE_K};
+pub use stiffness::StiffnessSplit;
+
+use bulge_model::ExtendedError;
+
+/// Specific gas constant of dry air \[J/(kg K)\].
+pub const R_AIR: f64 = 287.05;
+/// Ratio of the specific heats of air.
+pub const GAMMA: f64 = bulge_fibre::ADIABATIC;
+/// Specific heat of air at constant pressure \[J/(kg K)\].
+pub const CP_AIR: f64 = GAMMA * R_AIR / (GAMMA - 1.0);
+/// Specific heat of air at constant volume \[J/(kg K)\].
+pub const CV_AIR: f64 = R_AIR / (GAMMA - 1.0);
+/// Ambient temperature unless stated \[K\].
+pub const AMBIENT_TEMPERATURE_K: f64 = 293.15;
+
+/// Why a question about the air in a muscle has no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum GasError {
+    /// A number that can't be.
+    #[error("{what} is {value}: {instead}")]
+    Number {
+        /// What it is.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What to give instead.
+        instead: &'static str,
+    },
+    /// The muscle has no equilibrium there.
+    #[error("at the gauge pressure {pressure_pa} Pa: {error}")]
+    Muscle {
+        /// Gauge pressure \[Pa\].
+        pressure_pa: f64,
+        /// What is wrong.
+        error: Box<ExtendedError>,
+    },
+    /// No contraction at which pull and load are equal.
+    #[error(
+        "at the gauge pressure {pressure_pa} Pa the pull equals the load at no contraction (last tried: {:.4} %, load {load_n} N): give the load a support, or one that the muscle can carry",
+        100.0 * contraction
+    )]
+    NoBalance {
+        /// Gauge pressure \[Pa\].
+        pressure_pa: f64,
+        /// The last contraction.
+        contraction: f64,
+        /// The load there \[N\].
+        load_n: f64,
+    },
+    /// No pressure satisfies the law of the enclosed gas.
+    #[error(
+        "no gauge pressure above 0 satisfies the law of the enclosed gas (last tried: {pressure_pa} Pa): start with a higher pressure, or ask for a contraction nearer to that of the filling ({reason})"
+    )]
+    NoPressure {
+        /// The last gauge pressure \[Pa\].
+        pressure_pa: f64,
+        /// What stopped the search.
+        reason: String,
+    },
+    /// The integration over time came to a halt.
+    #[error("the filling stopped after {time_s} s at the gauge pressure {pressure_pa} Pa: {reason}")]
+    Stopped {
+        /// Time \[s\].
+        time_s: f64,
+        /// Gauge pressure there \[Pa\].
+        pressure_pa: f64,
+        /// Why.
+        reason: String,
+    },
+}
+
+/// A finite number above a bound, or at it.
+fn at_least(what: &'static str, value: f64, low: f64, instead: &'static str) -> Result<f64, GasError> {
+    if value.is_finite() && value >= low { Ok(value) } else { Err(GasError::Number { what, value, instead }) }
+}
+
+/// A finite number above 0.
+fn positive(what: &'static str, value: f64) -> Result<f64, GasError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(GasError::Number { what, value, instead: "give a finite number above 0" })
+    }
+}
+
+/// Muscles for the tests of the submodules.
+#[cfg(test)]
+mod examples {
+    use bulge_effects::{Catalogue, known};
+    use bulge_model::Extended;
+    use bulge_muscles::from_toml;
+
+    pub(super) fn muscle(lines: &str) -> Extended {
+        let muscle = from_toml(&format!("name = \"x\"\n{lines}\n"), "m.toml").unwrap();
+        Extended::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
+    }
+
+    /// Inextensible fibres all round: F dl = -p dV with the volume that holds the gas.
+    pub(super) fn pleated() -> Extended {
+        muscle("kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = \"continuous\"")
+    }
+
+    /// Forty inextensible fibres.
+    pub(super) fn forty() -> Extended {
+        muscle("kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40")
+    }
+
+    /// Fibres so soft that the volume depends on the pressure.
+    pub(super) fn soft() -> Extended {
+        muscle(
+            "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\nfibre = { stiffness = \"2 kN\" }",
+        )
+    }
+
+    /// The textbook braid.
+    pub(super) fn braid() -> Extended {
+        muscle(
+            "kind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"cylinder\"",
+        )
+    }
+
+    /// A clamped braid with an effect that changes its shape and one that adds force.
+    pub(super) fn learnt() -> Extended {
+        muscle(
+            "kind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\n\n[effects.fibre-length]\nexcess = \"1 %\"\n[effects.hoop-elasticity]\nstiffness = \"500 N/m\"",
+        )
+    }
+}
