@@ -1,5 +1,6 @@
 //! What went wrong, as one message and an exit status.
 
+use bulge_design::gas::GasError;
 use bulge_design::heat::HeatError;
 use bulge_design::sensing::SensingError;
 use bulge_design::size::SizeError;
@@ -59,6 +60,8 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Heat(Box<HeatError>),
     #[error("{0}")]
+    Gas(Box<GasError>),
+    #[error("{0}")]
     Sweep(Box<SweepError>),
     #[error("{0}")]
     Tabulate(Box<TabulateError>),
@@ -106,6 +109,11 @@ impl Failure {
                 | SensingError::NoChange
                 | SensingError::NoPlace { .. } => 3,
                 _ => 1,
+            },
+            Self::Gas(error) => match error.as_ref() {
+                GasError::Number { .. } => 1,
+                GasError::Stopped { .. } => 4,
+                _ => 3,
             },
             Self::Heat(error) => match error.as_ref() {
                 HeatError::Invalid { .. } => 1,
@@ -167,6 +175,7 @@ boxed!(
     Size(SizeError),
     Sensing(SensingError),
     Heat(HeatError),
+    Gas(GasError),
     Sweep(SweepError),
     Tabulate(TabulateError),
     Export(ExportError)

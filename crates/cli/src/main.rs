@@ -1,5 +1,6 @@
 //! The command `bulge`: one file per command, this one chooses among them and turns errors into messages and exit statuses.
 
+mod air;
 mod arguments;
 mod characteristics;
 mod compare;
@@ -64,6 +65,8 @@ enum Command {
     Compare(compare::CompareCommand),
     /// From a load over a stroke to muscles, lengths and pressures
     Size(Box<size::SizeCommand>),
+    /// The air in a muscle: shut in, flowing through a valve, used in a stroke
+    Air(Box<air::AirCommand>),
     /// A channel of liquid metal around a muscle: resistance against contraction
     Sense(Box<sense::SenseCommand>),
     /// How warm a muscle gets that is charged again and again
@@ -111,6 +114,7 @@ fn main() -> ExitCode {
         Command::Table(command) => command.run(),
         Command::Size(command) => command.run(),
         Command::Joint(command) => command.run(),
+        Command::Air(command) => command.run(),
         Command::Sense(command) => command.run(),
         Command::Heat(command) => command.run(),
         Command::Compare(command) => command.run(),

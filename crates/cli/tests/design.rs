@@ -1,4 +1,4 @@
-//! `bulge sense` and `bulge heat` as a user sees them.
+//! `bulge air`, `bulge sense` and `bulge heat` as a user sees them.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -77,6 +77,82 @@ fn pipes_cool_the_closed_end() {
     );
 }
 
+/// Shut, filled and used: the same air in all three.
+#[test]
+fn air_is_kept_counted_and_spent() {
+    let folder = Folder::new("air");
+    let (plot, csv) = (folder.path("fill.svg"), folder.path("fill.csv"));
+    let shut = json(&[
+        "air",
+        "shut",
+        "ppam-2-r16",
+        "--pressure",
+        "2 bar",
+        "--contraction",
+        "15 %",
+        "--dead-volume",
+        "30 ml",
+        "--force",
+        "500 N",
+        "--json",
+    ]);
+    assert_eq!(shut["schema"], "bulge.air/1");
+    let mass = number(&shut["mass_kg"]);
+    for at in shut["states"].as_array().unwrap() {
+        let state = &at["state"];
+        let volume = number(&state["response"]["volume_m3"]) + 30e-6;
+        let gas = (number(&state["pressure_pa"]) + 101_325.0) * volume / (287.05 * 293.15);
+        assert!((gas / mass - 1.0).abs() < 1e-9);
+        let stiffness = &at["stiffness"];
+        let sum = number(&stiffness["geometry_n_per_m"]) + number(&stiffness["gas_n_per_m"]);
+        assert!((number(&stiffness["total_n_per_m"]) / sum - 1.0).abs() < 1e-12);
+    }
+    assert!((number(&shut["under_force"]["force_n"]) - 500.0).abs() < 1e-5);
+    // Held where it was shut: as much air, less what was in it before.
+    let fill = [
+        "air",
+        "fill",
+        "ppam-2-r16",
+        "--supply",
+        "2 bar",
+        "--conductance",
+        "0.5 l/(s bar)",
+        "--held",
+        "15 %",
+        "--dead-volume",
+        "30 ml",
+    ];
+    let filling = json(&[&fill[..], &["--json", "--plot", &plot, "--csv", &csv]].concat());
+    let filling = &filling["filling"];
+    assert!(filling["settled"].as_bool().unwrap());
+    let before = mass * 101_325.0 / 301_325.0;
+    assert!((number(&filling["air_kg"]) / (mass - before) - 1.0).abs() < 1e-9);
+    // ISO 6358, just below choking at the start.
+    let over = (101_325.0 / 301_325.0 - 0.3) / 0.7;
+    let flow = 0.5e-8 * 301_325.0 * 1.185 * (1.0_f64 - over * over).sqrt();
+    assert!((number(&filling["samples"][0]["flow_kg_per_s"]) / flow - 1.0).abs() < 1e-9);
+    assert!(std::fs::read_to_string(csv).unwrap().lines().count() > 100);
+    assert!(std::fs::read_to_string(plot).unwrap().contains("pressure [bar]"));
+    let text = String::from_utf8(bulge(&fill).stdout).unwrap();
+    assert!(text.contains("99 % after") && text.contains("litres (ANR)"), "{text}");
+    let stroke = json(&[
+        "air",
+        "stroke",
+        "ppam-2-r16",
+        "--load",
+        "500 N",
+        "--stroke",
+        "10 %..25 %",
+        "--supply",
+        "6 bar",
+        "--json",
+    ]);
+    let cycle = |key: &str| number(&stroke["cycle"][key]);
+    assert!((cycle("work_j") - 500.0 * 0.15 * 0.11).abs() < 1e-9);
+    let spent = cycle("work_j") + cycle("not_passed_on_j") + cycle("throttled_j") + cycle("vented_j");
+    assert!((spent / cycle("exergy_j") - 1.0).abs() < 1e-9 && cycle("efficiency") < 0.2);
+}
+
 #[test]
 fn mistakes_are_named() {
     let folder = Folder::new("design-mistakes");
@@ -100,6 +176,52 @@ fn mistakes_are_named() {
             vec!["sense", "ppam-2-r16", "--best", "20 %", "--least-gauge-factor", "99"],
             3,
             "none of the 81 zones",
+        ),
+        (vec!["air", "fill", "ppam-2-r16", "--supply", "3 bar", "--held", "10 %"], 2, "--conductance"),
+        (
+            vec!["air", "fill", "ppam-2-r16", "--supply", "3 bar", "--hole", "-2 mm", "--held", "10 %"],
+            1,
+            "diameter of the hole",
+        ),
+        (
+            vec!["air", "fill", "ppam-2-r16", "--supply", "3 bar", "--conductance", "2", "--held", "10 %"],
+            1,
+            "`2` can't be read",
+        ),
+        (
+            vec![
+                "air",
+                "shut",
+                "ppam-2-r16",
+                "--pressure",
+                "2 bar",
+                "--contraction",
+                "15 %",
+                "--exponent",
+                "2",
+            ],
+            1,
+            "exponent is 2",
+        ),
+        (
+            vec!["air", "shut", "ppam-2-r16", "--pressure", "1 bar", "--contraction", "41 %"],
+            3,
+            "the limit of this muscle",
+        ),
+        (
+            vec![
+                "air",
+                "stroke",
+                "ppam-2-r16",
+                "--load",
+                "5000 N",
+                "--stroke",
+                "10 %..25 %",
+                "--supply",
+                "1 bar",
+            ],
+            1,
+            "higher supply pressure",
         ),
         (vec!["heat", "--pipe", "4"], 1, "`4` is no pipe"),
         (vec!["heat", "--pipe", "300 mm x 4 mm"], 1, "length of the pipe"),

@@ -111,7 +111,11 @@ fn mistakes_are_named() {
             1,
             "leave one of the three out",
         ),
-        (with(&["--pressure", "2 bar,1 bar", "--angle", "5 deg", "--force-sd", "-1 N"]), 2, ""),
+        (
+            with(&["--pressure", "2 bar,1 bar", "--angle", "5 deg", "--force-sd", "-1 N"]),
+            1,
+            "a standard deviation is 0 or more",
+        ),
         (
             with(&["--angle", "5 deg", "--stiffness", "2300 N m/rad"]),
             3,

@@ -323,7 +323,7 @@ fn check_lever(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> 
     }
     let turn = |angle: f64| match joint.linkage {
         Linkage::FourBar { bar, .. } => [angle, -angle]
-            .map(|angle| bar.turn(angle).map_or(f64::INFINITY, |turn| turn.turn.abs()))
+            .map(|angle| bar.turn(angle).map_or(f64::INFINITY, |turn| turn.angle.abs()))
             .into_iter()
             .fold(0.0, f64::max),
         _ => angle.abs(),

@@ -31,7 +31,7 @@ pub struct FourBar {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turn {
     /// chi \[rad\].
-    pub(super) turn: f64,
+    pub(super) angle: f64,
     /// dchi/dtheta.
     pub(super) ratio: f64,
     /// d2chi/dtheta2 \[1/rad\].
@@ -49,7 +49,8 @@ impl FourBar {
         let (p, p1, p2) = ([d + c * cos, c * sin], [-c * sin, c * cos], [-c * cos, -c * sin]);
         let square = p[0] * p[0] + p[1] * p[1];
         let between = (a * a + square - b * b) / (2.0 * a * square.sqrt());
-        if !(between.abs() < 1.0) {
+        // Nor is a NaN a cosine.
+        if between.is_nan() || between.abs() >= 1.0 {
             return None;
         }
         let open = if is_crossed { -between.acos() } else { between.acos() };
@@ -79,7 +80,7 @@ impl FourBar {
         // From the angle of rest without a whole turn between them.
         let turn =
             (phi - rest + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
-        Some(Turn { turn: sign * turn, ratio: sign * first, bend: sign * second })
+        Some(Turn { angle: sign * turn, ratio: sign * first, bend: sign * second })
     }
 
     /// The first angle of a range, from 0 outwards, at which the links don't close or the crank stands still; `None` if they always work.
@@ -125,10 +126,10 @@ mod tests {
                 assert!((first - (up[0] - down[0]) / (2.0 * h)).abs() < 1e-8);
                 assert!((second - (up[1] - down[1]) / (2.0 * h)).abs() < 1e-7);
                 let turn = bar.turn(angle).unwrap();
-                assert!(turn.ratio > 0.0 && last.is_none_or(|before| turn.turn > before));
-                last = Some(turn.turn);
+                assert!(turn.ratio > 0.0 && last.is_none_or(|before| turn.angle > before));
+                last = Some(turn.angle);
             }
-            assert!(bar.turn(0.0).unwrap().turn.abs() < 1e-15);
+            assert!(bar.turn(0.0).unwrap().angle.abs() < 1e-15);
         }
     }
 
@@ -144,7 +145,7 @@ mod tests {
             is_crossed: false,
         };
         for angle in [-0.6, -0.1, 0.0, 0.4, 0.9] {
-            let Turn { turn, ratio, bend } = bar.turn(angle).unwrap();
+            let Turn { angle: turn, ratio, bend } = bar.turn(angle).unwrap();
             assert!((turn - angle).abs() < 1e-12 && (ratio - 1.0).abs() < 1e-12 && bend.abs() < 1e-11);
         }
     }

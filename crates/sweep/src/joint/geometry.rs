@@ -129,8 +129,8 @@ impl Linkage {
             }
             Self::FourBar { bar, drive } => {
                 // The antagonist's links are the mirror image: chi(-theta) turned round. Outside the range that was checked nothing is pulled.
-                let still = Turn { turn: f64::NAN, ratio: f64::NAN, bend: f64::NAN };
-                let Turn { turn, ratio, bend } = bar.turn(sign * angle).unwrap_or(still);
+                let still = Turn { angle: f64::NAN, ratio: f64::NAN, bend: f64::NAN };
+                let Turn { angle: turn, ratio, bend } = bar.turn(sign * angle).unwrap_or(still);
                 let there = drive.linkage().at(side, sign * turn);
                 Reach {
                     shortening: there.shortening,
