@@ -7,6 +7,7 @@ mod braid;
 mod check;
 mod closed_form;
 mod derivative;
+mod design;
 mod difference;
 mod energy;
 mod fluidic_muscle;
@@ -111,6 +112,10 @@ pub const CHECKS: &[fn() -> Check] = &[
     force_laws::correlation,
     force_laws::half_widths,
     force_laws::efficiencies,
+    design::sizes,
+    design::closed,
+    design::filling,
+    design::held,
 ];
 
 /// Runs every check.

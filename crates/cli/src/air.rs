@@ -23,6 +23,8 @@ const CONDUCTANCE: [(&str, f64); 2] = [("l/(s bar)", 1e-8), ("m^3/(s Pa)", 1.0)]
 const TIME: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 /// Rows of a table.
 const ROWS: usize = 11;
+/// Points of a rising load.
+const RISING: u32 = 40;
 /// Moments of a filling.
 const SAMPLES: usize = 200;
 
@@ -78,6 +80,9 @@ struct Shut {
     /// Also the contraction under a force
     #[arg(long, allow_hyphen_values = true)]
     force: Option<String>,
+    /// Draw the force with the valve shut and open
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -141,6 +146,9 @@ struct Cycle {
     /// Filled to this gauge pressure while held, and moved at it; otherwise the pressure rises with the load
     #[arg(long, allow_hyphen_values = true)]
     pressure: Option<String>,
+    /// Draw the pressure on the way up
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
 }
 
 impl AirCommand {
@@ -189,6 +197,11 @@ impl Shut {
         }
         let under = self.force.as_deref().map(|text| quantity::<Force>("--force", text)).transpose()?;
         let under = under.map(|force| closed.under_force(force.si())).transpose()?;
+        let mut wrote = String::new();
+        if let Some(path) = &self.plot {
+            files::write(path, compared(&name, &muscle, pressure, &states)?.as_bytes())?;
+            let _ = writeln!(wrote, "  wrote {}", path.display());
+        }
         if self.common.json {
             let states: Vec<_> =
                 states.iter().map(|(state, split)| json!({ "state": state, "stiffness": split })).collect();
@@ -230,8 +243,28 @@ impl Shut {
                 significant(1e-5 * state.pressure_pa, 4)
             );
         }
-        Ok(text)
+        Ok(text + &wrote)
     }
+}
+
+/// Force with the valve shut, and at the pressure of the filling.
+fn compared(
+    title: &str,
+    muscle: &Extended,
+    pressure: f64,
+    states: &[(ClosedState, StiffnessSplit)],
+) -> Result<String, Failure> {
+    let shut = states.iter().map(|(state, _)| [100.0 * state.contraction, state.force_n]).collect();
+    let mut open = Vec::new();
+    for (state, _) in states {
+        let given = bulge_fibre::Given::Contraction(state.contraction);
+        let found = muscle
+            .solve(Pressure::pa(pressure), given, bulge_fibre::Approach::Auto)
+            .map_err(|error| Failure::Extended(Box::new(error)))?;
+        open.push([100.0 * state.contraction, found.force_n]);
+    }
+    let lines = [("valve open".to_owned(), open), ("valve shut".to_owned(), shut)];
+    Ok(lines_svg(title, ["contraction [%]", "force [N]"], &lines)?)
 }
 
 impl Fill {
@@ -393,12 +426,28 @@ impl Cycle {
         let mut stroke = Stroke::new(&muscle, load, ratios(("--stroke", &self.stroke))?, lift, supply);
         stroke.dead_volume_m3 = self.common.dead()?;
         let found = stroke.cycle()?;
+        let mut wrote = String::new();
+        if let Some(path) = &self.plot {
+            files::write(path, rising(&name, &stroke, &found)?.as_bytes())?;
+            let _ = writeln!(wrote, "  wrote {}", path.display());
+        }
         if self.common.json {
             let document = json!({ "schema": "bulge.stroke/1", "muscle": name, "cycle": found });
             return Ok(serde_json::to_string_pretty(&document)? + "\n");
         }
-        Ok(spent(&name, load, &found))
+        Ok(spent(&name, load, &found) + &wrote)
     }
+}
+
+/// The pressure as the load goes up: that at the end of shorter and shorter strokes.
+fn rising(title: &str, stroke: &Stroke<'_>, found: &CycleResult) -> Result<String, Failure> {
+    let mut points = vec![[100.0 * stroke.from, 1e-5 * found.start_pressure_pa]];
+    for k in 1..=RISING {
+        let to = stroke.from + (stroke.to - stroke.from) * f64::from(k) / f64::from(RISING);
+        points.push([100.0 * to, 1e-5 * Stroke { to, ..*stroke }.cycle()?.end_pressure_pa]);
+    }
+    let lines = [("with the load".to_owned(), points)];
+    Ok(lines_svg(title, ["contraction [%]", "pressure [bar]"], &lines)?)
 }
 
 fn spent(name: &str, load: f64, found: &CycleResult) -> String {

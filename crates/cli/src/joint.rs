@@ -61,7 +61,7 @@ pub(crate) struct JointCommand {
     /// Standard deviation of the angle reading
     #[arg(long, default_value = "0 deg", allow_hyphen_values = true)]
     angle_sd: String,
-    /// Standard deviation of the model's force: what `bulge fit` leaves
+    /// Standard deviation of the model's force: what `bulge fit` leaves; the widths of what it has learnt count by themselves
     #[arg(long, default_value = "0 N", allow_hyphen_values = true)]
     force_sd: String,
     /// Draw the torque against the angle at several pairs of pressures
@@ -244,12 +244,12 @@ fn standing(how: &str, stand: &Stand, outside: f64) -> String {
 
 /// How sure an outside torque is.
 fn surely(outside: &Outside) -> String {
-    let [pressure, angle, force] = outside.from_nm.map(|part| significant(part, 2));
+    let [pressure, angle, force, learnt] = outside.from_nm.map(|part| significant(part, 2));
     if outside.sd_nm == 0.0 {
-        return "\n  how sure that is: say what the readings scatter by, with --pressure-sd, --angle-sd and --force-sd\n".to_owned();
+        return "\n  how sure that is: say what the readings scatter by, with --pressure-sd, --angle-sd and --force-sd, or in the muscle's file\n".to_owned();
     }
     format!(
-        "\n  {} +- {} N m from outside (one standard deviation: pressures {pressure}, angle {angle}, forces {force})\n",
+        "\n  {} +- {} N m from outside (one standard deviation: pressures {pressure}, angle {angle}, forces {force}, what was learnt {learnt})\n",
         significant(outside.torque_nm, 4),
         significant(outside.sd_nm, 2)
     )

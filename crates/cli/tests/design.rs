@@ -95,6 +95,8 @@ fn air_is_kept_counted_and_spent() {
         "--force",
         "500 N",
         "--json",
+        "--plot",
+        &folder.path("shut.svg"),
     ]);
     assert_eq!(shut["schema"], "bulge.air/1");
     let mass = number(&shut["mass_kg"]);
@@ -146,7 +148,12 @@ fn air_is_kept_counted_and_spent() {
         "--supply",
         "6 bar",
         "--json",
+        "--plot",
+        &folder.path("stroke.svg"),
     ]);
+    for (name, words) in [("shut.svg", "valve shut"), ("stroke.svg", "with the load")] {
+        assert!(std::fs::read_to_string(folder.path(name)).unwrap().contains(words), "{name}");
+    }
     let cycle = |key: &str| number(&stroke["cycle"][key]);
     assert!((cycle("work_j") - 500.0 * 0.15 * 0.11).abs() < 1e-9);
     let spent = cycle("work_j") + cycle("not_passed_on_j") + cycle("throttled_j") + cycle("vented_j");

@@ -20,8 +20,9 @@ pub use four_bar::FourBar;
 pub use geometry::{Drive, Linkage, Side};
 pub use stand::{Closed, Outside, Readings, SideStand, Stand};
 
+use bulge_effects::{Catalogue, Group, known};
 use bulge_fibre::Approach;
-use bulge_muscles::{Muscle, Quantity as _};
+use bulge_muscles::{Muscle, Parameter, Quantity as _};
 use bulge_numerics::root::{RootError, illinois, newton_bracketed};
 use serde::Serialize;
 
@@ -121,6 +122,9 @@ pub struct JointMuscle {
     /// Whether the force is infinite at the contraction 0.
     #[serde(skip)]
     is_singular: bool,
+    /// The same muscle over the numbers that its file states with a width, with these numbers and widths.
+    #[serde(skip)]
+    unsure: Option<(Family, Vec<[f64; 2]>)>,
 }
 
 /// A joint with two muscles.
@@ -155,7 +159,7 @@ impl JointMuscle {
             range: Range::Between { from: 0.0, to: End::Limit, points: None, spacing: Spacing::Linear },
         };
         // The family over contraction and pressure; ranges take no part in it.
-        let plan = Plan {
+        let mut plan = Plan {
             name: muscle.name().to_owned(),
             muscle,
             pressure_pa: 1e5,
@@ -172,7 +176,11 @@ impl JointMuscle {
         };
         let family = Family::new(&plan)?;
         let is_singular = family.member(&[contraction, 1e5])?.problem().is_singular();
-        Ok(Self { side, muscle: plan.muscle, contraction, family, is_singular })
+        let unsure = stated_widths(&plan.muscle)?;
+        plan.axes.extend(unsure.iter().map(|(quantity, _)| axis(quantity.clone(), "number", "1")));
+        let numbers: Vec<[f64; 2]> = unsure.into_iter().map(|(_, number)| number).collect();
+        let unsure = if numbers.is_empty() { None } else { Some((Family::new(&plan)?, numbers)) };
+        Ok(Self { side, muscle: plan.muscle, contraction, family, is_singular, unsure })
     }
 
     /// Which muscle of the joint.
@@ -228,9 +236,66 @@ impl JointMuscle {
         Ok(by[1] * linkage.at(self.side, angle).arm)
     }
 
+    /// Standard deviation of the force that comes of the widths in the muscle's file, as if its numbers were independent \[N\]: slopes by differences over a
+    /// fifth of a width.
+    fn unsure(&self, linkage: &Linkage, angle: f64, pressure: f64) -> Result<f64, JointError> {
+        let Some((family, numbers)) = &self.unsure else { return Ok(0.0) };
+        let contraction = self.contraction(linkage, angle);
+        let force = |k: usize, moved: f64| {
+            let mut point = vec![contraction, pressure];
+            point.extend(numbers.iter().map(|[value, _]| *value));
+            point[2 + k] += moved;
+            let mut values = [0.0];
+            let member = family.member(&point);
+            member
+                .and_then(|member| member.outputs(contraction, &[Output::Force], &mut values))
+                .map_err(|error| self.failed(angle, pressure, error))?;
+            Ok::<_, JointError>(values[0])
+        };
+        let mut sum = 0.0_f64;
+        for (k, [_, width]) in numbers.iter().enumerate() {
+            let step = 0.1 * width;
+            // At a bound of the number one side is enough.
+            let slope = match (force(k, step), force(k, -step)) {
+                (Ok(up), Ok(down)) => (up - down) / (2.0 * step),
+                (Ok(up), Err(_)) => (up - force(k, 0.0)?) / step,
+                (Err(_), Ok(down)) => (force(k, 0.0)? - down) / step,
+                (Err(error), Err(_)) => return Err(error),
+            };
+            sum = sum.hypot(slope * width);
+        }
+        Ok(sum)
+    }
+
     fn failed(&self, angle: f64, pressure_pa: f64, error: FamilyError) -> JointError {
         JointError::Muscle { side: self.side, angle, pressure_pa, error }
     }
+}
+
+/// Numbers of a muscle file that have a width: of the muscle (but its length and its number of fibres, which say what a contraction and a fibre are) and of
+/// the effects that belong to it, with value and width in SI.
+fn stated_widths(muscle: &Muscle) -> Result<Vec<(Quantity, [f64; 2])>, FamilyError> {
+    let mut found = Vec::new();
+    for (parameter, width) in muscle.widths() {
+        let is_fixed = matches!(parameter, Parameter::Length | Parameter::Fibres);
+        if let (Some(value), false) = (muscle.get(*parameter), is_fixed) {
+            found.push((Quantity::Parameter(*parameter), [value, *width]));
+        }
+    }
+    for (effect, _) in known(muscle, &Catalogue::builtin())? {
+        let card = effect.card();
+        if matches!(card.group, Group::Rig | Group::Specimen) {
+            continue;
+        }
+        let stated = muscle.learnt().iter().find(|learnt| learnt.name() == card.name);
+        for value in stated.into_iter().flat_map(|learnt| learnt.values()) {
+            if let Some(width) = value.width {
+                let quantity = Quantity::Effect { effect: card.name.to_owned(), key: value.key.clone() };
+                found.push((quantity, [value.si, width]));
+            }
+        }
+    }
+    Ok(found)
 }
 
 impl Joint {

@@ -65,8 +65,8 @@ pub struct Outside {
     pub torque_nm: f64,
     /// Its standard deviation \[N m\].
     pub sd_nm: f64,
-    /// What pressures, angle and forces contribute to it \[N m\].
-    pub from_nm: [f64; 3],
+    /// What pressures, angle, forces and the widths of what was learnt contribute to it \[N m\].
+    pub from_nm: [f64; 4],
 }
 
 /// A joint whose valves are shut.
@@ -177,21 +177,25 @@ impl Joint {
     /// with its standard deviation:
     ///
     /// ```text
-    /// M_out = -M(theta, p1, p2)     var M_out = sum (dM/dp_i s_p)^2 + (K s_theta)^2 + sum (m_i s_F)^2
+    /// M_out = -M(theta, p1, p2)     var M_out = sum (dM/dp_i s_p)^2 + (K s_theta)^2 + sum (m_i s_F)^2 + sum (m_i dF/dk s_k)^2
     /// ```
+    /// The last sum is over the numbers k that the muscles' files state with a width, such as those that `bulge fit` has learnt, as if they were independent.
+    /// The part s_F is what the fit leaves beyond them.
     ///
     /// # Errors
     /// As [`Joint::torque`].
     pub fn outside(&self, angle: f64, pressures: [f64; 2], sd: Readings) -> Result<Outside, JointError> {
         let stand = self.stand(angle, pressures)?;
-        let (mut by_pressure, mut by_force) = (0.0_f64, 0.0_f64);
+        let (mut by_pressure, mut by_force, mut by_learnt) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (muscle, pressure) in self.muscles.iter().zip(pressures) {
             by_pressure =
                 by_pressure.hypot(muscle.by_pressure(&self.linkage, angle, pressure)? * sd.pressure_pa);
-            by_force = by_force.hypot(self.linkage.at(muscle.side, angle).arm * sd.force_n);
+            let arm = self.linkage.at(muscle.side, angle).arm;
+            by_force = by_force.hypot(arm * sd.force_n);
+            by_learnt = by_learnt.hypot(arm * muscle.unsure(&self.linkage, angle, pressure)?);
         }
         let by_angle = (stand.stiffness_nm_per_rad * sd.angle_rad).abs();
-        let from = [by_pressure, by_angle, by_force];
+        let from = [by_pressure, by_angle, by_force, by_learnt];
         let sd_nm = from.iter().map(|part| part * part).sum::<f64>().sqrt();
         Ok(Outside { torque_nm: -stand.torque_nm, sd_nm, from_nm: from })
     }
@@ -441,8 +445,44 @@ mod tests {
         let spread = (squares / f64::from(count)).sqrt();
         assert!((sum / f64::from(count) - 2.0).abs() < 0.1 * spread);
         assert!((spread / found.sd_nm - 1.0).abs() < 0.05, "{spread} {}", found.sd_nm);
+        assert!(found.from_nm[3] == 0.0, "nothing has a width");
         let whole = found.from_nm.iter().map(|part| part * part).sum::<f64>().sqrt();
         assert!((whole / found.sd_nm - 1.0).abs() < 1e-12);
+    }
+
+    /// Widths of a muscle file: of the rubber, and of an effect that adds to the force, against torques of muscles with other numbers.
+    #[test]
+    fn what_was_learnt_is_not_sure() {
+        let muscle = |c10: f64, offset: f64, width: &str| {
+            format!(
+                "name = \"m\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10.725 mm\"\nbraid_angle = \"25 deg\"\nwall = \"2 mm\"\n\
+                 [effects.bladder-elasticity]\nc10 = \"{c10} MPa{}\"\n[effects.pressure-threshold]\npressure = \"{offset} kPa{}\"\n",
+                if width.is_empty() { "" } else { " +- 0.02 MPa" },
+                if width.is_empty() { "" } else { " +- 1.5 kPa" },
+            )
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let with = |c10: f64, offset: f64, width: &str| {
+            std::fs::write(folder.path().join("m.toml"), muscle(c10, offset, width)).unwrap();
+            let text = BRAIDS.replace("dmsp-20-250", "m.toml").replace("1 bar..6", "3 bar..6");
+            Joint::from_toml(&text, "j.toml", Some(folder.path())).unwrap()
+        };
+        let none = Readings { pressure_pa: 0.0, angle_rad: 0.0, force_n: 0.0 };
+        let (angle, pressures) = (0.1, [4e5, 3e5]);
+        let found = with(0.2, 12.0, "+-").outside(angle, pressures, none).unwrap();
+        // Each muscle by itself: the torques of joints whose numbers are moved, one side's force at a time.
+        let sides = |c10: f64, offset: f64| {
+            with(c10, offset, "").stand(angle, pressures).unwrap().sides.map(|side| side.torque_nm)
+        };
+        let (up, down) = (sides(0.21, 12.0), sides(0.19, 12.0));
+        let (more, less) = (sides(0.2, 12.5), sides(0.2, 11.5));
+        let mut square = 0.0;
+        for i in 0..2 {
+            square += (0.02 * (up[i] - down[i]) / 0.02).powi(2) + (1.5 * (more[i] - less[i])).powi(2);
+        }
+        assert!((found.sd_nm / square.sqrt() - 1.0).abs() < 1e-3, "{} {}", found.sd_nm, square.sqrt());
+        assert!((found.from_nm[3] / found.sd_nm - 1.0).abs() < 1e-12 && found.sd_nm > 0.01);
+        assert!(with(0.2, 12.0, "").outside(angle, pressures, none).unwrap().sd_nm == 0.0);
     }
 
     /// Shut valves: the stiffness is minus the slope of the closed torque, slow and fast; the gas is the same everywhere; dead volume makes it softer, and
