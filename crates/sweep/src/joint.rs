@@ -288,7 +288,7 @@ fn stated_widths(muscle: &Muscle) -> Result<Vec<(Quantity, [f64; 2])>, FamilyErr
             continue;
         }
         let stated = muscle.learnt().iter().find(|learnt| learnt.name() == card.name);
-        for value in stated.into_iter().flat_map(|learnt| learnt.values()) {
+        for value in stated.into_iter().flat_map(bulge_muscles::Learnt::values) {
             if let Some(width) = value.width {
                 let quantity = Quantity::Effect { effect: card.name.to_owned(), key: value.key.clone() };
                 found.push((quantity, [value.si, width]));
