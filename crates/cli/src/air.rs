@@ -113,7 +113,7 @@ struct Fill {
     /// It lifts this force
     #[arg(long, allow_hyphen_values = true)]
     load: Option<String>,
-    /// from a support at this contraction
+    /// from a support at this contraction [default: 0 for a braid, none for a pleated muscle, which needs none]
     #[arg(long, allow_hyphen_values = true, requires = "load")]
     support: Option<String>,
     /// The gas keeps its heat; otherwise its temperature
@@ -192,8 +192,12 @@ impl Shut {
         let mut states: Vec<(ClosedState, StiffnessSplit)> = Vec::new();
         for k in 0..ROWS {
             let at = from + (to - from) * k as f64 / (ROWS - 1) as f64;
-            let state = closed.at_contraction(at)?;
-            states.push((state, closed.split(&state)?));
+            match closed.at_contraction(at) {
+                Ok(state) => states.push((state, closed.split(&state)?)),
+                // What wasn't asked for may lie beyond the muscle.
+                Err(_) if self.range.is_none() && k != ROWS / 2 => (),
+                Err(error) => return Err(error.into()),
+            }
         }
         let under = self.force.as_deref().map(|text| quantity::<Force>("--force", text)).transpose()?;
         let under = under.map(|force| closed.under_force(force.si())).transpose()?;
@@ -288,7 +292,18 @@ impl Fill {
         if to_stdout {
             return Ok(csv(&history));
         }
-        Ok(told(&name, &history) + &wrote)
+        let mut text = told(&name, &history);
+        if let (Some(load), Some(last)) = (&self.load, history.samples.last()) {
+            let load = quantity::<Force>("--load", load)?.si();
+            if last.force_n < (1.0 - 1e-6) * load && last.pressure_pa > 0.0 {
+                let _ = writeln!(
+                    text,
+                    "  the load isn't lifted: on its support the muscle pulls {} N in the end",
+                    significant(last.force_n, 4)
+                );
+            }
+        }
+        Ok(text + &wrote)
     }
 
     fn filling<'a>(&self, muscle: &'a Extended) -> Result<Filling<'a>, Failure> {
@@ -314,8 +329,11 @@ impl Fill {
             (None, None) => return Err(missing("--load", "a load is needed: give --load or --held")),
         };
         let mut chamber = Chamber::muscle(muscle, load)?.with_dead_volume(self.common.dead()?)?;
-        if let Some(support) = &self.support {
-            chamber = chamber.on_support(quantity::<Ratio>("--support", support)?.si())?;
+        let support = self.support.as_deref().map(|text| quantity::<Ratio>("--support", text)).transpose()?;
+        // A braid without pressure carries nothing: its load stands where the muscle is as long as at rest.
+        let stands = !muscle.muscle().is_pleated() && self.load.is_some();
+        if let Some(support) = support.map(Quantity::si).or(stands.then_some(0.0)) {
+            chamber = chamber.on_support(support)?;
         }
         Ok(Filling {
             chamber,

@@ -56,13 +56,13 @@ pub(crate) struct JointCommand {
     #[arg(long, requires = "closed", allow_hyphen_values = true)]
     dead_volume: Option<String>,
     /// Standard deviation of each pressure reading
-    #[arg(long, default_value = "0 Pa", allow_hyphen_values = true)]
+    #[arg(long, default_value = "0 Pa", requires_all = ["angle", "pressure"], allow_hyphen_values = true)]
     pressure_sd: String,
     /// Standard deviation of the angle reading
-    #[arg(long, default_value = "0 deg", allow_hyphen_values = true)]
+    #[arg(long, default_value = "0 deg", requires_all = ["angle", "pressure"], allow_hyphen_values = true)]
     angle_sd: String,
     /// Standard deviation of the model's force: what `bulge fit` leaves; the widths of what it has learnt count by themselves
-    #[arg(long, default_value = "0 N", allow_hyphen_values = true)]
+    #[arg(long, default_value = "0 N", requires_all = ["angle", "pressure"], allow_hyphen_values = true)]
     force_sd: String,
     /// Draw the torque against the angle at several pairs of pressures
     #[arg(long, value_name = "FILE.svg")]
@@ -110,7 +110,7 @@ impl JointCommand {
                     "an angle alone is no question: add --stiffness for the pressures, or --pressure for the torque that holds it there",
                 );
             }
-            (None, None, _) => mapped(&joint, torque),
+            (None, None, _) => mapped(&joint, torque)?,
         };
         let mut wrote = String::new();
         if let Some(path) = &self.plot {
@@ -177,13 +177,19 @@ impl JointCommand {
         let before = joint.rest(pressures, 0.0)?;
         let closed = joint.closed(before.angle_rad, pressures, exponent, [dead; 2])?;
         let after = closed.rest(torque)?;
+        let stiffness = [closed.stiffness(before.angle_rad)?, closed.stiffness(after.angle_rad)?];
         let text = format!(
-            "{}\n{}\n  turned by {} deg with shut valves\n",
+            "{}\n{}\n  turned by {} deg with shut valves; stiffness of the shut joint with its dead volume {} N m/rad before, {} after\n",
             standing("rests, and the valves are shut,", &before, 0.0),
             standing("rests", &after, torque),
-            significant((after.angle_rad - before.angle_rad).to_degrees(), 4)
+            degrees(after.angle_rad - before.angle_rad),
+            significant(stiffness[0], 4),
+            significant(stiffness[1], 4)
         );
-        Ok((json!({ "before": before, "stand": after, "exponent": exponent, "dead_volume_m3": dead }), text))
+        Ok((
+            json!({ "before": before, "stand": after, "shut_nm_per_rad": stiffness, "exponent": exponent, "dead_volume_m3": dead }),
+            text,
+        ))
     }
 }
 
@@ -221,7 +227,7 @@ fn standing(how: &str, stand: &Stand, outside: f64) -> String {
     let mut text = format!("  it {how} at {} deg{under}\n", degrees(stand.angle_rad));
     let _ = writeln!(
         text,
-        "  stiffness {} N m/rad; with shut valves {} (slow) and {} (fast)\n",
+        "  stiffness {} N m/rad; with shut valves, without dead volume, {} (slow) and {} (fast)\n",
         significant(stand.stiffness_nm_per_rad, 4),
         significant(stand.isothermal_nm_per_rad, 4),
         significant(stand.adiabatic_nm_per_rad, 4)
@@ -262,7 +268,7 @@ fn pressures(joint: &Joint) -> Vec<f64> {
 }
 
 /// Angles and stiffnesses over both pressures.
-fn mapped(joint: &Joint, torque: f64) -> (Value, String) {
+fn mapped(joint: &Joint, torque: f64) -> Result<(Value, String), Failure> {
     let [low, high] = joint.angles();
     let mut text = format!(
         "  from {} to {} deg; angle [deg] and stiffness [N m/rad] over both pressures",
@@ -276,7 +282,7 @@ fn mapped(joint: &Joint, torque: f64) -> (Value, String) {
     let pressures = pressures(joint);
     let mut rows = vec![vec!["agonist [bar]".to_owned()]];
     rows[0].extend(pressures.iter().map(|p| format!("antagonist {} bar", bar(*p))));
-    let mut map = Vec::new();
+    let (mut map, mut refused) = (Vec::new(), None);
     for one in &pressures {
         let mut row = vec![bar(*one)];
         for other in &pressures {
@@ -293,14 +299,19 @@ fn mapped(joint: &Joint, torque: f64) -> (Value, String) {
                 Err(error) => {
                     row.push("-".to_owned());
                     map.push(json!({ "pressures_pa": at, "why": error.to_string() }));
+                    refused = Some(error);
                 }
             }
         }
         rows.push(row);
     }
+    // Nowhere a rest: the last reason is as good as any.
+    if let (Some(error), true) = (refused, map.iter().all(|at| at.get("why").is_some())) {
+        return Err(error.into());
+    }
     text.push_str(&table(&rows));
     text.push_str("\n  -: no rest within the range of angles\n");
-    (json!({ "map": map }), text)
+    Ok((json!({ "map": map }), text))
 }
 
 /// Torque of both muscles against the angle, for pressures that go up together and against each other.

@@ -46,7 +46,7 @@ pub(crate) struct SenseCommand {
     #[arg(long, default_value_t = 20.0, allow_hyphen_values = true)]
     turns: f64,
     /// Where it is wound, from a fitting, in parts of the fibre's length
-    #[arg(long, default_value = "30 %..70 %", allow_hyphen_values = true)]
+    #[arg(long, default_value = "30 %..70 %", allow_hyphen_values = true, conflicts_with = "best")]
     zone: String,
     /// Diameter of the channel, round, as it is made
     #[arg(long, default_value = "0.25 mm", allow_hyphen_values = true)]

@@ -85,7 +85,7 @@ pub(crate) struct SizeCommand {
     #[arg(long, default_value = "0 %", allow_hyphen_values = true)]
     margin: String,
     /// Lengths are rounded up to multiples of this
-    #[arg(long, default_value = "1 mm")]
+    #[arg(long, default_value = "1 mm", allow_hyphen_values = true)]
     step: String,
     /// Choices that are printed
     #[arg(long, default_value_t = 12)]
@@ -150,17 +150,25 @@ impl SizeCommand {
         let fluidic = fluidic_muscles()?;
         let mut families = Vec::new();
         for name in self.muscle.split(',').map(str::trim) {
+            if name.is_empty() {
+                let what = format!("`{}` names an empty muscle: write names between commas", self.muscle);
+                return Err(Failure::Value { option: "--muscle", what });
+            }
             let family = match (fluidic.iter().find(|family| family.name() == name), law) {
                 (Some(family), None) => family.clone(),
                 (Some(_), Some(_)) => {
                     let what = format!(
-                        "{name} stands for the law of S4: name a shipped muscle ({}) or a file for another law",
+                        "{name} stands for the law of S4: with another law name shipped muscles ({}) or files by --muscle",
                         shipped()
                     );
                     return Err(Failure::Value { option: "--law", what });
                 }
                 (None, law) => self.family(name, law)?,
             };
+            // Two files may state the same name: what was written tells them apart.
+            let is_taken = families.iter().any(|other: &Family| other.name() == family.name());
+            let family =
+                if is_taken { family.clone().named(&format!("{} ({name})", family.name())) } else { family };
             let limits = self.limits(family.limits(), load.stroke_m())?;
             families.push(family.with_limits(limits)?);
         }
@@ -281,11 +289,11 @@ impl SizeCommand {
         ];
         let units = ["", "mm", "mm", "bar", "%", "%", "0 to 1", ""];
         let mut rows = vec![heading.map(String::from).to_vec(), units.map(String::from).to_vec()];
-        for choice in sizing.choices.iter().take(self.top) {
+        for choice in sizing.choices.iter().take(self.top.max(1)) {
             rows.push(row(choice));
         }
         text.push_str(&table(&rows));
-        let more = sizing.choices.len().saturating_sub(self.top);
+        let more = sizing.choices.len().saturating_sub(self.top.max(1));
         if more > 0 {
             let _ = writeln!(text, "  and {more} more: --top {}", sizing.choices.len());
         }
@@ -294,6 +302,9 @@ impl SizeCommand {
         }
         text.push_str(&refused(&sizing.infeasible));
         text.push_str(&bases(&sizing.choices));
+        if self.max_pressure.is_some() || self.max_contraction.is_some() || self.max_force.is_some() {
+            text.push_str("  the limits are yours: beyond 6 bar and 25 % the law of S4 was not measured, and a larger limit makes every choice look kinder\n");
+        }
         text
     }
 }
@@ -325,7 +336,11 @@ fn row(choice: &Choice) -> Vec<String> {
         significant(1e3 * choice.length_m, 4),
         significant(1e-5 * choice.pressure_pa, 3),
         significant(100.0 * choice.contraction[1], 3),
-        if choice.force_margin < 5e-4 { "0".to_owned() } else { significant(100.0 * choice.force_margin, 2) },
+        if choice.force_margin.abs() < 5e-4 {
+            "0".to_owned()
+        } else {
+            significant(100.0 * choice.force_margin, 2)
+        },
         significant(choice.strain, 2),
         sought.to_owned(),
     ]

@@ -211,7 +211,7 @@ fn mistakes_are_named() {
             "exponent is 2",
         ),
         (
-            vec!["air", "shut", "ppam-2-r16", "--pressure", "1 bar", "--contraction", "41 %"],
+            vec!["air", "shut", "ppam-2-r16", "--pressure", "1 bar", "--contraction", "42 %"],
             3,
             "the limit of this muscle",
         ),

@@ -77,6 +77,22 @@ fn learnt_muscles_and_laws() {
         found["choices"][0]["pressure_pa"].as_f64().unwrap()
     };
     assert!(pressure(&rubber) > 1.05 * pressure(&plain), "rubber takes pressure");
+    // Friction holds back a muscle that lifts: it must pull 60 N more than the load.
+    let friction =
+        std::fs::read_to_string(&plain).unwrap() + "[effects.coulomb-friction]\nforce = \"60 N\"\n";
+    let friction = folder.write("friction.toml", &friction);
+    let more = pressure(&friction) / pressure(&plain);
+    assert!((more - 460.0 / 400.0).abs() < 0.01, "{more}");
+    let both = format!("{plain},{friction}");
+    let found = json(&[
+        "size", "--force", "400 N", "--stroke", "30 mm", "--length", "250 mm", "--muscle", &both, "--json",
+    ]);
+    let names: Vec<&str> =
+        found["choices"].as_array().unwrap().iter().map(|c| c["family"].as_str().unwrap()).collect();
+    assert!(
+        names[0] == "mine" && names[1].starts_with("mine (") && names[1].ends_with("friction.toml)"),
+        "{names:?}"
+    );
     let law =
         json(&with(&["--muscle", "dmsp-20-400", "--law", "sarosi-5-branch", "--length", "400 mm", "--json"]));
     assert!(law["choices"][0]["basis"].as_str().unwrap().starts_with("sarosi-5-branch"));
@@ -105,7 +121,7 @@ fn mistakes_are_named() {
             "has no numbers called `x`",
         ),
         (with(&["--pressure", "-1 bar"]), 1, "the pressure is -100000"),
-        (with(&["--margin", "-100 %"]), 1, "above -100 %"),
+        (with(&["--margin", "-100 %"]), 1, "the margin is -1"),
         (with(&["--max-contraction", "120 %"]), 1, "the largest contraction is 1.2"),
         (with(&["--max-length", "-1 m"]), 1, "the longest length is -1"),
         (with(&["--pressure", "1 bar", "--muscle", "dmsp-20"]), 3, "none of these muscles carries 500.0 N"),

@@ -117,6 +117,21 @@ impl Extended {
         })
     }
 
+    /// The force of a completed equilibrium while the muscle shortens (direction 1) or lengthens (-1), which friction tells apart \[N\]. Effects that remember
+    /// what was before act as at the beginning of a motion.
+    ///
+    /// # Errors
+    /// If an effect gives no finite force there.
+    pub fn force_while(&self, response: &Response, direction: f64) -> Result<f64, ModelError> {
+        if !self.adds {
+            return Ok(response.force_n);
+        }
+        let (p, contraction) = (response.pressure_pa, response.contraction);
+        let moving = Moment { direction, ..Moment::at_rest(p, contraction) };
+        let change = pull_in(&self.model, moving)?.force - pull(&self.model, p, contraction)?.force;
+        Ok(response.force_n + change)
+    }
+
     /// The contraction of an equilibrium from the stated length.
     fn stated_contraction(&self, response: &Response) -> f64 {
         let stated = self.model.muscle().length().si();
@@ -259,7 +274,10 @@ impl From<ModelError> for ExtendedError {
 }
 
 fn pull(model: &Model, pressure: f64, contraction: f64) -> Result<Pull, ModelError> {
-    let moment = Moment::at_rest(pressure, contraction);
+    pull_in(model, Moment::at_rest(pressure, contraction))
+}
+
+fn pull_in(model: &Model, moment: Moment) -> Result<Pull, ModelError> {
     let record = Record::from_moments(vec![moment], vec![0.0], std::iter::once(0..1).collect())
         .ok_or(ModelError::Values { given: 0, expected: 1 })?;
     let wanted = Wanted { parameters: Vec::new(), readings: true };

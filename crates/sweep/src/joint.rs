@@ -74,7 +74,7 @@ pub enum JointError {
     },
     /// An angle that no pressures hold.
     #[error(
-        "no pressures in the joint's range hold {:.4} deg under {outside:.4} N m from outside: the torque is {:.4} to {:.4} N m there",
+        "no pressures in the joint's range hold {:.4} deg under {outside:.4} N m from outside: they can hold {:.4} to {:.4} N m there",
         angle.to_degrees(), range[0], range[1]
     )]
     Held {
@@ -82,7 +82,17 @@ pub enum JointError {
         angle: f64,
         /// Torque from outside \[N m\].
         outside: f64,
-        /// Least and most torque with it \[N m\].
+        /// Least and most that can be held \[N m\].
+        range: [f64; 2],
+    },
+    /// A pressure outside the joint's range.
+    #[error("the pressure of the {}, {:.4} bar, is outside the range of the joint, {:.4} to {:.4} bar", side.name(), 1e-5 * pressure_pa, 1e-5 * range[0], 1e-5 * range[1])]
+    Pressure {
+        /// Which muscle.
+        side: Side,
+        /// Its pressure \[Pa\].
+        pressure_pa: f64,
+        /// The range \[Pa\].
         range: [f64; 2],
     },
     /// A closed muscle that has lost its pressure.
@@ -97,7 +107,7 @@ pub enum JointError {
     },
     /// The muscles turn the joint beyond an end of its range.
     #[error(
-        "no rest at {} Pa and {} Pa: the torque is {:.4} N m at {:.4} deg and {:.4} N m at {:.4} deg; choose pressures closer to each other, or a wider range",
+        "no rest at {} Pa and {} Pa: the torque of all is {:.4} N m at {:.4} deg and {:.4} N m at {:.4} deg; choose pressures closer to each other, less torque from outside, or a wider range",
         pressures[0], pressures[1], torques[0], range[0].to_degrees(), torques[1], range[1].to_degrees()
     )]
     NoRest {

@@ -121,7 +121,10 @@ impl Family {
         // Just inside, so that rounding doesn't lead out.
         limits.length_m = [low.max(radius * stocky * (1.0 + 1e-9)), high.min(least * slender * (1.0 - 1e-9))];
         limits.check()?;
-        let effects: Vec<&str> = known.iter().map(|(effect, _)| effect.card().name).collect();
+        // Those that change the shape are numbers of the muscle itself.
+        let mut effects: Vec<&str> = known.iter().map(|(effect, _)| effect.card().name).collect();
+        effects.extend(muscle.bladder().map(|_| "bladder-elasticity"));
+        effects.extend(muscle.unfolding().map(|_| "limited-unfolding"));
         let basis = if effects.is_empty() {
             "equilibrium".to_owned()
         } else {
@@ -141,8 +144,9 @@ impl Family {
     /// radius; otherwise, and of a law, the family stays as it is.
     #[must_use]
     pub fn similar(mut self) -> Self {
-        if let Source::Net { known, is_similar, .. } = &mut self.source
+        if let Source::Net { known, is_similar, muscle } = &mut self.source
             && known.is_empty()
+            && muscle.unfolding().is_none()
             && !*is_similar
         {
             *is_similar = true;
@@ -164,6 +168,13 @@ impl Family {
             self.diameter_m = diameter_m;
             name.clone_into(&mut self.name);
         }
+        self
+    }
+
+    /// The same under another name.
+    #[must_use]
+    pub fn named(mut self, name: &str) -> Self {
+        name.clone_into(&mut self.name);
         self
     }
 
@@ -308,7 +319,11 @@ impl CutMuscle<'_> {
             Pull::Net(extended) => {
                 let pressure = Pressure::pa(pressure_pa);
                 match extended.solve(pressure, Given::Contraction(contraction), Approach::Auto) {
-                    Ok(found) => Ok(found.force_n.max(0.0)),
+                    Ok(found) => {
+                        let lifting =
+                            extended.force_while(&found, 1.0).map_err(|error| wrong(error.to_string()))?;
+                        Ok(lifting.max(0.0))
+                    }
                     Err(ExtendedError::Equilibrium(error)) => match *error {
                         FibreError::BeyondLimit { .. }
                         | FibreError::WouldPush { .. }

@@ -105,8 +105,8 @@ fn check(wish: &Wish) -> Result<(), SizeError> {
             return fault(what, *value, "a finite number above 0");
         }
     }
-    if !(wish.margin > -1.0 && wish.margin.is_finite()) {
-        return fault("margin", wish.margin, "above -100 %");
+    if !(wish.margin >= 0.0 && wish.margin.is_finite()) {
+        return fault("margin", wish.margin, "0 or more");
     }
     if !(wish.step_m >= 0.0 && wish.step_m.is_finite()) {
         return fault("step of lengths", wish.step_m, "0 or more");

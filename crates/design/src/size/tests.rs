@@ -233,7 +233,9 @@ fn nonsense_is_refused() {
     let refused = |wish: Wish| size(&[dmsp_20()], &load, &wish).unwrap_err().to_string();
     assert!(refused(wish(&[-1.0], &[])).contains("pressure is -1"));
     assert!(refused(wish(&[], &[f64::NAN])).contains("length is NaN"));
-    assert!(refused(Wish { margin: -1.0, ..wish(&[], &[]) }).contains("above -100 %"));
+    assert!(
+        refused(Wish { margin: -0.1, ..wish(&[], &[]) }).contains("margin is -0.1: it must be 0 or more")
+    );
     assert!(refused(Wish { step_m: -1.0, ..wish(&[], &[]) }).contains("0 or more"));
     let weights = Some(Weights { pressure: 0.0, contraction: 0.0, length: 0.0 });
     assert!(refused(Wish { weights, ..wish(&[], &[]) }).contains("sum of the weights"));

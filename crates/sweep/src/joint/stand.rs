@@ -10,6 +10,8 @@ use crate::output::Output;
 const AMBIENT: f64 = bulge_fibre::AMBIENT_PRESSURE;
 /// Pressures are found to this part of their range, and angles to this part of theirs.
 const TOLERANCE: f64 = 1e-12;
+/// Steps in which a closed joint is followed to its rest.
+const STEPS: u32 = 64;
 /// Rounds in which the volume of a closed muscle follows its pressure.
 const ROUNDS: usize = 50;
 
@@ -73,6 +75,8 @@ pub struct Outside {
 #[derive(Debug, Clone)]
 pub struct Closed<'a> {
     joint: &'a Joint,
+    /// Where it was shut.
+    angle: f64,
     /// P V^n of each muscle.
     constant: [f64; 2],
     exponent: f64,
@@ -150,11 +154,23 @@ impl Joint {
     /// # Errors
     /// [`JointError::NoRest`] if it isn't in the range of angles, or [`JointError::Muscle`].
     pub fn rest(&self, pressures: [f64; 2], outside: f64) -> Result<Stand, JointError> {
+        self.within(pressures)?;
         let torque = |angle: f64| {
             Ok(self.pulls(angle, pressures)?.map(|pull| pull.torque).iter().sum::<f64>() + outside)
         };
         let angle = self.balanced(torque, pressures)?;
         self.stand(angle, pressures)
+    }
+
+    /// Refuses pressures outside the joint's range.
+    fn within(&self, pressures: [f64; 2]) -> Result<(), JointError> {
+        let range @ [low, high] = self.pressure;
+        let slack = 1e-9 * high;
+        let is_out = |p: &f64| !(*p >= low - slack && *p <= high + slack);
+        match [Side::Agonist, Side::Antagonist].into_iter().zip(pressures).find(|(_, p)| is_out(p)) {
+            Some((side, pressure_pa)) => Err(JointError::Pressure { side, pressure_pa, range }),
+            None => Ok(()),
+        }
     }
 
     /// The angle at which a falling torque vanishes.
@@ -185,6 +201,7 @@ impl Joint {
     /// # Errors
     /// As [`Joint::torque`].
     pub fn outside(&self, angle: f64, pressures: [f64; 2], sd: Readings) -> Result<Outside, JointError> {
+        self.within(pressures)?;
         let stand = self.stand(angle, pressures)?;
         let (mut by_pressure, mut by_force, mut by_learnt) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (muscle, pressure) in self.muscles.iter().zip(pressures) {
@@ -245,11 +262,9 @@ impl Joint {
             })
         };
         if own(high)? < weakest || own(low)? > strongest {
-            return Err(JointError::Held {
-                angle,
-                outside,
-                range: [own(low)? - strongest, own(high)? - weakest],
-            });
+            // Without the torque from outside: what holds the joint there is the negative.
+            let held = [weakest - own(high)? + outside, strongest - own(low)? + outside];
+            return Err(JointError::Held { angle, outside, range: held });
         }
         let from = if own(low)? >= weakest { low } else { reached(weakest)? };
         let to = if own(high)? <= strongest { high } else { reached(strongest)? };
@@ -273,7 +288,7 @@ impl Joint {
             let side = stand.sides[i];
             (side.pressure_pa + AMBIENT) * (side.volume_m3 + dead_m3[i]).powf(exponent)
         };
-        Ok(Closed { joint: self, constant: [constant(0), constant(1)], exponent, dead_m3 })
+        Ok(Closed { joint: self, angle, constant: [constant(0), constant(1)], exponent, dead_m3 })
     }
 }
 
@@ -313,9 +328,36 @@ impl Closed<'_> {
             let pressures = self.pressures(angle)?;
             Ok(self.joint.pulls(angle, pressures)?.map(|pull| pull.torque).iter().sum::<f64>() + outside)
         };
-        let middle = 0.5 * (self.joint.angle[0] + self.joint.angle[1]);
-        let angle = self.joint.balanced(torque, self.pressures(middle)?)?;
-        self.joint.stand(angle, self.pressures(angle)?)
+        // From where it was shut outwards: at an end of the range a muscle may have lost its pressure, and rest before.
+        let start = self.angle;
+        let begun = torque(start)?;
+        let end = self.joint.angle[usize::from(begun > 0.0)];
+        let mut before = start;
+        for k in 1..=STEPS {
+            let next = start + (end - start) * f64::from(k) / f64::from(STEPS);
+            if torque(next)? * begun <= 0.0 {
+                let [low, high] = [before.min(next), before.max(next)];
+                let tolerance = TOLERANCE * (self.joint.angle[1] - self.joint.angle[0]);
+                let angle =
+                    first(|failed| illinois(|angle| kept(torque(angle), failed), low, high, tolerance))?;
+                return self.joint.stand(angle, self.pressures(angle)?);
+            }
+            before = next;
+        }
+        let range = self.joint.angle;
+        Err(JointError::NoRest { pressures: self.pressures(start)?, torques: [begun, torque(end)?], range })
+    }
+
+    /// -dM/dtheta with the valves shut and the dead volume \[N m/rad\]: a difference of fourth order.
+    ///
+    /// # Errors
+    /// As [`Closed::torque`].
+    pub fn stiffness(&self, angle: f64) -> Result<f64, JointError> {
+        let [low, high] = self.joint.angle;
+        // Within the range on both sides.
+        let h = (1e-3 * (high - low)).min(0.4 * (angle - low)).min(0.4 * (high - angle));
+        let at = |k: f64| self.torque(angle + k * h);
+        Ok(-(8.0 * (at(1.0)? - at(-1.0)?) - (at(2.0)? - at(-2.0)?)) / (12.0 * h))
     }
 
     /// Torque of both muscles at an angle \[N m\].
@@ -417,7 +459,15 @@ mod tests {
                     assert!((end.torque_nm + outside).abs() < 1e-5);
                 }
             }
-            assert!(matches!(joint.pressures_for(0.0, 10.0, 1e4), Err(JointError::Held { .. })));
+            let Err(JointError::Held { range: [least, most], .. }) = joint.pressures_for(0.0, 10.0, 1e4)
+            else {
+                panic!("nothing holds 10 kN m")
+            };
+            // The strongest pull of one against the weakest of the other.
+            let [low, high] = joint.pressures();
+            let torque = |one: f64, other: f64| joint.torque(0.0, one, other).unwrap();
+            assert!((least + torque(high, low)).abs() < 1e-6 && (most + torque(low, high)).abs() < 1e-6);
+            assert!(matches!(joint.rest([2.0 * high, low], 0.0), Err(JointError::Pressure { .. })));
         }
     }
 
@@ -513,7 +563,10 @@ mod tests {
                 }
                 let open = joint.rest(pressures, 1.0).unwrap();
                 let roomy = joint.closed(angle, pressures, exponent, [1e-4; 2]).unwrap().rest(1.0).unwrap();
-                let endless = joint.closed(angle, pressures, exponent, [1e3; 2]).unwrap().rest(1.0).unwrap();
+                assert!((closed.stiffness(angle).unwrap() / stiffness - 1.0).abs() < 1e-7);
+                let far = joint.closed(angle, pressures, exponent, [1e3; 2]).unwrap();
+                assert!((far.stiffness(angle).unwrap() / there.stiffness_nm_per_rad - 1.0).abs() < 1e-5);
+                let endless = far.rest(1.0).unwrap();
                 assert!(loaded.angle_rad < roomy.angle_rad && roomy.angle_rad < open.angle_rad);
                 assert!((endless.angle_rad / open.angle_rad - 1.0).abs() < 1e-6);
             }
