@@ -46,7 +46,71 @@ pub(super) fn problem(muscle: &Extended, pressure_pa: f64) -> Result<Problem, Ga
 }
 
 /// The muscle with its effects at a pressure and a contraction, also where it would push.
+///
+/// At low pressure a bladder may carry all of it, so that the fibres are slack and there is no net to solve. From there down the muscle goes on as it was: pull
+/// and volume linear in the pressure, from the lowest pressure at which the fibres are taut (the force of a net on rubber is p times one shape less that of the
+/// rubber).
 pub(super) fn follow(
+    muscle: &Extended,
+    pressure_pa: f64,
+    contraction: f64,
+    approach: Approach,
+) -> Result<Response, GasError> {
+    let found = taut(muscle, pressure_pa, contraction, approach);
+    match found {
+        Err(error) if muscle.muscle().bladder().is_some() && pressure_pa < HIGHEST_SLACK_PA => {
+            slack(muscle, pressure_pa, contraction, approach)?.ok_or(error)
+        }
+        found => found,
+    }
+}
+
+/// A muscle whose fibres are slack at this pressure is not looked at any more \[Pa\].
+const HIGHEST_SLACK_PA: f64 = 1e6;
+/// Where that search begins \[Pa\].
+const LOWEST_TAUT_PA: f64 = 1e3;
+/// Steps in which the lowest pressure with taut fibres is sought, each twice as near.
+const HALVINGS: u32 = 12;
+/// Between the two pressures of the continuation, relative.
+const APART: f64 = 1e-3;
+
+/// Continued from the lowest pressure at which the fibres are taut; `None` if there is none.
+fn slack(
+    muscle: &Extended,
+    pressure_pa: f64,
+    contraction: f64,
+    approach: Approach,
+) -> Result<Option<Response>, GasError> {
+    let at = |p: f64| taut(muscle, p, contraction, approach);
+    // Upwards until it works, then halving between: the same way whatever pressure is asked for, so that what follows is smooth in it.
+    let (mut low, mut high) = (0.0, LOWEST_TAUT_PA);
+    while at(high).is_err() {
+        (low, high) = (high, 2.0 * high);
+        if high > HIGHEST_SLACK_PA {
+            return Ok(None);
+        }
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if at(middle).is_ok() {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    let [one, other] = [at(high)?, at((1.0 + APART) * high)?];
+    let part = (pressure_pa - high) / (APART * high);
+    let on = |a: f64, b: f64| a + part * (b - a);
+    Ok(Some(Response {
+        pressure_pa,
+        force_n: on(one.force_n, other.force_n),
+        volume_m3: on(one.volume_m3, other.volume_m3),
+        volume_polygon_m3: on(one.volume_polygon_m3, other.volume_polygon_m3),
+        ..one
+    }))
+}
+
+fn taut(
     muscle: &Extended,
     pressure_pa: f64,
     contraction: f64,
@@ -73,5 +137,52 @@ pub(super) fn load_at(load: &Load<'_>, muscle: &Extended, contraction: f64) -> f
             preload_n + rate_n_per_m * stated_length(muscle) * (contraction - from)
         }
         Load::Law(law) => law(contraction),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gas::{Chamber, Lift, Stroke};
+    use bulge_muscles::from_toml;
+
+    const RUBBER: &str = "name = \"rubber\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10.725 mm\"\nbraid_angle = \"25 deg\"\nwall = \"2 mm\"\n[effects.bladder-elasticity]\nc10 = \"0.34 MPa\"\n";
+
+    fn rubber() -> Extended {
+        Extended::new(&from_toml(RUBBER, "m.toml").unwrap(), &[]).unwrap()
+    }
+
+    /// Stiff rubber at 100 Pa: no net to solve, and yet a muscle that pushes; continuous and rising in the pressure through where the fibres are taut.
+    #[test]
+    fn slack_fibres_are_passed() {
+        let muscle = rubber();
+        let force = |p: f64| follow(&muscle, p, 0.05, Approach::Auto).unwrap().force_n;
+        assert!(taut(&muscle, 100.0, 0.05, Approach::Auto).is_err() && force(100.0) < 0.0);
+        let mut before = force(100.0);
+        for k in 1..=60 {
+            let p = 100.0 + 2e3 * f64::from(k);
+            let now = force(p);
+            // The slope of a net: the cylinder's p pi r0^2 (3 (1 - e)^2 cos^2 - 1)/sin^2 is 0.0028 N/Pa.
+            let slope = (now - before) / 2e3;
+            assert!((1e-3..6e-3).contains(&slope), "{p} {slope}");
+            before = now;
+        }
+    }
+
+    /// A stroke begins and ends where the muscle pulls the load; a chamber goes from no pressure to all.
+    #[test]
+    fn muscles_with_rubber_lift() {
+        let muscle = rubber();
+        let stroke = Stroke::new(&muscle, 300.0, [0.05, 0.12], Lift::PressureRise, 6e5).cycle().unwrap();
+        for (p, e) in [(stroke.start_pressure_pa, 0.05), (stroke.end_pressure_pa, 0.12)] {
+            let pull = muscle.solve(Pressure::pa(p), Given::Contraction(e), Approach::Auto).unwrap().force_n;
+            assert!((pull / 300.0 - 1.0).abs() < 1e-9, "{pull}");
+        }
+        assert!(stroke.efficiency > 0.01 && stroke.efficiency < 0.2);
+        let chamber = Chamber::muscle(&muscle, Load::Held(0.05)).unwrap();
+        let [empty, full] = [0.0, 5e5].map(|p| chamber.at(p).unwrap());
+        let there = muscle.solve(Pressure::pa(5e5), Given::Contraction(0.05), Approach::Auto).unwrap();
+        assert!((full.force_n / there.force_n - 1.0).abs() < 1e-12 && empty.force_n < 0.0);
+        assert!((full.volume_m3 / empty.volume_m3 - 1.0).abs() < 0.2);
     }
 }
