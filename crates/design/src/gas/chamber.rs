@@ -12,7 +12,7 @@ use bulge_muscles::Pressure;
 use bulge_numerics::root::{RootError, newton_bracketed};
 use serde::Serialize;
 
-use super::muscle::{follow, is_scale_free, load_at};
+use super::muscle::{Lowest, follow, is_scale_free, load_at};
 use super::{GasError, at_least, positive};
 
 /// Below this gauge pressure \[Pa\] the shape of a muscle is that at this pressure: at none there is no equilibrium to solve.
@@ -88,6 +88,8 @@ pub struct Chamber<'a> {
     dead_volume_m3: f64,
     ambient_pa: f64,
     approach: Approach,
+    /// Where something holds a muscle with a bladder: from where its fibres are taut.
+    lowest: Option<Lowest>,
 }
 
 impl<'a> Chamber<'a> {
@@ -117,7 +119,7 @@ impl<'a> Chamber<'a> {
                 instead: "give a finite number",
             });
         }
-        Ok(Self::of(Body::Muscle { muscle, load, support: None }))
+        Ok(Self::of(Body::Muscle { muscle, load, support: None }).looked_at())
     }
 
     const fn of(body: Body<'a>) -> Self {
@@ -126,7 +128,19 @@ impl<'a> Chamber<'a> {
             dead_volume_m3: 0.0,
             ambient_pa: bulge_fibre::AMBIENT_PRESSURE,
             approach: Approach::Auto,
+            lowest: None,
         }
+    }
+
+    /// With what is known of slack fibres at the contraction that something holds.
+    fn looked_at(mut self) -> Self {
+        let held = match self.body {
+            Body::Muscle { muscle, load: Load::Held(contraction), .. } => Some((muscle, contraction)),
+            Body::Muscle { muscle, support: Some(contraction), .. } => Some((muscle, contraction)),
+            _ => None,
+        };
+        self.lowest = held.and_then(|(muscle, contraction)| Lowest::of(muscle, contraction, self.approach));
+        self
     }
 
     /// With the dead volume \[m^3\] of tubes and fittings.
@@ -165,14 +179,14 @@ impl<'a> Chamber<'a> {
         {
             *support = Some(contraction);
         }
-        Ok(self)
+        Ok(self.looked_at())
     }
 
     /// Solved by this method.
     #[must_use]
-    pub const fn solved_by(mut self, approach: Approach) -> Self {
+    pub fn solved_by(mut self, approach: Approach) -> Self {
         self.approach = approach;
-        self
+        self.looked_at()
     }
 
     /// Ambient pressure \[Pa\].
@@ -258,6 +272,9 @@ impl<'a> Chamber<'a> {
     /// At a contraction that something holds, where a muscle with a bladder may push.
     fn held(&self, muscle: &Extended, pressure_pa: f64, contraction: f64) -> Result<Response, GasError> {
         let pressure = pressure_pa.max(LEAST_PRESSURE_PA);
+        if let Some(lowest) = self.lowest.filter(|lowest| lowest.is_above(pressure)) {
+            return Ok(lowest.down_to(pressure));
+        }
         let mut found = follow(muscle, pressure, contraction, self.approach)?;
         if pressure_pa < pressure && is_scale_free(muscle)? {
             found.force_n *= pressure_pa.max(0.0) / pressure;
