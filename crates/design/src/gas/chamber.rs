@@ -135,8 +135,8 @@ impl<'a> Chamber<'a> {
     /// With what is known of slack fibres at the contraction that something holds.
     fn looked_at(mut self) -> Self {
         let held = match self.body {
-            Body::Muscle { muscle, load: Load::Held(contraction), .. } => Some((muscle, contraction)),
-            Body::Muscle { muscle, support: Some(contraction), .. } => Some((muscle, contraction)),
+            Body::Muscle { muscle, load: Load::Held(contraction), .. }
+            | Body::Muscle { muscle, support: Some(contraction), .. } => Some((muscle, contraction)),
             _ => None,
         };
         self.lowest = held.and_then(|(muscle, contraction)| Lowest::of(muscle, contraction, self.approach));

@@ -14,6 +14,7 @@ const B: f64 = 0.3;
 /// 1.185 kg/m^3 at 293.15 K.
 const RHO: f64 = 1.185;
 
+#[expect(clippy::large_types_passed_by_value, reason = "most are made in the call")]
 fn filling(chamber: Chamber<'_>, gauge: f64) -> Filling<'_> {
     Filling {
         chamber,
