@@ -7,13 +7,13 @@ use bulge_design::size::SizeError;
 use bulge_effects::CatalogueError;
 use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
-use bulge_inference::InferenceError;
+use bulge_inference::{HideError, InferenceError};
 use bulge_measurements::MeasurementError;
 use bulge_membrane::MembraneError;
 use bulge_membrane::case::CaseError;
 use bulge_model::{ExtendedError, ModelError};
 use bulge_muscles::{FileError, PresetError, UnitError};
-use bulge_report::PlotError;
+use bulge_report::{LearningError, PlotError};
 use bulge_sweep::export::ExportError;
 use bulge_sweep::{BuildError, SweepError, TabulateError};
 use bulge_table::TableError;
@@ -53,6 +53,8 @@ pub(crate) enum Failure {
     Extended(Box<ExtendedError>),
     #[error("{0}")]
     NotConverged(String),
+    #[error("{0}")]
+    Learning(Box<LearningError>),
     #[error("{0}")]
     Size(Box<SizeError>),
     #[error("{0}")]
@@ -101,6 +103,11 @@ impl Failure {
                 _ => 1,
             },
             Self::Model(error) => model_status(error),
+            Self::NotConverged(_) => 4,
+            Self::Learning(error) => match error.as_ref() {
+                LearningError::NotConverged { .. } => 4,
+                LearningError::Model(error) => model_status(error),
+            },
             Self::Extended(_) | Self::Outside(_) => 3,
             Self::Sensing(error) => match error.as_ref() {
                 SensingError::Equilibrium { .. }
@@ -136,7 +143,6 @@ impl Failure {
                 CaseError::Structure(_) | CaseError::State { source: MembraneError::NoGas { .. }, .. } => 1,
                 CaseError::State { .. } => 4,
             },
-            Self::NotConverged(_) => 4,
             _ => 1,
         }
     }
@@ -149,6 +155,18 @@ fn model_status(error: &ModelError) -> u8 {
 /// Data that ask for an equilibrium that doesn't exist are wrong input; a search that failed is not.
 fn equilibrium_status(error: &FibreError) -> u8 {
     if matches!(error, FibreError::NotConverged { .. }) { 4 } else { 1 }
+}
+
+impl From<HideError> for Failure {
+    fn from(error: HideError) -> Self {
+        match error {
+            HideError::Stated(what) => Self::Value { option: "--with", what },
+            HideError::Effect(error) => error.into(),
+            HideError::File(error) => error.into(),
+            HideError::Model(error) => error.into(),
+            HideError::Inference(error) => error.into(),
+        }
+    }
 }
 
 /// Errors of the libraries become failures behind a box: they carry much, and are rare.
@@ -171,6 +189,7 @@ boxed!(
     EffectFile(EffectFileError),
     Measurement(MeasurementError),
     Inference(InferenceError),
+    Learning(LearningError),
     Model(ModelError),
     Size(SizeError),
     Sensing(SensingError),

@@ -5,6 +5,7 @@ use bulge_measurements::Data;
 use bulge_membrane::case::{CASE_EXAMPLE, Case, CaseError, CaseRun, Row};
 use bulge_membrane::{Effort, Fields, State};
 use bulge_muscles::Muscle;
+use bulge_report::Learnt;
 use bulge_vtk::{MembranePicture, MembraneSeries, VtkError, Whole, write_vtu};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -17,7 +18,7 @@ use std::time::{Duration, Instant};
 use crate::arguments;
 use crate::failure::Failure;
 use crate::files;
-use crate::fit::{self as fitted, Fitted};
+use crate::fit;
 use crate::text::{shown, significant, table};
 
 /// A finite-element membrane case: a mesh, what it is made of, what holds it, and loads in turn.
@@ -98,7 +99,7 @@ impl MembraneCommand {
             let _ = writeln!(
                 text,
                 "\nthe effect of the cloth, fitted to these states\n\n{}\n  wrote {}",
-                fitted::learnt(&fitted.fitting).trim_end(),
+                fit::lines(fitted).trim_end(),
                 path.display()
             );
         }
@@ -119,7 +120,7 @@ impl MembraneCommand {
     }
 
     /// The muscle with the effect of its cloth.
-    fn learn(&self, case: &Case, output: &Output, path: &Path) -> Result<Fitted, Failure> {
+    fn learn(&self, case: &Case, output: &Output, path: &Path) -> Result<Learnt, Failure> {
         let muscle = learns(case)?;
         let Some(forces) = forces(&output.rows) else {
             let what = "no state has a pressure and a contraction: there is nothing to learn from".to_owned();
@@ -128,7 +129,7 @@ impl MembraneCommand {
         let catalogue = arguments::catalogue(None)?;
         let effects = arguments::effects(&catalogue, &["limited-unfolding".to_owned()])?;
         let data = Data::from_csv(&forces, &self.out.join("forces.csv").display().to_string())?;
-        let fitted = fitted::fitted(&data, muscle, effects, catalogue)?;
+        let fitted = fit::learn(&data, muscle, effects, catalogue)?;
         is_the_cloth(case, &fitted)?;
         files::write(path, fitted.model.as_bytes())?;
         Ok(fitted)
@@ -139,7 +140,7 @@ impl MembraneCommand {
         case: &Case,
         run: &CaseRun<'_>,
         output: &Output,
-        learnt: Option<&Fitted>,
+        learnt: Option<&Learnt>,
     ) -> Result<String, Failure> {
         let [unknowns, matrix, factors] = run.sizes();
         let document = json!({
@@ -303,7 +304,7 @@ fn learns(case: &Case) -> Result<&Muscle, Failure> {
 const NEAR: f64 = 0.2;
 
 /// Refuses an effect that stands for something else: the cloth must end where the fit says that it does.
-fn is_the_cloth(case: &Case, fitted: &Fitted) -> Result<(), Failure> {
+fn is_the_cloth(case: &Case, fitted: &Learnt) -> Result<(), Failure> {
     let parameters = &fitted.fitting.fit.parameters;
     let radius = parameters.iter().find(|parameter| parameter.name == "unfolded_radius");
     let (Some(cloth), Some(radius)) = (case.unfolded_radius.map(|radius| 1e3 * radius), radius) else {

@@ -1,12 +1,11 @@
 //! `bulge shape`: one equilibrium.
 
-use bulge_fibre::{Given, MeridianPoint, PleatedNumbers, Problem, Response, Shape};
-use bulge_model::Extended;
+use bulge_fibre::{Given, MeridianPoint, Problem, Shape};
+use bulge_model::{Equilibrium, Extended};
 use bulge_muscles::units::Quantity;
-use bulge_muscles::{Construction, Force, Length, Muscle, Pressure, Ratio, Volume};
+use bulge_muscles::{Force, Length, Muscle, Pressure, Ratio, Volume};
 use bulge_vtk::{Bulge, Style, write_vtp};
 use clap::{ArgGroup, Args, ValueEnum};
-use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -74,26 +73,6 @@ pub(crate) enum Surface {
     Revolution,
 }
 
-/// The JSON document.
-#[derive(Debug, Serialize)]
-struct Document<'a> {
-    schema: &'static str,
-    muscle: &'a str,
-    #[serde(flatten)]
-    response: &'a Response,
-    contraction_limit: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    fibre_stress_pa: Option<f64>,
-    #[serde(flatten)]
-    pleated: Option<PleatedNumbers>,
-    /// Without the effects that the muscle file states.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    equilibrium_force_n: Option<f64>,
-    #[serde(skip_serializing_if = "<[String]>::is_empty")]
-    effects: &'a [String],
-    meridian: &'a [MeridianPoint],
-}
-
 impl ShapeCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         let (stated, extended) = extended(&self.muscle, self.effects.as_deref())?;
@@ -105,61 +84,28 @@ impl ShapeCommand {
             return Err(Failure::Value { option: "--points", what });
         }
         let cloth = self.cloth.as_deref().map(|text| quantity::<Length>("--cloth", text)).transpose()?;
-        let about = about(&muscle, pressure);
-        let problem = Problem::new(&muscle, pressure).map_err(&about)?;
+        let problem = Problem::new(&muscle, pressure).map_err(about(&muscle, pressure))?;
         let approach = self.method.approach();
-        let (shape, equilibrium_force) = if self.method == MethodArgument::Membrane {
-            (elements::shape(&problem, &extended, pressure, given, self.points)?, None)
+        let found = if self.method == MethodArgument::Membrane {
+            let shape = elements::shape(&problem, &extended, pressure, given, self.points)?;
+            Equilibrium::of(&extended, &problem, shape, None, approach)
         } else {
-            self.shape(&stated, &extended, given)?
+            Equilibrium::new(&extended, pressure, given, approach, self.points)
+                .map_err(about_extended(&stated, pressure))?
         };
-        let limit = extended.contraction_limit(pressure, approach).ok();
+        let shape = &found.shape;
         if let Some(path) = &self.vtk {
-            write_vtp(path, &bulge(&muscle, &shape, self.surface, cloth))?;
+            write_vtp(path, &bulge(&muscle, shape, self.surface, cloth))?;
         }
-        let stress = stress(&muscle, &shape.response);
         if self.json {
-            let document = Document {
-                schema: "bulge.shape/1",
-                muscle: muscle.name(),
-                response: &shape.response,
-                contraction_limit: limit,
-                fibre_stress_pa: stress,
-                pleated: problem.pleated_numbers(&shape.response),
-                equilibrium_force_n: equilibrium_force,
-                effects: extended.used(),
-                meridian: &shape.meridian,
-            };
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+            return Ok(serde_json::to_string_pretty(&found.document())? + "\n");
         }
         if self.csv {
             return Ok(meridian_csv(&shape.meridian));
         }
-        let mut text = self.text(&muscle, &problem, &shape, limit, stress);
-        text.push_str(&effects_text(&extended, equilibrium_force));
+        let mut text = self.text(&muscle, &found);
+        text.push_str(&effects_text(&extended, found.equilibrium_force_n));
         Ok(text)
-    }
-
-    /// The equilibrium, and its force without effects if the muscle file states any.
-    fn shape(
-        &self,
-        stated: &Muscle,
-        extended: &Extended,
-        given: Given,
-    ) -> Result<(Shape, Option<f64>), Failure> {
-        let pressure: Pressure = quantity("--pressure", &self.pressure)?;
-        let approach = self.method.approach();
-        let about = about(stated, pressure);
-        let problem = Problem::new(extended.muscle(), pressure).map_err(&about)?;
-        if !extended.adds_force() {
-            return Ok((problem.shape(given, approach, self.points).map_err(&about)?, None));
-        }
-        let response = extended.solve(pressure, given, approach).map_err(about_extended(stated, pressure))?;
-        let there = extended.given(Given::Contraction(response.contraction));
-        let mut shape = problem.shape(there, approach, self.points).map_err(&about)?;
-        let alone = shape.response.force_n;
-        shape.response = response;
-        Ok((shape, Some(alone)))
     }
 
     fn given(&self) -> Result<Given, Failure> {
@@ -176,14 +122,8 @@ impl ShapeCommand {
         }
     }
 
-    fn text(
-        &self,
-        muscle: &Muscle,
-        problem: &Problem,
-        shape: &Shape,
-        limit: Option<f64>,
-        stress: Option<f64>,
-    ) -> String {
+    fn text(&self, muscle: &Muscle, found: &Equilibrium) -> String {
+        let Equilibrium { shape, contraction_limit: limit, fibre_stress_pa: stress, .. } = found;
         let r = &shape.response;
         let mut text = String::new();
         let mut line = |name: &str, value: String| {
@@ -220,7 +160,7 @@ impl ShapeCommand {
             "0 (inextensible: no `fibre.stiffness` in the muscle file)".to_owned()
         };
         line("fibre strain", strain);
-        if let Some(stress) = stress {
+        if let Some(stress) = *stress {
             line("fibre stress", format!("{} MPa", significant(1e-6 * stress, 4)));
         }
         if let Some(largest) = largest_angle(&shape.meridian) {
@@ -236,7 +176,7 @@ impl ShapeCommand {
                 stiffness[0], stiffness[1], stiffness[2]
             ),
         );
-        if let Some(numbers) = problem.pleated_numbers(r) {
+        if let Some(numbers) = &found.pleated {
             let [m, phi, f, v] =
                 [numbers.m, numbers.phi_r, numbers.force_f, numbers.volume_v].map(|x| significant(x, 6));
             line("dimensionless", format!("m {m}, phi_R {phi}, f {f}, v {v}"));
@@ -256,12 +196,6 @@ impl ShapeCommand {
     }
 }
 
-/// Tension over section, if the section is given.
-pub(crate) fn stress(muscle: &Muscle, response: &Response) -> Option<f64> {
-    let section = muscle.fibre()?.section()?;
-    Some(response.fibre_tension_n / section.si())
-}
-
 fn largest_angle(meridian: &[MeridianPoint]) -> Option<f64> {
     let largest = meridian.iter().map(|point| point.braid_angle_rad).fold(0.0, f64::max);
     (largest > 0.0).then_some(largest)
@@ -274,17 +208,13 @@ pub(crate) fn bulge<'a>(
     surface: Option<Surface>,
     cloth: Option<Length>,
 ) -> Bulge<'a> {
-    // Enough fibres to see the net where the muscle file doesn't say how many there are.
-    let fibres = muscle.fibres().unwrap_or(32);
-    let turns = shape.meridian.last().is_some_and(|end| end.turn_rad != 0.0);
-    let pleated =
-        matches!(muscle.construction(), Construction::Pleated(_)) && muscle.fibres().is_some() && !turns;
+    let cloth = cloth.map(Length::si);
     let style = match surface {
         Some(Surface::Revolution) => Style::Revolution,
-        None if !pleated => Style::Revolution,
-        _ => Style::Pleats { cloth_circumference: cloth.map(Length::si) },
+        Some(Surface::Pleats) => Style::Pleats { cloth_circumference: cloth },
+        None => Style::natural(muscle, shape, cloth),
     };
-    Bulge { shape, fibres, style, facets: style.default_facets() }
+    Bulge::of(muscle, shape, style)
 }
 
 /// What effects of the muscle file do.

@@ -1,27 +1,21 @@
 //! `bulge simulate`: synthetic measurements of a muscle with chosen effects, noise and rig errors, and what is hidden in them.
 
-use bulge_effects::{Effect, Group, ParameterCard, known};
 use bulge_inference::{
-    HiddenEffect, PROTOCOL_EXAMPLE, Protocol, Random, RigErrors, Simulation, Truth, simulate,
+    HiddenEffect, PROTOCOL_EXAMPLE, Protocol, RigErrors, Simulation, Truth, simulate_with,
 };
-use bulge_model::Model;
-use bulge_muscles::{Muscle, to_toml, units};
+use bulge_muscles::to_toml;
 use clap::Args;
 use std::fmt::Write;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use crate::arguments;
 use crate::failure::Failure;
 use crate::files;
 use crate::text::significant;
 
-const WITH: &str = "--with";
 /// Names of the files written.
 const FILES: [&str; 3] = ["data.csv", "muscle.toml", "truth.json"];
-/// Stream of the random numbers with which specimens differ; those of the readings count upwards from 0.
-const SPECIMENS: u64 = u64::MAX;
 
 /// Synthetic measurements with chosen (hidden) effects, noise and rig errors: DIR/data.csv, DIR/muscle.toml, DIR/truth.json.
 ///
@@ -54,12 +48,6 @@ pub(crate) struct SimulateCommand {
     json: bool,
 }
 
-/// An effect to hide, with the numbers that were stated \[SI\].
-struct Stated {
-    effect: Arc<dyn Effect>,
-    numbers: Vec<Option<f64>>,
-}
-
 fn help() -> String {
     let indented = PROTOCOL_EXAMPLE.replace('\n', "\n    ");
     format!(
@@ -74,17 +62,7 @@ impl SimulateCommand {
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
         let protocol = Protocol::read(&self.protocol)?;
-        let find = |name: &str| Ok(Arc::clone(catalogue.find(name)?));
-        let stated = stated(&self.with, find, &muscle)?;
-        let mut model = Model::new(&muscle).for_specimens(&protocol.specimens());
-        for (effect, numbers) in known(&muscle, &catalogue)? {
-            model = model.with(&effect, Some(&numbers))?;
-        }
-        for one in &stated {
-            model = model.with(&one.effect, None)?;
-        }
-        let theta = numbers(&model, &stated, &muscle, self.seed)?;
-        let found = simulate(&model, &theta, &protocol, self.seed)?;
+        let found = simulate_with(&muscle, &catalogue, &protocol, &self.with, self.seed)?;
         self.check_out()?;
         let document = serde_json::to_string_pretty(&found.truth)? + "\n";
         let paths = write(&self.out, &found, &document)?;
@@ -121,196 +99,6 @@ fn write(folder: &Path, found: &Simulation, document: &str) -> Result<[PathBuf; 
         files::write(path, content.as_bytes())?;
     }
     Ok(paths)
-}
-
-fn wrong(what: String) -> Failure {
-    Failure::Value { option: WITH, what }
-}
-
-/// `name`, `name=value`, `name.key=value`, or a further value of the effect before.
-fn stated(
-    items: &[String],
-    find: impl Fn(&str) -> Result<Arc<dyn Effect>, Failure>,
-    muscle: &Muscle,
-) -> Result<Vec<Stated>, Failure> {
-    let mut all: Vec<Stated> = Vec::new();
-    for item in items {
-        let item = item.trim();
-        if item.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '+' | '.' | '\u{2212}')) {
-            let last = all.last_mut().ok_or_else(|| {
-                wrong(format!("`{item}` belongs to no effect; write such as `coulomb-friction={item}`"))
-            })?;
-            last.next(item, muscle)?;
-            continue;
-        }
-        let (left, value) =
-            item.split_once('=').map_or((item, None), |(left, value)| (left, Some(value.trim())));
-        let (name, key) = left.split_once('.').map_or((left, None), |(name, key)| (name, Some(key.trim())));
-        let effect = find(name.trim())?;
-        let is_it = |other: &Stated| other.effect.card().name == effect.card().name;
-        let place = all.iter().position(is_it);
-        if place.is_some() && key.is_none() {
-            return Err(wrong(format!(
-                "`{}` stands twice in the list of effects; once is enough",
-                name.trim()
-            )));
-        }
-        let place = place.unwrap_or_else(|| {
-            let numbers = vec![None; effect.parameters().len()];
-            all.push(Stated { effect, numbers });
-            all.len() - 1
-        });
-        match (key, value) {
-            (Some(key), Some(value)) => all[place].keyed(key, value, muscle)?,
-            (Some(key), None) => {
-                return Err(wrong(format!(
-                    "`{item}` has no value; write such as {}",
-                    all[place].example(Some(key), muscle)
-                )));
-            }
-            (None, Some(value)) => all[place].next(value, muscle)?,
-            (None, None) => {}
-        }
-    }
-    Ok(all)
-}
-
-impl Stated {
-    fn name(&self) -> String {
-        self.effect.card().name.to_owned()
-    }
-
-    /// The numbers of this muscle.
-    fn with_cards<T>(&self, muscle: &Muscle, read: impl FnOnce(&[ParameterCard<'_>]) -> T) -> T {
-        let cards: Vec<ParameterCard<'_>> =
-            self.effect.parameters().into_iter().map(|card| card.of(muscle)).collect();
-        read(&cards)
-    }
-
-    /// Puts a value to the first number that has none.
-    fn next(&mut self, value: &str, muscle: &Muscle) -> Result<(), Failure> {
-        let Some(place) = self.numbers.iter().position(Option::is_none) else {
-            let count = self.numbers.len();
-            let has = match count {
-                0 => "no number: write its name alone".to_owned(),
-                1 => "one number only".to_owned(),
-                _ => format!("{count} numbers only"),
-            };
-            return Err(wrong(format!("`{value}` is too much for `{}`, which has {has}", self.name())));
-        };
-        self.put(place, value, muscle)
-    }
-
-    fn keyed(&mut self, key: &str, value: &str, muscle: &Muscle) -> Result<(), Failure> {
-        let is_it =
-            |cards: &[ParameterCard<'_>]| cards.iter().position(|card| card.key == key || card.name == key);
-        if let Some(place) = self.with_cards(muscle, is_it) {
-            return self.put(place, value, muscle);
-        }
-        let has = if self.numbers.is_empty() {
-            "it has no numbers: write its name alone".to_owned()
-        } else {
-            format!("write such as {}", self.example(None, muscle))
-        };
-        Err(wrong(format!("the effect `{}` has no `{key}`; {has}", self.name())))
-    }
-
-    fn put(&mut self, place: usize, text: &str, muscle: &Muscle) -> Result<(), Failure> {
-        let name = self.name();
-        let value = self.with_cards(muscle, |cards| read(&name, &cards[place], text))?;
-        self.numbers[place] = Some(value);
-        Ok(())
-    }
-
-    /// How a number, or all of them, is written.
-    fn example(&self, key: Option<&str>, muscle: &Muscle) -> String {
-        let name = self.name();
-        let one = |card: &ParameterCard<'_>| format!("`{name}.{}={}`", card.key, shown(usual(card), card));
-        self.with_cards(muscle, |cards| {
-            let fitting = cards.iter().filter(|card| key.is_none_or(|key| card.key == key));
-            let list: Vec<String> = fitting.map(one).collect();
-            if list.is_empty() { format!("`{name}`: it has no such number") } else { list.join(", ") }
-        })
-    }
-}
-
-/// A number within the bounds of its effect, in SI.
-fn read(effect: &str, card: &ParameterCard<'_>, text: &str) -> Result<f64, Failure> {
-    let example = format!("write such as `{effect}.{}={}`", card.key, shown(usual(card), card));
-    let found = units::any(text).map_err(|error| wrong(format!("`{effect}`: {error}; {example}")))?;
-    let dimension = units::unit(card.unit).map_or(found.dimension, |(_, dimension)| dimension);
-    if found.dimension != dimension {
-        let (is, must) = (found.dimension.describe(), dimension.describe());
-        return Err(wrong(format!(
-            "`{}` of `{effect}` is {must}, but `{text}` is {is}; {example}",
-            card.key
-        )));
-    }
-    // What a fit left on a bound may be off it by rounding.
-    let slack = 1e-12 * (card.high - card.low).abs();
-    if !(card.low - slack..=card.high + slack).contains(&found.si) {
-        return Err(wrong(format!(
-            "`{text}` is out of the bounds of `{effect}`: `{}` lies between {} and {}",
-            card.key,
-            shown(card.low, card),
-            shown(card.high, card)
-        )));
-    }
-    Ok(found.si.clamp(card.low, card.high))
-}
-
-/// A usual value at which the effect does something: that of the card, or one standard deviation of the literature beside it.
-fn usual(card: &ParameterCard<'_>) -> f64 {
-    let does_nothing = card.typical.total_cmp(&card.off).is_eq();
-    let beside = card.prior.map(|(mean, sd)| (mean + sd).clamp(card.low, card.high));
-    beside.filter(|_| does_nothing).unwrap_or(card.typical)
-}
-
-/// All numbers of the model: those stated, usual ones, and one draw for each specimen.
-fn numbers(model: &Model, stated: &[Stated], muscle: &Muscle, seed: u64) -> Result<Vec<f64>, Failure> {
-    let mut theta = model.start();
-    let mut random = Random::new(seed, SPECIMENS);
-    for one in stated {
-        let name = one.name();
-        let is_of_specimens = one.effect.card().group == Group::Specimen;
-        if is_of_specimens
-            && model.parameters().iter().filter(|p| p.effect == name).count() <= one.numbers.len()
-        {
-            return Err(wrong(format!(
-                "`{name}` needs two specimens or more; write such as `specimens = 3` into a `[[block]]`"
-            )));
-        }
-        let is_silent = one.numbers.iter().all(Option::is_none);
-        let values = one.with_cards(muscle, |cards| -> Vec<f64> {
-            let value = |(card, number): (&ParameterCard<'_>, &Option<f64>)| {
-                number.unwrap_or(if is_silent { usual(card) } else { card.typical })
-            };
-            cards.iter().zip(&one.numbers).map(value).collect()
-        });
-        let does_nothing = one.with_cards(muscle, |cards| {
-            !cards.is_empty()
-                && cards.iter().zip(&values).all(|(card, value)| card.off.total_cmp(value).is_eq())
-        });
-        if does_nothing && is_silent {
-            let example = one.example(None, muscle);
-            return Err(wrong(format!(
-                "`{name}` has no usual size; write its numbers, in the way of {example}"
-            )));
-        }
-        let places = (0..theta.len()).filter(|i| model.parameters()[*i].effect == name);
-        for (place, value) in places.zip(values.iter().cycle()) {
-            let number = &model.parameters()[place];
-            let drawn = if is_of_specimens { value * random.normal() } else { *value };
-            theta[place] = drawn.clamp(number.low, number.high);
-        }
-    }
-    Ok(theta)
-}
-
-/// A number in the unit of its card.
-fn shown(si: f64, card: &ParameterCard<'_>) -> String {
-    // Twelve digits hide the rounding of the change of units.
-    format!("{} {}", units::rounded(si / card.factor, 12), card.unit).trim_end().to_owned()
 }
 
 /// The simulation for people.

@@ -44,5 +44,6 @@ pub use noise::whitening::Whitening;
 pub use progress::Progress;
 pub use protocol::bench::{Block, MOST_ROWS, Path, Protocol, ReadingNoise, ReadingSteps, RigErrors};
 pub use protocol::file::PROTOCOL_EXAMPLE;
+pub use protocol::hidden::{HideError, simulate_with};
 pub use protocol::simulation::{Simulation, simulate};
 pub use protocol::truth::{Ended, HiddenEffect, HiddenNumber, RigReadings, Truth};

@@ -2,6 +2,7 @@
 
 pub(crate) mod bench;
 pub(crate) mod file;
+pub(crate) mod hidden;
 pub(crate) mod planned;
 pub(crate) mod simulation;
 pub(crate) mod truth;

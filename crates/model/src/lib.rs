@@ -11,6 +11,7 @@
 
 mod answer;
 mod base;
+mod equilibrium;
 mod error;
 mod evaluate;
 mod extended;
@@ -21,6 +22,7 @@ mod record;
 mod row;
 mod warm;
 
+pub use equilibrium::{Equilibrium, EquilibriumDocument};
 pub use error::ModelError;
 pub use evaluate::{Prediction, Wanted};
 pub use extended::{Extended, ExtendedError};

@@ -13,10 +13,12 @@ pub mod diagnosis;
 mod drawing;
 mod error;
 mod interval;
+mod learning;
 mod palette;
 mod sizing;
 
 pub use characteristics::{Curve, characteristics_svg};
 pub use error::PlotError;
 pub use interval::with_interval;
+pub use learning::{LearningError, Learnt, LearntDocument};
 pub use sizing::{lines_svg, sizing_svg};

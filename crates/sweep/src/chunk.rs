@@ -13,9 +13,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::design::{Coordinate, Layout};
-use crate::family::{Family, FamilyError, Member};
-use crate::output::Output;
+use crate::family::{Family, Member};
+use crate::family_error::FamilyError;
 use crate::plan::Plan;
+use crate::points::finite;
 
 /// The points of a chunk, column by column.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,10 +99,7 @@ impl<'a> Computer<'a> {
                 member
                     .pulling(contraction, *limit, &self.plan.outputs, &mut values)
                     .map_err(|error| error.to_string())?;
-                let finite = |(value, output): (&f64, &Output)| {
-                    if value.is_finite() { Ok(()) } else { Err(format!("`{}` is {value}", output.name())) }
-                };
-                values.iter().zip(&self.plan.outputs).try_for_each(finite)
+                finite(&values, &self.plan.outputs)
             });
             last = Some(now);
             for (column, x) in chunk.axes.iter_mut().zip(&point) {

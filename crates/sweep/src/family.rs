@@ -2,57 +2,13 @@
 
 use bulge_effects::{Catalogue, Group, Known, known};
 use bulge_fibre::{Approach, FibreError, Given, Gradient, Problem, Response, Variable};
-use bulge_model::{Extended, ExtendedError, ModelError};
-use bulge_muscles::{FileError, Muscle, MuscleError, Parameter, Pressure, Quantity as _};
+use bulge_model::Extended;
+use bulge_muscles::{Muscle, Parameter, Pressure, Quantity as _};
 use std::f64::consts::TAU;
 
+use crate::family_error::FamilyError;
 use crate::output::Output;
 use crate::plan::{Plan, Quantity};
-
-/// Why a point has no equilibrium, or a plan no family.
-#[derive(Debug, thiserror::Error)]
-pub enum FamilyError {
-    /// No equilibrium.
-    #[error(transparent)]
-    Equilibrium(#[from] FibreError),
-    /// A value that the muscle can't have.
-    #[error(transparent)]
-    Muscle(#[from] MuscleError),
-    /// An effect that can't act.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// No equilibrium of the muscle with its effects.
-    #[error(transparent)]
-    Extended(#[from] ExtendedError),
-    /// An effect that the muscle file states in a wrong way.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// An elastic group for a muscle without a number of fibres.
-    #[error("the elastic group p sin(2 pi/n) R^2/EA needs a number of fibres n")]
-    NoFibreNumber,
-    /// An output of inextensible fibres that has no table from a contraction of 0.
-    #[error(
-        "a table of `{output}` can't begin at a contraction of 0, where the force of inextensible fibres is infinite: begin at \"0.5 %..limit\", say, or leave `{output}` out"
-    )]
-    FromZero {
-        /// Its name.
-        output: String,
-    },
-    /// An axis of an effect that is no part of the muscle.
-    #[error(
-        "the effect `{effect}` belongs to a rig or to one specimen: a sweep of the muscle leaves it out, so it can't be an axis"
-    )]
-    NoPart {
-        /// Its name.
-        effect: String,
-    },
-    /// A number of fibres that isn't whole.
-    #[error("the number of fibres is {found}: it must be a whole number")]
-    NotWhole {
-        /// The number.
-        found: f64,
-    },
-}
 
 /// A base muscle and what its axes vary.
 #[derive(Debug, Clone)]
@@ -85,23 +41,62 @@ impl Family {
     /// If the muscle file states an effect that doesn't exist or has other numbers.
     pub fn new(plan: &Plan) -> Result<Self, FamilyError> {
         let effects = known(&plan.muscle, &Catalogue::builtin())?;
-        for axis in &plan.axes {
-            let Quantity::Effect { effect, .. } = &axis.quantity else { continue };
-            let is_part = |(known, _): &Known| {
-                known.card().name == effect && !matches!(known.card().group, Group::Rig | Group::Specimen)
-            };
-            if !effects.iter().any(is_part) {
-                return Err(FamilyError::NoPart { effect: effect.clone() });
-            }
-        }
-        Ok(Self {
+        let family = Self {
             effects,
             muscle: plan.muscle.clone(),
             pressure: plan.pressure_pa,
             contraction: plan.contraction,
             approach: plan.approach,
             axes: plan.axes.iter().map(|axis| axis.quantity.clone()).collect(),
-        })
+        };
+        family.check_effects()?;
+        Ok(family)
+    }
+
+    /// A muscle at a pressure \[Pa\], with what is varied of it: for points that no plan lays out.
+    ///
+    /// # Errors
+    /// As [`Family::new`].
+    pub fn of(
+        muscle: &Muscle,
+        effects: Vec<Known>,
+        pressure_pa: f64,
+        approach: Approach,
+        axes: Vec<Quantity>,
+    ) -> Result<Self, FamilyError> {
+        let family = Self {
+            muscle: muscle.clone(),
+            effects,
+            pressure: pressure_pa,
+            contraction: None,
+            approach,
+            axes,
+        };
+        family.check_effects()?;
+        Ok(family)
+    }
+
+    /// Refuses axes of effects that are no part of the muscle.
+    fn check_effects(&self) -> Result<(), FamilyError> {
+        for axis in &self.axes {
+            let Quantity::Effect { effect, .. } = axis else { continue };
+            let is_part = |(known, _): &Known| {
+                known.card().name == effect && !matches!(known.card().group, Group::Rig | Group::Specimen)
+            };
+            if !self.effects.iter().any(is_part) {
+                return Err(FamilyError::NoPart { effect: effect.clone() });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether two points of the axes are the same muscle at the same pressure: they differ in the contraction alone.
+    #[must_use]
+    pub fn is_same_member(&self, point: &[f64], other: &[f64]) -> bool {
+        let same = |((axis, a), b): ((&Quantity, &f64), &f64)| {
+            *axis == Quantity::Contraction || a.to_bits() == b.to_bits()
+        };
+        self.axes.iter().zip(point).zip(other).all(same)
     }
 
     /// Place of the contraction among the axes.

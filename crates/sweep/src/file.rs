@@ -8,6 +8,8 @@ pub(crate) mod scale;
 mod tests;
 pub(crate) mod wish;
 
+pub(crate) use axes::quantity;
+
 use bulge_fibre::Approach;
 use bulge_muscles::settings::{Document, FileKind, Keys, Settings};
 use bulge_muscles::{Dimension, FileError, Muscle};
@@ -117,13 +119,21 @@ impl Plan {
     /// # Errors
     /// With the place and the cure, if the text is no valid sweep or its muscle can't be read.
     pub fn from_toml(text: &str, origin: &str, folder: Option<&Path>) -> Result<Self, FileError> {
-        plan(&Document::parse(KIND, text, origin)?.settings("the sweep", TOP), folder)
+        plan(&Document::parse(KIND, text, origin)?.settings("the sweep", TOP), folder, None)
+    }
+
+    /// The same for a muscle that is there already, whatever file the text names: for processes that don't see that file.
+    ///
+    /// # Errors
+    /// With the place and the cure, if the text is no valid sweep of the muscle.
+    pub fn with_muscle(text: &str, origin: &str, muscle: &Muscle) -> Result<Self, FileError> {
+        plan(&Document::parse(KIND, text, origin)?.settings("the sweep", TOP), None, Some(muscle))
     }
 }
 
-fn plan(settings: &Settings<'_>, folder: Option<&Path>) -> Result<Plan, FileError> {
+fn plan(settings: &Settings<'_>, folder: Option<&Path>, muscle: Option<&Muscle>) -> Result<Plan, FileError> {
     settings.check_keys()?;
-    let muscle = settings.muscle("muscle", folder)?;
+    let muscle = muscle.map_or_else(|| settings.muscle("muscle", folder), |muscle| Ok(muscle.clone()))?;
     let axes = axes::axes(settings, &muscle)?;
     let pressure_pa = pressure(settings, &axes)?;
     let family = Family { muscle: &muscle, pressure: pressure_pa, axes: &axes };

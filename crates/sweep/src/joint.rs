@@ -26,7 +26,8 @@ use bulge_muscles::{Muscle, Parameter, Quantity as _};
 use bulge_numerics::root::{RootError, illinois, newton_bracketed};
 use serde::Serialize;
 
-use crate::family::{Family, FamilyError};
+use crate::family::Family;
+use crate::family_error::FamilyError;
 use crate::output::Output;
 use crate::plan::{Axis, End, Plan, Quantity, Range, Spacing, TableWish};
 

@@ -5,6 +5,7 @@ mod chunk;
 mod design;
 pub mod export;
 mod family;
+mod family_error;
 mod file;
 mod folder;
 mod joint;
@@ -12,6 +13,7 @@ mod muscle_field;
 mod output;
 mod permutation;
 pub mod plan;
+mod points;
 mod run;
 mod sobol;
 mod tabulate;
@@ -19,7 +21,8 @@ mod tabulate;
 pub use certified::{BuildError, Built, EncodeError, Field, FieldAxis, FieldOutput, NoValue, Wish, build};
 pub use chunk::{Chunk, Column, Computer};
 pub use design::{Coordinate, Layout};
-pub use family::{Family, FamilyError, Member};
+pub use family::{Family, Member};
+pub use family_error::FamilyError;
 pub use file::SWEEP_EXAMPLE;
 pub use folder::{Promise, write_durably};
 pub use joint::{
@@ -29,7 +32,8 @@ pub use joint::{
 pub use muscle_field::MuscleField;
 pub use output::Output;
 pub use plan::Plan;
-pub use run::{Progress, RunOptions, Summary, SweepError, run};
+pub use points::{Points, Values, evaluate};
+pub use run::{Piece, Progress, RunOptions, Summary, SweepError, manifest, piece, run};
 pub use tabulate::{
     AxisDescription, OutputDescription, TableDescription, TabulateError, table_text, tabulate,
 };

@@ -3,7 +3,8 @@
 use bulge_fibre::FibreError;
 
 use crate::certified::{Field, FieldAxis, FieldOutput, NoValue};
-use crate::family::{Family, FamilyError};
+use crate::family::Family;
+use crate::family_error::FamilyError;
 use crate::output::Output;
 use crate::plan::{Axis, End, Plan, Quantity, Range, TableWish};
 

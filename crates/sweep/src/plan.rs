@@ -29,6 +29,14 @@ pub enum Quantity {
     },
 }
 
+impl Quantity {
+    /// What a name of a sweep file varies, if the muscle has it.
+    #[must_use]
+    pub fn named(name: &str, muscle: &Muscle) -> Option<Self> {
+        crate::file::quantity(name, muscle).map(|(quantity, _, _)| quantity)
+    }
+}
+
 /// How the points of a grid lie between the ends, and how fractions of a random design are stretched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]

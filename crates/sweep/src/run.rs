@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::chunk::Computer;
 use crate::design::Layout;
-use crate::family::FamilyError;
+use crate::family_error::FamilyError;
 use crate::folder::{Folder, Promise, Standing, hash, write_durably};
 use crate::plan::Plan;
 
@@ -203,15 +203,8 @@ pub fn run(
     };
     summary.damaged.sort();
     if chunks == (0..all) {
-        let promises: Vec<&Promise> = promises.iter().map(|(promise, _)| promise).collect();
-        let manifest = json!({
-            "schema": SCHEMA,
-            "plan": run.key,
-            "points": summary.points,
-            "infeasible": summary.infeasible,
-            "chunks": promises,
-        });
-        let text = serde_json::to_string_pretty(&manifest)? + "\n";
+        let promises: Vec<Promise> = promises.into_iter().map(|(promise, _)| promise).collect();
+        let text = manifest(plan, &promises)?;
         write(&run.folder.manifest(), text.as_bytes())?;
         summary.is_complete = true;
     }
@@ -256,32 +249,81 @@ impl Run<'_> {
                 }
             }
         }
-        let points = points_of_chunk(self.plan, number);
-        let chunk = self.computer.chunk(points.clone());
-        let about = json!({ "plan": self.key, "chunk": number, "first": points.start });
-        let bytes = self.computer.parquet(&chunk, &about.to_string())?;
-        write(&self.folder.parquet(number), &bytes)?;
         // A CSV file that was damaged, or isn't asked for this time, must not stay as it was.
-        let csv_sha256 = if self.csv || self.folder.csv(number).exists() {
-            let text = self.computer.csv(&chunk);
+        let csv = self.csv || self.folder.csv(number).exists();
+        let Piece { parquet, csv, promise } = make(self.plan, &self.computer, &self.key, number, csv)?;
+        write(&self.folder.parquet(number), &parquet)?;
+        if let Some(text) = csv {
             write(&self.folder.csv(number), text.as_bytes())?;
-            Some(hash(text.as_bytes()))
-        } else {
-            None
-        };
-        let promise = Promise {
-            chunk: number,
-            first: points.start,
-            points: points.end - points.start,
-            infeasible: chunk.infeasible.len() as u64,
-            sha256: hash(&bytes),
-            csv_sha256,
-            plan: self.key.clone(),
-        };
+        }
         write(&path, (serde_json::to_string(&promise)? + "\n").as_bytes())?;
         self.tell(promise.points, 0);
         Ok((promise, true))
     }
+}
+
+/// One chunk as bytes, for stores other than a folder: the same as [`run`] writes.
+#[derive(Debug, Clone)]
+pub struct Piece {
+    /// The Parquet file `points/000000.parquet`.
+    pub parquet: Vec<u8>,
+    /// The CSV file `csv/000000.csv`, if it was asked for.
+    pub csv: Option<String>,
+    /// The promise `chunks/000000.json`, which must be written last.
+    pub promise: Promise,
+}
+
+/// One chunk of a plan as bytes.
+///
+/// # Errors
+/// [`SweepError`], but for those of files.
+pub fn piece(plan: &Plan, number: u64, csv: bool) -> Result<Piece, SweepError> {
+    let layout = Layout::new(plan).ok_or(SweepError::NoPoints)?;
+    let all = plan.chunks();
+    if number >= all {
+        return Err(SweepError::NoSuchChunks { asked: number..number + 1, all });
+    }
+    let key = hash(plan.canonical()?.as_bytes());
+    make(plan, &Computer::new(plan, &layout)?, &key, number, csv)
+}
+
+fn make(
+    plan: &Plan,
+    computer: &Computer<'_>,
+    key: &str,
+    number: u64,
+    csv: bool,
+) -> Result<Piece, SweepError> {
+    let points = points_of_chunk(plan, number);
+    let chunk = computer.chunk(points.clone());
+    let about = json!({ "plan": key, "chunk": number, "first": points.start });
+    let parquet = computer.parquet(&chunk, &about.to_string())?;
+    let csv = csv.then(|| computer.csv(&chunk));
+    let promise = Promise {
+        chunk: number,
+        first: points.start,
+        points: points.end - points.start,
+        infeasible: chunk.infeasible.len() as u64,
+        sha256: hash(&parquet),
+        csv_sha256: csv.as_ref().map(|text| hash(text.as_bytes())),
+        plan: key.to_owned(),
+    };
+    Ok(Piece { parquet, csv, promise })
+}
+
+/// The text of `manifest.json`: the end of a sweep whose chunks are all there.
+///
+/// # Errors
+/// If a promise has no JSON.
+pub fn manifest(plan: &Plan, promises: &[Promise]) -> Result<String, SweepError> {
+    let document = json!({
+        "schema": SCHEMA,
+        "plan": hash(plan.canonical()?.as_bytes()),
+        "points": promises.iter().map(|promise| promise.points).sum::<u64>(),
+        "infeasible": promises.iter().map(|promise| promise.infeasible).sum::<u64>(),
+        "chunks": promises,
+    });
+    Ok(serde_json::to_string_pretty(&document)? + "\n")
 }
 
 /// Numbers of the points of a chunk.

@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::certified::{BuildError, Built, Wish, build};
-use crate::family::FamilyError;
+use crate::family_error::FamilyError;
 use crate::muscle_field::MuscleField;
 use crate::output::Output;
 use crate::plan::{Plan, TableWish};

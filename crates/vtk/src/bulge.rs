@@ -1,7 +1,9 @@
 //! How a shape is drawn: the number of fibres, the kind of surface, the fineness around the axis.
 
 use crate::VtkError;
+use crate::mesh::Mesh;
 use bulge_fibre::{MeridianPoint, Response, Shape};
+use bulge_muscles::Muscle;
 use std::f64::consts::PI;
 
 /// What is drawn between the fibres.
@@ -18,6 +20,17 @@ pub enum Style {
 }
 
 impl Style {
+    /// Pleats where a pleated muscle has straight fibres and their number is known, else a surface of revolution.
+    #[must_use]
+    pub fn natural(muscle: &Muscle, shape: &Shape, cloth_circumference: Option<f64>) -> Self {
+        let turns = shape.meridian.last().is_some_and(|end| end.turn_rad != 0.0);
+        if muscle.is_pleated() && muscle.fibres().is_some() && !turns {
+            Self::Pleats { cloth_circumference }
+        } else {
+            Self::Revolution
+        }
+    }
+
     /// A number of facets that looks round: 96 around the axis, or 12 for every pleat.
     #[must_use]
     pub fn default_facets(self) -> u32 {
@@ -55,8 +68,27 @@ pub struct Bulge<'a> {
 
 const LEAST_FACETS: u32 = 4;
 const LEAST_PLEATS: u32 = 3;
+/// Enough fibres to see the net where the muscle file doesn't say how many there are.
+const SHOWN: u32 = 32;
+
+impl<'a> Bulge<'a> {
+    /// A shape of a muscle, with the muscle's fibres.
+    #[must_use]
+    pub fn of(muscle: &Muscle, shape: &'a Shape, style: Style) -> Self {
+        Self { shape, fibres: muscle.fibres().unwrap_or(SHOWN), style, facets: style.default_facets() }
+    }
+}
 
 impl Bulge<'_> {
+    /// Its points, quadrangles and polylines, with their fields: what [`crate::write_vtp`] writes.
+    ///
+    /// # Errors
+    /// If it can't be drawn.
+    pub fn mesh(&self) -> Result<Mesh, VtkError> {
+        self.check()?;
+        Ok(Mesh::new(self))
+    }
+
     /// Points of the cloth around the axis.
     pub(crate) fn columns(&self) -> usize {
         let facets = self.facets as usize;

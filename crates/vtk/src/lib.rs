@@ -31,5 +31,6 @@ mod whole_file;
 pub use bulge::{Bulge, Style};
 pub use error::VtkError;
 pub use membrane::{MembranePicture, MembraneSeries, Whole, write_vtu};
+pub use mesh::Mesh;
 pub use series::write_series;
 pub use vtp::write_vtp;

@@ -15,19 +15,22 @@ const CLOTH: i32 = 0;
 /// Value of `part` for a fibre.
 const FIBRE: i32 = 1;
 
-/// What goes into a file. Points: the rings of cloth one after the other, then fibre after fibre. Cells: the fibres, then the quadrangles
+/// What goes into a file: a drawn shape as points and cells \[SI\]. Points: the rings of cloth one after the other, then fibre after fibre. Cells: the fibres, then the quadrangles
 /// ring after ring (VTK counts the lines of a `PolyData` before its polygons).
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Mesh {
-    pub(crate) points: Vec<Point>,
+pub struct Mesh {
+    /// Points (x along the axis) \[m\].
+    pub points: Vec<Point>,
     /// Vertices counter-clockwise seen from outside.
-    pub(crate) quads: Vec<[usize; 4]>,
+    pub quads: Vec<[usize; 4]>,
     /// Vertices of every fibre from left to right.
-    pub(crate) fibres: Vec<Vec<usize>>,
-    pub(crate) point_fields: Vec<Field>,
-    pub(crate) cell_fields: Vec<Field>,
+    pub fibres: Vec<Vec<usize>>,
+    /// Fields with one value per point; the unit ends the name.
+    pub point_fields: Vec<Field>,
+    /// Fields with one value per cell: first the fibres, then the quadrangles.
+    pub cell_fields: Vec<Field>,
     /// 0 for cloth, 1 for a fibre, one per cell.
-    pub(crate) part: Vec<i32>,
+    pub part: Vec<i32>,
 }
 
 impl Mesh {

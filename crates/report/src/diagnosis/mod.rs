@@ -14,6 +14,7 @@ mod headline;
 mod limits;
 mod located;
 mod multiples;
+mod next;
 mod page;
 mod remaining;
 mod rivals;
@@ -26,6 +27,7 @@ use crate::PlotError;
 use crate::comparison::Plot;
 
 pub use headline::{further, headlines, others_in_class};
+pub use next::{NextDocument, NextStep};
 pub use words::{base_name, chance, found_by, is_significant, noise_says, once_in, remains_says};
 
 /// The page: one HTML document with the verdict, all plots and tables, readable on screen and on paper.

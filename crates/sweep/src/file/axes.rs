@@ -99,7 +99,7 @@ fn axis<'a>(
 }
 
 /// What a name varies, its name in columns, and what its values are measured in.
-fn quantity(name: &str, muscle: &Muscle) -> Option<(Quantity, String, Scale)> {
+pub(crate) fn quantity(name: &str, muscle: &Muscle) -> Option<(Quantity, String, Scale)> {
     let parameter = Parameter::ALL.into_iter().find(|p| p.name() == name || p.key() == name);
     if let Some(parameter) = parameter {
         return Some((

@@ -1,0 +1,115 @@
+//! One equilibrium of a muscle with its effects, as a value: shape, response, limit, and what the effects changed.
+
+use bulge_fibre::{Approach, Given, MeridianPoint, PleatedNumbers, Problem, Response, Shape};
+use bulge_muscles::{Muscle, Pressure, Quantity};
+use serde::Serialize;
+
+use crate::extended::{Extended, ExtendedError};
+
+/// An equilibrium of a muscle with the effects that its file states.
+#[derive(Debug, Clone)]
+pub struct Equilibrium {
+    /// Name of the muscle.
+    pub muscle: String,
+    /// Meridian, and what follows from it; force and stiffness with the effects.
+    pub shape: Shape,
+    /// The contraction at which the muscle pulls no more, where it is found.
+    pub contraction_limit: Option<f64>,
+    /// Tension of a fibre over its section \[Pa\], if the section is given.
+    pub fibre_stress_pa: Option<f64>,
+    /// m, phi_R, f and v of a pleated muscle.
+    pub pleated: Option<PleatedNumbers>,
+    /// The force without the effects \[N\], if there are any that add to it.
+    pub equilibrium_force_n: Option<f64>,
+    /// Names of the effects that take part.
+    pub effects: Vec<String>,
+}
+
+/// The JSON document of an equilibrium.
+#[derive(Debug, Serialize)]
+pub struct EquilibriumDocument<'a> {
+    schema: &'static str,
+    muscle: &'a str,
+    #[serde(flatten)]
+    response: &'a Response,
+    contraction_limit: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fibre_stress_pa: Option<f64>,
+    #[serde(flatten)]
+    pleated: Option<PleatedNumbers>,
+    /// Without the effects that the muscle file states.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    equilibrium_force_n: Option<f64>,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    effects: &'a [String],
+    meridian: &'a [MeridianPoint],
+}
+
+impl Equilibrium {
+    /// The equilibrium of a muscle with its effects at a pressure, with `points` points of the meridian.
+    ///
+    /// # Errors
+    /// What [`Problem::shape`] and [`Extended::solve`] say.
+    pub fn new(
+        extended: &Extended,
+        pressure: Pressure,
+        given: Given,
+        approach: Approach,
+        points: usize,
+    ) -> Result<Self, ExtendedError> {
+        let problem = Problem::new(extended.muscle(), pressure)?;
+        if !extended.adds_force() {
+            let shape = problem.shape(given, approach, points)?;
+            return Ok(Self::of(extended, &problem, shape, None, approach));
+        }
+        let response = extended.solve(pressure, given, approach)?;
+        let there = extended.given(Given::Contraction(response.contraction));
+        let mut shape = problem.shape(there, approach, points)?;
+        let alone = shape.response.force_n;
+        shape.response = response;
+        Ok(Self::of(extended, &problem, shape, Some(alone), approach))
+    }
+
+    /// Of a shape that was computed in another way.
+    #[must_use]
+    pub fn of(
+        extended: &Extended,
+        problem: &Problem,
+        shape: Shape,
+        equilibrium_force_n: Option<f64>,
+        approach: Approach,
+    ) -> Self {
+        let muscle = extended.muscle();
+        Self {
+            muscle: muscle.name().to_owned(),
+            contraction_limit: extended.contraction_limit(problem.pressure(), approach).ok(),
+            fibre_stress_pa: stress(muscle, &shape.response),
+            pleated: problem.pleated_numbers(&shape.response),
+            shape,
+            equilibrium_force_n,
+            effects: extended.used().to_vec(),
+        }
+    }
+
+    /// The JSON document.
+    #[must_use]
+    pub fn document(&self) -> EquilibriumDocument<'_> {
+        EquilibriumDocument {
+            schema: "bulge.shape/1",
+            muscle: &self.muscle,
+            response: &self.shape.response,
+            contraction_limit: self.contraction_limit,
+            fibre_stress_pa: self.fibre_stress_pa,
+            pleated: self.pleated,
+            equilibrium_force_n: self.equilibrium_force_n,
+            effects: &self.effects,
+            meridian: &self.shape.meridian,
+        }
+    }
+}
+
+/// Tension over section \[Pa\], if the section is given.
+fn stress(muscle: &Muscle, response: &Response) -> Option<f64> {
+    let section = muscle.fibre()?.section()?;
+    Some(response.fibre_tension_n / section.si())
+}

@@ -1,0 +1,140 @@
+//! What a fit has taught: the muscle file that holds it, with where its numbers come from, and the document.
+
+use bulge_inference::{DataSummary, Extension, Fit, Fitting, NoiseFloor, extended};
+use bulge_model::ModelError;
+use bulge_muscles::{to_toml, units::significant};
+use serde::Serialize;
+use std::fmt::Write;
+
+use crate::interval::with_interval;
+
+/// Why a fit teaches nothing.
+#[derive(Debug, thiserror::Error)]
+pub enum LearningError {
+    /// It did not converge.
+    #[error(
+        "the fit did not converge: {reason}, after {iterations} iterations from {starts} starts; fit fewer effects at once, or measure more"
+    )]
+    NotConverged {
+        /// Why it stopped.
+        reason: String,
+        /// Iterations of all starts.
+        iterations: usize,
+        /// Number of starts.
+        starts: usize,
+    },
+    /// The muscle can't have an effect with these numbers.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
+
+/// A fit, and the muscle that has learnt from it.
+#[derive(Debug, Clone)]
+pub struct Learnt {
+    /// The fit.
+    pub fitting: Fitting,
+    /// The muscle with what was learnt.
+    pub extension: Extension,
+    /// Its file, with the errors and the fitted numbers as comments at its head.
+    pub model: String,
+}
+
+/// The JSON document of a fit.
+#[derive(Debug, Serialize)]
+pub struct LearntDocument<'a> {
+    schema: &'static str,
+    muscle: &'a str,
+    data: &'a DataSummary,
+    before_rmse_n: f64,
+    rmse_n: f64,
+    rmse_percent: f64,
+    noise_floor: &'a Option<NoiseFloor>,
+    fit: &'a Fit,
+    written: &'a [String],
+    left_out: &'a [(String, &'static str)],
+    model: &'a str,
+}
+
+impl Learnt {
+    /// From a fit.
+    ///
+    /// # Errors
+    /// If it has not converged, or the muscle can't have what it found.
+    pub fn of(fitting: Fitting) -> Result<Self, LearningError> {
+        let convergence = &fitting.fit.convergence;
+        if !convergence.converged {
+            return Err(LearningError::NotConverged {
+                reason: convergence.reason.clone(),
+                iterations: convergence.iterations,
+                starts: convergence.starts,
+            });
+        }
+        let extension = extended(&fitting.model, &fitting.fit)?;
+        let model = provenance(&fitting) + &to_toml(&extension.muscle);
+        Ok(Self { fitting, extension, model })
+    }
+
+    /// The JSON document.
+    #[must_use]
+    pub fn document(&self) -> LearntDocument<'_> {
+        let Self { fitting, extension, model } = self;
+        LearntDocument {
+            schema: "bulge.fit/1",
+            muscle: fitting.model.muscle().name(),
+            data: &fitting.data,
+            before_rmse_n: fitting.before_rmse_n,
+            rmse_n: fitting.rmse_n,
+            rmse_percent: percent(fitting, fitting.rmse_n),
+            noise_floor: &fitting.noise_floor,
+            fit: &fitting.fit,
+            written: &extension.written,
+            left_out: &extension.left_out,
+            model,
+        }
+    }
+
+    /// The error before and after, and the noise floor, a line each.
+    #[must_use]
+    pub fn errors(&self) -> Vec<String> {
+        errors(&self.fitting)
+    }
+}
+
+fn errors(fitting: &Fitting) -> Vec<String> {
+    let error = |name: &str, error: f64| {
+        format!("{name} {} N, {:.2} % of full scale", significant(error, 3), percent(fitting, error))
+    };
+    let mut lines = vec![error("error before", fitting.before_rmse_n), error("error after ", fitting.rmse_n)];
+    if let Some(floor) = &fitting.noise_floor {
+        lines.push(error("noise floor ", floor.sd_n) + &format!(" ({})", floor.source));
+    }
+    lines
+}
+fn percent(fitting: &Fitting, error: f64) -> f64 {
+    100.0 * error / fitting.data.full_scale_n.max(f64::MIN_POSITIVE)
+}
+
+/// Comments at the head of the file: where its numbers come from.
+fn provenance(fitting: &Fitting) -> String {
+    let mut text = String::new();
+    let data = &fitting.data;
+    // File names are the user's: a line break in one would end the comment.
+    let names: Vec<String> =
+        data.files.iter().map(|name| name.replace(|c: char| c.is_control(), " ")).collect();
+    let _ = writeln!(text, "# Fitted to {} ({} rows, sha256 {}).", names.join(", "), data.used, data.sha256);
+    for line in errors(fitting) {
+        let _ = writeln!(text, "# {line}");
+    }
+    for p in &fitting.fit.parameters {
+        let flag = if p.plausible { "" } else { "; IMPLAUSIBLE: a wrong cure" };
+        let [value, low, high] = shown(p.value, p.low, p.high);
+        let unit = if p.unit.is_empty() || p.unit == "1" { String::new() } else { format!(" {}", p.unit) };
+        let _ = writeln!(text, "# {} {} = {value}{unit} (95 %: {low} to {high}){flag}", p.effect, p.name);
+    }
+    text + "# Widths of effects (+-) are one standard deviation, for the reader: later fits take the numbers as known.\n\n"
+}
+
+/// A value and its interval, to the decimals that show it.
+fn shown(value: f64, low: f64, high: f64) -> [String; 3] {
+    with_interval(value, [low, high]).unwrap_or_else(|| [value, low, high].map(|x| significant(x, 3)))
+}

@@ -1,0 +1,50 @@
+//! Why a point of a family has no equilibrium, or a plan no family.
+
+use bulge_fibre::FibreError;
+use bulge_model::{ExtendedError, ModelError};
+use bulge_muscles::{FileError, MuscleError};
+
+/// Why a point has no equilibrium, or a plan no family.
+#[derive(Debug, thiserror::Error)]
+pub enum FamilyError {
+    /// No equilibrium.
+    #[error(transparent)]
+    Equilibrium(#[from] FibreError),
+    /// A value that the muscle can't have.
+    #[error(transparent)]
+    Muscle(#[from] MuscleError),
+    /// An effect that can't act.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// No equilibrium of the muscle with its effects.
+    #[error(transparent)]
+    Extended(#[from] ExtendedError),
+    /// An effect that the muscle file states in a wrong way.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// An elastic group for a muscle without a number of fibres.
+    #[error("the elastic group p sin(2 pi/n) R^2/EA needs a number of fibres n")]
+    NoFibreNumber,
+    /// An output of inextensible fibres that has no table from a contraction of 0.
+    #[error(
+        "a table of `{output}` can't begin at a contraction of 0, where the force of inextensible fibres is infinite: begin at \"0.5 %..limit\", say, or leave `{output}` out"
+    )]
+    FromZero {
+        /// Its name.
+        output: String,
+    },
+    /// An axis of an effect that is no part of the muscle.
+    #[error(
+        "the effect `{effect}` belongs to a rig or to one specimen: a sweep of the muscle leaves it out, so it can't be an axis"
+    )]
+    NoPart {
+        /// Its name.
+        effect: String,
+    },
+    /// A number of fibres that isn't whole.
+    #[error("the number of fibres is {found}: it must be a whole number")]
+    NotWhole {
+        /// The number.
+        found: f64,
+    },
+}

@@ -1,0 +1,159 @@
+//! A family at any points that somebody has: on all cores, in their order, each either with its outputs or with the reason why it has none.
+
+use rayon::prelude::*;
+use std::ops::Range;
+
+use crate::family::{Family, Member};
+use crate::family_error::FamilyError;
+use crate::output::Output;
+
+/// Points of one task: long enough (milliseconds) to hide what a task costs, short enough to share and to stop.
+const BLOCK: usize = 4096;
+
+/// Values of an axis at all points.
+#[derive(Debug, Clone, Copy)]
+pub enum Values<'a> {
+    /// One for all.
+    Same(f64),
+    /// One each.
+    Each(&'a [f64]),
+}
+
+impl Values<'_> {
+    fn at(&self, row: usize) -> f64 {
+        match self {
+            Self::Same(value) => *value,
+            Self::Each(values) => values.get(row).copied().unwrap_or(f64::NAN),
+        }
+    }
+}
+
+/// Outputs at points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Points {
+    /// Values in SI, one list for every output; NaN where [`Points::infeasible`] gives a reason.
+    pub outputs: Vec<Vec<f64>>,
+    /// Why a point has no equilibrium at which the muscle pulls, by its place, in rising order.
+    pub infeasible: Vec<(usize, String)>,
+}
+
+/// Outputs of a family at `count` points: `axes` has the values of its axes, in their order. Points that follow each other with the same muscle
+/// share its preparation. `told` hears, from several threads, how many points have been added to those that are done.
+#[must_use]
+pub fn evaluate(
+    family: &Family,
+    axes: &[Values<'_>],
+    count: usize,
+    outputs: &[Output],
+    told: &(dyn Fn(usize) + Sync),
+) -> Points {
+    let blocks: Vec<Points> = (0..count.div_ceil(BLOCK))
+        .into_par_iter()
+        .map(|i| {
+            let rows = i * BLOCK..((i + 1) * BLOCK).min(count);
+            let done = rows.len();
+            let block = block(family, axes, rows, outputs);
+            told(done);
+            block
+        })
+        .collect();
+    let mut all = Points { outputs: vec![Vec::with_capacity(count); outputs.len()], infeasible: Vec::new() };
+    for block in blocks {
+        for (column, part) in all.outputs.iter_mut().zip(block.outputs) {
+            column.extend(part);
+        }
+        all.infeasible.extend(block.infeasible);
+    }
+    all
+}
+
+fn block(family: &Family, axes: &[Values<'_>], rows: Range<usize>, outputs: &[Output]) -> Points {
+    let mut points =
+        Points { outputs: vec![Vec::with_capacity(rows.len()); outputs.len()], infeasible: Vec::new() };
+    let mut values = vec![0.0; outputs.len()];
+    let (mut point, mut before) = (vec![0.0; axes.len()], vec![f64::NAN; axes.len()]);
+    let mut member: Option<Result<Member, FamilyError>> = None;
+    for row in rows {
+        for (x, axis) in point.iter_mut().zip(axes) {
+            *x = axis.at(row);
+        }
+        let now = match member.take() {
+            Some(same) if family.is_same_member(&point, &before) => same,
+            _ => family.member(&point),
+        };
+        before.copy_from_slice(&point);
+        let found = match &now {
+            Ok(member) => member
+                .pulling(family.contraction(&point), None, outputs, &mut values)
+                .map_err(|error| error.to_string())
+                .and_then(|()| finite(&values, outputs)),
+            Err(error) => Err(error.to_string()),
+        };
+        if let Err(reason) = found {
+            values.fill(f64::NAN);
+            points.infeasible.push((row, reason));
+        }
+        for (column, value) in points.outputs.iter_mut().zip(&values) {
+            column.push(*value);
+        }
+        member = Some(now);
+    }
+    points
+}
+
+/// Refuses a value that is none.
+pub(crate) fn finite(values: &[f64], outputs: &[Output]) -> Result<(), String> {
+    match values.iter().zip(outputs).find(|(value, _)| !value.is_finite()) {
+        Some((value, output)) => Err(format!("`{}` is {value}", output.name())),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Quantity;
+    use bulge_fibre::Approach;
+    use bulge_muscles::preset;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    fn family() -> Family {
+        let axes = vec![Quantity::Contraction, Quantity::Slenderness];
+        Family::of(&preset("ppam-2-r16").unwrap(), Vec::new(), 1e5, Approach::Auto, axes).unwrap()
+    }
+
+    /// Each point on its own says the same, to the bit, whatever stands before it.
+    #[test]
+    fn points_are_those_of_the_family() {
+        let family = family();
+        let outputs = [Output::Force, Output::Volume];
+        let count = 2 * BLOCK + 17;
+        let contraction: Vec<f64> = (0..count).map(|i| 0.02 + 0.3 * (i as f64 / count as f64)).collect();
+        let slenderness: Vec<f64> = (0..count).map(|i| 4.0 + (i / 100 % 7) as f64).collect();
+        let done = AtomicUsize::new(0);
+        let axes = [Values::Each(&contraction), Values::Each(&slenderness)];
+        let told = |more: usize| {
+            done.fetch_add(more, Ordering::Relaxed);
+        };
+        let points = evaluate(&family, &axes, count, &outputs, &told);
+        assert_eq!((done.into_inner(), points.infeasible.len()), (count, 0));
+        for row in (0..count).step_by(97) {
+            let point = [contraction[row], slenderness[row]];
+            let mut values = [0.0; 2];
+            family.member(&point).unwrap().outputs(point[0], &outputs, &mut values).unwrap();
+            assert_eq!(values.map(f64::to_bits), [0, 1].map(|o| points.outputs[o][row].to_bits()));
+        }
+    }
+
+    #[test]
+    fn points_without_equilibrium_say_why() {
+        let axes = [Values::Each(&[0.2, 0.6, f64::NAN, 0.1]), Values::Same(6.875)];
+        let points = evaluate(&family(), &axes, 4, &[Output::Force], &|_| ());
+        let places: Vec<usize> = points.infeasible.iter().map(|(row, _)| *row).collect();
+        assert_eq!(places, [1, 2]);
+        assert!(points.infeasible[0].1.contains("limit"), "{:?}", points.infeasible);
+        assert!(points.outputs[0][1].is_nan() && points.outputs[0][2].is_nan());
+        assert!((points.outputs[0][0] - 544.0).abs() < 0.1);
+        assert!(evaluate(&family(), &axes, 0, &[Output::Force], &|_| ()).outputs[0].is_empty());
+    }
+}
