@@ -73,6 +73,9 @@ pub(crate) enum Failure {
     Table(#[from] TableError),
     #[error("{0}")]
     Outside(String),
+    /// As [`Self::Outside`], with what standard output says of it.
+    #[error("{why}")]
+    NoneFound { answer: String, why: String },
     #[error("{origin}: {source}{kept}")]
     Membrane { origin: String, source: Box<CaseError>, kept: String },
     #[error("the result cannot be written as JSON: {0}")]
@@ -82,11 +85,16 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
+    /// What stands on standard output all the same: a script that asked for JSON reads there that nothing was found.
+    pub(crate) fn answer(&self) -> &str {
+        if let Self::NoneFound { answer, .. } = self { answer } else { "" }
+    }
+
     /// 1 the input is wrong, 3 no solution exists, 4 it did not converge.
     pub(crate) fn status(&self) -> u8 {
         match self {
             Self::Equilibrium { source, .. } => match source.as_ref() {
-                FibreError::NotConverged { .. } | FibreError::VolumeNotFound { .. } => 4,
+                error if has_not_converged(error) => 4,
                 FibreError::PressureNotPositive { .. }
                 | FibreError::NotFinite { .. }
                 | FibreError::NotPositive { .. }
@@ -101,7 +109,8 @@ impl Failure {
                 _ => 1,
             },
             Self::Model(error) => model_status(error),
-            Self::Extended(_) | Self::Outside(_) => 3,
+            Self::Extended(error) => extended_status(error),
+            Self::Outside(_) | Self::NoneFound { .. } => 3,
             Self::Sensing(error) => match error.as_ref() {
                 SensingError::Equilibrium { .. }
                 | SensingError::Overstrained { .. }
@@ -113,6 +122,7 @@ impl Failure {
             Self::Gas(error) => match error.as_ref() {
                 GasError::Number { .. } => 1,
                 GasError::Stopped { .. } => 4,
+                GasError::Muscle { error, .. } => extended_status(error),
                 _ => 3,
             },
             Self::Heat(error) => match error.as_ref() {
@@ -144,6 +154,19 @@ impl Failure {
 
 fn model_status(error: &ModelError) -> u8 {
     if let ModelError::NoEquilibrium { source, .. } = error { equilibrium_status(source) } else { 1 }
+}
+
+/// A muscle with effects: no equilibrium exists there, or the search for it failed.
+fn extended_status(error: &ExtendedError) -> u8 {
+    match error {
+        ExtendedError::Equilibrium(source) if has_not_converged(source) => 4,
+        ExtendedError::Model(error) if model_status(error) == 4 => 4,
+        _ => 3,
+    }
+}
+
+fn has_not_converged(error: &FibreError) -> bool {
+    matches!(error, FibreError::NotConverged { .. } | FibreError::VolumeNotFound { .. })
 }
 
 /// Data that ask for an equilibrium that doesn't exist are wrong input; a search that failed is not.
