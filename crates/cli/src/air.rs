@@ -5,22 +5,21 @@ use bulge_design::gas::{
     Load, Orifice, StiffnessSplit, Stroke, Supply,
 };
 use bulge_model::Extended;
-use bulge_muscles::units::{self, Quantity};
+use bulge_muscles::units::Quantity;
 use bulge_muscles::{Force, Length, Pressure, Ratio, Volume};
 use bulge_report::lines_svg;
 use clap::{Args, Subcommand};
 use serde_json::json;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::arguments::{extended, in_unit, quantity};
+use crate::arguments::{TIME, extended, in_unit, quantity, range};
 use crate::failure::Failure;
 use crate::files;
 use crate::text::{significant, table};
 
-/// Units of a sonic conductance, l/(s bar) = 1e-8 m^3/(s Pa), and of a time.
+/// Units of a sonic conductance, l/(s bar) = 1e-8 m^3/(s Pa).
 const CONDUCTANCE: [(&str, f64); 2] = [("l/(s bar)", 1e-8), ("m^3/(s Pa)", 1.0)];
-const TIME: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 /// Rows of a table.
 const ROWS: usize = 11;
 /// Points of a rising load.
@@ -172,12 +171,6 @@ impl Common {
     }
 }
 
-fn ratios((option, text): (&'static str, &str)) -> Result<[f64; 2], Failure> {
-    let (from, to) = units::parse_range::<Ratio>(text)
-        .map_err(|source| Failure::Option { option, source: Box::new(source) })?;
-    Ok([from.si(), to.si()])
-}
-
 impl Shut {
     fn run(&self) -> Result<String, Failure> {
         let (name, muscle) = self.common.muscle()?;
@@ -186,7 +179,7 @@ impl Shut {
         let closed = ClosedMuscle::new(&muscle, pressure, contraction, self.exponent)?
             .with_dead_volume(self.common.dead()?)?;
         let [from, to] = match &self.range {
-            Some(range) => ratios(("--range", range))?,
+            Some(text) => range::<Ratio>("--range", text)?,
             None => [contraction - 0.05, contraction + 0.05],
         };
         let mut states: Vec<(ClosedState, StiffnessSplit)> = Vec::new();
@@ -201,11 +194,7 @@ impl Shut {
         }
         let under = self.force.as_deref().map(|text| quantity::<Force>("--force", text)).transpose()?;
         let under = under.map(|force| closed.under_force(force.si())).transpose()?;
-        let mut wrote = String::new();
-        if let Some(path) = &self.plot {
-            files::write(path, compared(&name, &muscle, pressure, &states)?.as_bytes())?;
-            let _ = writeln!(wrote, "  wrote {}", path.display());
-        }
+        let wrote = files::wrote(self.plot.as_deref(), || compared(&name, &muscle, pressure, &states))?;
         if self.common.json {
             let states: Vec<_> =
                 states.iter().map(|(state, split)| json!({ "state": state, "stiffness": split })).collect();
@@ -275,21 +264,13 @@ impl Fill {
     fn run(&self) -> Result<String, Failure> {
         let (name, muscle) = self.common.muscle()?;
         let history = self.filling(&muscle)?.run()?;
-        let mut wrote = String::new();
-        let to_stdout = self.csv.as_deref() == Some(Path::new("-"));
-        if let Some(path) = self.csv.as_deref().filter(|_| !to_stdout) {
-            files::write(path, csv(&history).as_bytes())?;
-            let _ = writeln!(wrote, "  wrote {}", path.display());
-        }
-        if let Some(path) = &self.plot {
-            files::write(path, drawn(&name, &history)?.as_bytes())?;
-            let _ = writeln!(wrote, "  wrote {}", path.display());
-        }
+        let wanted = [self.csv.as_deref(), self.plot.as_deref()];
+        let wrote = files::wrote_both(wanted, || csv(&history), || drawn(&name, &history))?;
         if self.common.json {
             let document = json!({ "schema": "bulge.filling/1", "muscle": name, "filling": history });
             return Ok(serde_json::to_string_pretty(&document)? + "\n");
         }
-        if to_stdout {
+        if files::is_stdout(self.csv.as_deref()) {
             return Ok(csv(&history));
         }
         let mut text = told(&name, &history);
@@ -441,14 +422,11 @@ impl Cycle {
             None => Lift::PressureRise,
         };
         let supply = quantity::<Pressure>("--supply", &self.supply)?.si();
-        let mut stroke = Stroke::new(&muscle, load, ratios(("--stroke", &self.stroke))?, lift, supply);
+        let way = range::<Ratio>("--stroke", &self.stroke)?;
+        let mut stroke = Stroke::new(&muscle, load, way, lift, supply);
         stroke.dead_volume_m3 = self.common.dead()?;
         let found = stroke.cycle()?;
-        let mut wrote = String::new();
-        if let Some(path) = &self.plot {
-            files::write(path, rising(&name, &stroke, &found)?.as_bytes())?;
-            let _ = writeln!(wrote, "  wrote {}", path.display());
-        }
+        let wrote = files::wrote(self.plot.as_deref(), || rising(&name, &stroke, &found))?;
         if self.common.json {
             let document = json!({ "schema": "bulge.stroke/1", "muscle": name, "cycle": found });
             return Ok(serde_json::to_string_pretty(&document)? + "\n");

@@ -11,6 +11,9 @@ use std::sync::Arc;
 
 use crate::failure::Failure;
 
+/// Units of a time, in seconds.
+pub(crate) const TIME: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
+
 /// How to compute.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MethodArgument {
@@ -81,6 +84,13 @@ pub(crate) fn in_unit(option: &'static str, text: &str, units: &[(&str, f64)]) -
 /// A list of quantities.
 pub(crate) fn list<Q: Quantity>(option: &'static str, text: &str) -> Result<Vec<Q>, Failure> {
     units::parse_list(text).map_err(|source| Failure::Option { option, source: Box::new(source) })
+}
+
+/// Both ends of a range of quantities, as they are written: neither need be the smaller.
+pub(crate) fn range<Q: Quantity>(option: &'static str, text: &str) -> Result<[f64; 2], Failure> {
+    let (from, to): (Q, Q) =
+        units::parse_range(text).map_err(|source| Failure::Option { option, source: Box::new(source) })?;
+    Ok([from.si(), to.si()])
 }
 
 /// A solver's error with the muscle and the pressure it is about.

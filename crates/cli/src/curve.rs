@@ -2,7 +2,6 @@
 
 use bulge_fibre::{Given, Isobar, Problem, Shape};
 use bulge_model::Extended;
-use bulge_muscles::units::{self, Quantity};
 use bulge_muscles::{Muscle, Pressure, Ratio};
 use bulge_vtk::write_series;
 use clap::Args;
@@ -10,7 +9,7 @@ use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::arguments::{MethodArgument, about, about_extended, extended, list};
+use crate::arguments::{MethodArgument, about, about_extended, extended, list, range};
 use crate::characteristics;
 use crate::failure::Failure;
 use crate::files;
@@ -93,16 +92,12 @@ impl CurveCommand {
                 return Err(about(&muscle, Pressure::pa(isobar.pressure_pa))(error.clone()));
             }
         }
-        let mut wrote = String::new();
-        let to_stdout = self.csv.as_deref() == Some(Path::new("-"));
-        if let Some(path) = self.csv.as_deref().filter(|_| !to_stdout) {
-            files::write(path, characteristics::csv(&isobars).as_bytes())?;
-            let _ = writeln!(wrote, "  wrote {}", path.display());
-        }
-        if let Some(path) = &self.plot {
-            files::write(path, characteristics::svg(muscle.name(), &isobars)?.as_bytes())?;
-            let _ = writeln!(wrote, "  wrote {}", path.display());
-        }
+        let wanted = [self.csv.as_deref(), self.plot.as_deref()];
+        let mut wrote = files::wrote_both(
+            wanted,
+            || characteristics::csv(&isobars),
+            || characteristics::svg(muscle.name(), &isobars),
+        )?;
         if let Some(folder) = &self.vtk {
             for isobar in &isobars {
                 let path = series(&extended, isobar, self, folder, isobars.len() > 1)?;
@@ -112,7 +107,7 @@ impl CurveCommand {
         if self.json {
             return Ok(serde_json::to_string_pretty(&document(&muscle, &isobars))? + "\n");
         }
-        if to_stdout {
+        if files::is_stdout(self.csv.as_deref()) {
             return Ok(characteristics::csv(&isobars));
         }
         let mut heading = format!("{}\n\n", muscle.name());
@@ -131,7 +126,7 @@ impl CurveCommand {
         };
         within("--points", self.points, 2, MAX_POINTS)?;
         within("--frames", self.frames, 2, MAX_FRAMES)?;
-        if self.json && self.csv.as_deref() == Some(Path::new("-")) {
+        if self.json && files::is_stdout(self.csv.as_deref()) {
             let what = "standard output can take CSV or JSON, not both: give a file name".to_owned();
             return Err(Failure::Value { option: "--csv", what });
         }
@@ -140,16 +135,14 @@ impl CurveCommand {
 
     /// The contractions, from the option or over the range in which the muscle pulls at the first pressure.
     fn contractions(&self, extended: &Extended, pressure: Pressure) -> Result<Vec<f64>, Failure> {
-        let (low, high) = if let Some(text) = &self.contraction {
-            let (low, high): (Ratio, Ratio) = units::parse_range(text)
-                .map_err(|source| Failure::Option { option: "--contraction", source: Box::new(source) })?;
-            (low.si(), high.si())
+        let [low, high] = if let Some(text) = &self.contraction {
+            range::<Ratio>("--contraction", text)?
         } else {
             let muscle = extended.muscle();
             let limit = extended.contraction_limit(pressure, self.method.approach());
             let limit = limit.map_err(about_extended(muscle, pressure))?;
             let singular = muscle.is_pleated() && muscle.fibre().is_none();
-            (if singular { FIRST_CONTRACTION * limit / 0.4 } else { 0.0 }, limit)
+            [if singular { FIRST_CONTRACTION * limit / 0.4 } else { 0.0 }, limit]
         };
         if low >= high {
             let what = format!(

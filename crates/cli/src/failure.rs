@@ -12,7 +12,7 @@ use bulge_measurements::MeasurementError;
 use bulge_membrane::MembraneError;
 use bulge_membrane::case::CaseError;
 use bulge_model::{ExtendedError, ModelError};
-use bulge_muscles::{FileError, PresetError, UnitError};
+use bulge_muscles::{Fault, FileError, PresetError, UnitError};
 use bulge_report::{LearningError, PlotError};
 use bulge_sweep::export::ExportError;
 use bulge_sweep::{BuildError, SweepError, TabulateError};
@@ -75,6 +75,9 @@ pub(crate) enum Failure {
     Table(#[from] TableError),
     #[error("{0}")]
     Outside(String),
+    /// As [`Self::Outside`], with what standard output says of it.
+    #[error("{why}")]
+    NoneFound { answer: String, why: String },
     #[error("{origin}: {source}{kept}")]
     Membrane { origin: String, source: Box<CaseError>, kept: String },
     #[error("the result cannot be written as JSON: {0}")]
@@ -84,31 +87,21 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
+    /// What stands on standard output all the same: a script that asked for JSON reads there that nothing was found.
+    pub(crate) fn answer(&self) -> &str {
+        if let Self::NoneFound { answer, .. } = self { answer } else { "" }
+    }
+
     /// 1 the input is wrong, 3 no solution exists, 4 it did not converge.
     pub(crate) fn status(&self) -> u8 {
         match self {
-            Self::Equilibrium { source, .. } => match source.as_ref() {
-                FibreError::NotConverged { .. } | FibreError::VolumeNotFound { .. } => 4,
-                FibreError::PressureNotPositive { .. }
-                | FibreError::NotFinite { .. }
-                | FibreError::NotPositive { .. }
-                | FibreError::ClothTooNarrow { .. }
-                | FibreError::WallTooThick { .. }
-                | FibreError::NoClosedForm { .. }
-                | FibreError::NothingToShoot => 1,
-                _ => 3,
-            },
-            Self::Inference(error) => match error.as_ref() {
-                InferenceError::Model { source, .. } => model_status(source),
-                _ => 1,
-            },
-            Self::Model(error) => model_status(error),
+            Self::Equilibrium { source, .. } => status(source.fault()),
+            Self::Inference(error) => status(error.fault()),
+            Self::Model(error) => status(error.fault()),
+            Self::Extended(error) => status(error.fault()),
             Self::NotConverged(_) => 4,
-            Self::Learning(error) => match error.as_ref() {
-                LearningError::NotConverged { .. } => 4,
-                LearningError::Model(error) => model_status(error),
-            },
-            Self::Extended(_) | Self::Outside(_) => 3,
+            Self::Learning(error) => status(error.fault()),
+            Self::Outside(_) | Self::NoneFound { .. } => 3,
             Self::Sensing(error) => match error.as_ref() {
                 SensingError::Equilibrium { .. }
                 | SensingError::Overstrained { .. }
@@ -120,6 +113,7 @@ impl Failure {
             Self::Gas(error) => match error.as_ref() {
                 GasError::Number { .. } => 1,
                 GasError::Stopped { .. } => 4,
+                GasError::Muscle { error, .. } => status(error.fault()),
                 _ => 3,
             },
             Self::Heat(error) => match error.as_ref() {
@@ -148,13 +142,13 @@ impl Failure {
     }
 }
 
-fn model_status(error: &ModelError) -> u8 {
-    if let ModelError::NoEquilibrium { source, .. } = error { equilibrium_status(source) } else { 1 }
-}
-
-/// Data that ask for an equilibrium that doesn't exist are wrong input; a search that failed is not.
-fn equilibrium_status(error: &FibreError) -> u8 {
-    if matches!(error, FibreError::NotConverged { .. }) { 4 } else { 1 }
+/// Exit status of a fault.
+fn status(fault: Fault) -> u8 {
+    match fault {
+        Fault::Input => 1,
+        Fault::NoSolution => 3,
+        Fault::NotConverged => 4,
+    }
 }
 
 impl From<HideError> for Failure {

@@ -13,6 +13,31 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     write_durably(path, bytes).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
 }
 
+/// Writes a file if it is asked for; the line that says so.
+pub(crate) fn wrote(
+    path: Option<&Path>,
+    content: impl FnOnce() -> Result<String, Failure>,
+) -> Result<String, Failure> {
+    let Some(path) = path else { return Ok(String::new()) };
+    write(path, content()?.as_bytes())?;
+    Ok(format!("  wrote {}\n", path.display()))
+}
+
+/// Whether a file is asked for on standard output, as "-": there it takes the place of all else.
+pub(crate) fn is_stdout(path: Option<&Path>) -> bool {
+    path == Some(Path::new("-"))
+}
+
+/// Writes a table as CSV and its picture, as far as they are asked for, but nothing for standard output; the lines that say so.
+pub(crate) fn wrote_both(
+    [csv, plot]: [Option<&Path>; 2],
+    table: impl FnOnce() -> String,
+    picture: impl FnOnce() -> Result<String, Failure>,
+) -> Result<String, Failure> {
+    let table = wrote(csv.filter(|_| !is_stdout(csv)), || Ok(table()))?;
+    Ok(table + &wrote(plot, picture)?)
+}
+
 /// Writes files into a folder, which is created if it isn't there; none of them if one of the names is that of a folder.
 pub(crate) fn write_all(into: &Path, contents: &[(PathBuf, &str)]) -> Result<(), Failure> {
     folder(into)?;

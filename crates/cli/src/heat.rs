@@ -1,7 +1,7 @@
 //! `bulge heat`: how warm a muscle gets that is charged and discharged again and again, with and without an inner pipe.
 
 use bulge_design::heat::{HeatProblem, HeatSolution, Pipe, trend};
-use bulge_muscles::units::{self, Quantity};
+use bulge_muscles::units::Quantity;
 use bulge_muscles::{Length, Pressure, Ratio};
 use bulge_report::lines_svg;
 use clap::Args;
@@ -9,13 +9,11 @@ use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::arguments::{in_unit, quantity};
+use crate::arguments::{TIME, in_unit, quantity, range};
 use crate::failure::Failure;
 use crate::files;
 use crate::text::{significant, table};
 
-/// Units of a time.
-const TIME: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 /// Most pipes in one call.
 const MOST_PIPES: usize = 100;
 
@@ -96,14 +94,13 @@ impl HeatCommand {
 
     fn problem(&self) -> Result<HeatProblem, Failure> {
         let length = |option, text: &str| Ok::<_, Failure>(quantity::<Length>(option, text)?.si());
-        let (low, high) = units::parse_range::<Pressure>(&self.pressure)
-            .map_err(|source| Failure::Option { option: "--pressure", source: Box::new(source) })?;
+        let [low, high] = range::<Pressure>("--pressure", &self.pressure)?;
         let mut problem = HeatProblem::default();
         problem.tube.length_m = length("--length", &self.length)?;
         problem.tube.inner_diameter_m = length("--diameter", &self.diameter)?;
         problem.tube.wall_thickness_m = length("--wall", &self.wall)?;
         problem.tube.port_diameter_m = length("--port", &self.port)?;
-        (problem.drive.low_pa, problem.drive.high_pa) = (low.si(), high.si());
+        (problem.drive.low_pa, problem.drive.high_pa) = (low, high);
         problem.drive.period_s = in_unit("--period", &self.period, &TIME)?;
         problem.drive.ramp_s = in_unit("--ramp", &self.ramp, &TIME)?;
         problem.drive.duty = quantity::<Ratio>("--duty", &self.duty)?.si();

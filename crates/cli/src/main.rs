@@ -130,6 +130,8 @@ fn main() -> ExitCode {
     match outcome.and_then(|text| print(&text)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
+            // Nothing is left to be done where this can't be written either.
+            let _ = print(failure.answer());
             let _ = writeln!(std::io::stderr(), "error: {failure}");
             ExitCode::from(failure.status())
         }

@@ -3,7 +3,7 @@
 use bulge_effects::known;
 use bulge_inference::{DiagnoseOptions, Diagnosis, NextLimits, Options, Verdict, diagnose};
 use bulge_measurements::Data;
-use bulge_muscles::units::{self, Quantity};
+use bulge_muscles::units::Quantity;
 use bulge_muscles::{Pressure, Ratio};
 use bulge_report::diagnosis::{NextStep, headlines, others_in_class};
 use clap::Args;
@@ -81,7 +81,7 @@ impl NextCommand {
         let pressure_pa = self
             .pressure
             .as_deref()
-            .map(|text| range::<Pressure>(PRESSURE, text, "1 bar..6 bar"))
+            .map(|text| rising::<Pressure>(PRESSURE, text, "1 bar..6 bar"))
             .transpose()?;
         if let Some([low, high]) = pressure_pa.filter(|[low, high]| !(*low > 0.0 && *high <= MOST_PRESSURE)) {
             let what = format!(
@@ -92,7 +92,7 @@ impl NextCommand {
         let contraction = self
             .contraction
             .as_deref()
-            .map(|text| range::<Ratio>(CONTRACTION, text, "0 %..20 %"))
+            .map(|text| rising::<Ratio>(CONTRACTION, text, "0 %..20 %"))
             .transpose()?;
         let [least, most] = CONTRACTIONS;
         if let Some([low, high]) = contraction.filter(|[low, high]| *low < least || *high > most) {
@@ -158,11 +158,10 @@ impl NextCommand {
 }
 
 /// A range with units, the smaller end first.
-fn range<Q: Quantity>(option: &'static str, text: &str, example: &str) -> Result<[f64; 2], Failure> {
-    let (low, high): (Q, Q) =
-        units::parse_range(text).map_err(|source| Failure::Option { option, source: Box::new(source) })?;
-    if low.si() < high.si() {
-        return Ok([low.si(), high.si()]);
+fn rising<Q: Quantity>(option: &'static str, text: &str, example: &str) -> Result<[f64; 2], Failure> {
+    let [low, high] = arguments::range::<Q>(option, text)?;
+    if low < high {
+        return Ok([low, high]);
     }
     let what =
         format!("the range \"{}\" is empty: write the smaller end first, as in \"{example}\"", text.trim());

@@ -4,16 +4,16 @@ use bulge_design::sensing::{
     Curve, EGAIN_RESISTIVITY_OHM_M, Goal, Layer, Linearity, Options, Placement, Range, Reference, Search,
     Sensor, Winding,
 };
-use bulge_muscles::units::{self, Quantity};
+use bulge_muscles::units::Quantity;
 use bulge_muscles::{Length, Pressure, Ratio};
 use bulge_report::lines_svg;
 use clap::Args;
 use serde_json::json;
 use std::f64::consts::PI;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::arguments::{extended, in_unit, quantity};
+use crate::arguments::{extended, in_unit, quantity, range};
 use crate::failure::Failure;
 use crate::files;
 use crate::text::{significant, table};
@@ -81,7 +81,7 @@ impl SenseCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         let (muscle, extended) = extended(&self.muscle, self.effects.as_deref())?;
         let pressure = quantity::<Pressure>("--pressure", &self.pressure)?;
-        let (from, to) = ends(("--contraction", &self.contraction))?;
+        let [from, to] = range::<Ratio>("--contraction", &self.contraction)?;
         let range = Range { from, to, points: self.points };
         let noise = in_unit("--noise", &self.noise, &RESISTANCE)?;
         let sensor = Sensor::new(&extended, pressure, self.winding()?, Reference::Rest, Options::default())?;
@@ -92,16 +92,8 @@ impl SenseCommand {
         };
         let curve = sensor.curve(range)?;
         let resolution = curve.resolution(noise)?;
-        let mut wrote = String::new();
-        let to_stdout = self.csv.as_deref() == Some(Path::new("-"));
-        if let Some(path) = self.csv.as_deref().filter(|_| !to_stdout) {
-            files::write(path, csv(&curve).as_bytes())?;
-            let _ = writeln!(wrote, "  wrote {}", path.display());
-        }
-        if let Some(path) = &self.plot {
-            files::write(path, drawn(muscle.name(), &curve)?.as_bytes())?;
-            let _ = writeln!(wrote, "  wrote {}", path.display());
-        }
+        let wanted = [self.csv.as_deref(), self.plot.as_deref()];
+        let wrote = files::wrote_both(wanted, || csv(&curve), || drawn(muscle.name(), &curve))?;
         if self.json {
             let document = json!({
                 "schema": "bulge.sensing/1",
@@ -113,7 +105,7 @@ impl SenseCommand {
             });
             return Ok(serde_json::to_string_pretty(&document)? + "\n");
         }
-        if to_stdout {
+        if files::is_stdout(self.csv.as_deref()) {
             return Ok(csv(&curve));
         }
         let heading = format!("{} at {pressure}\n\n", muscle.name());
@@ -135,7 +127,7 @@ impl SenseCommand {
     }
 
     fn winding(&self) -> Result<Winding, Failure> {
-        let (start, end) = ends(("--zone", &self.zone))?;
+        let [start, end] = range::<Ratio>("--zone", &self.zone)?;
         let channel = quantity::<Length>("--channel", &self.channel)?.si();
         Ok(Winding {
             start,
@@ -157,13 +149,6 @@ impl SenseCommand {
         let search = Search { range, widths: [width; 2], width_steps: 1, centres: CENTRES, goal };
         Ok(sensor.best_place(&search)?)
     }
-}
-
-/// Both ends of a range of parts.
-fn ends((option, text): (&'static str, &str)) -> Result<(f64, f64), Failure> {
-    let (from, to) = units::parse_range::<Ratio>(text)
-        .map_err(|source| Failure::Option { option, source: Box::new(source) })?;
-    Ok((from.si(), to.si()))
 }
 
 fn wound(winding: &Winding, sensor: &Sensor) -> String {

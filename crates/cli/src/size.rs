@@ -106,20 +106,17 @@ impl SizeCommand {
         let load = self.load()?;
         let families = self.families(&load)?;
         let sizing = self.sized(&families, &load)?;
-        let Some(best) = sizing.choices.first() else { return Err(nothing(&sizing)) };
+        let answer = if self.json { document(&sizing)? } else { String::new() };
+        let Some(best) = sizing.choices.first() else {
+            return Err(Failure::NoneFound { answer, why: nothing(&sizing) });
+        };
         let mut wrote = String::new();
         if let Some(path) = &self.plot {
             files::write(path, drawn(best, &families)?.as_bytes())?;
             let _ = writeln!(wrote, "\n  wrote {}", path.display());
         }
         if self.json {
-            let document = json!({
-                "schema": "bulge.size/1",
-                "load": sizing.load,
-                "choices": sizing.choices,
-                "infeasible": sizing.infeasible,
-            });
-            return Ok(serde_json::to_string_pretty(&document)? + "\n");
+            return Ok(answer);
         }
         Ok(self.text(&sizing) + &wrote)
     }
@@ -409,14 +406,25 @@ fn bases(choices: &[Choice]) -> String {
     text
 }
 
+/// The same with choices and without.
+fn document(sizing: &Sizing) -> Result<String, Failure> {
+    let document = json!({
+        "schema": "bulge.size/1",
+        "load": sizing.load,
+        "choices": sizing.choices,
+        "infeasible": sizing.infeasible,
+    });
+    Ok(serde_json::to_string_pretty(&document)? + "\n")
+}
+
 /// Nothing carries the load.
-fn nothing(sizing: &Sizing) -> Failure {
-    Failure::Outside(format!(
+fn nothing(sizing: &Sizing) -> String {
+    format!(
         "none of these muscles carries {} N over {} mm\n{}",
         significant(sizing.load.largest_n(), 4),
         significant(1e3 * sizing.load.stroke_m(), 4),
         refused(&sizing.infeasible)
-    ))
+    )
 }
 
 /// Isobars of the best choice with the way of the load.

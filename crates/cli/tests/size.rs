@@ -98,6 +98,25 @@ fn learnt_muscles_and_laws() {
     assert!(law["choices"][0]["basis"].as_str().unwrap().starts_with("sarosi-5-branch"));
 }
 
+/// Who asks for JSON reads that there is nothing, and why; the status and the message are those of a failure.
+#[test]
+fn none_is_an_answer_as_well() {
+    let none = with(&["--pressure", "1 bar", "--muscle", "dmsp-20", "--json"]);
+    let output = bulge(&none);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    assert!(message.starts_with("error: none of these muscles carries 500.0 N over 50.00 mm"), "{message}");
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["schema"], "bulge.size/1");
+    assert_eq!(document["choices"].as_array().unwrap().len(), 0);
+    let why = document["infeasible"].as_array().unwrap();
+    assert!(why.iter().all(|not| not["family"] == "dmsp-20"));
+    // The reason is the same one.
+    assert!(message.contains(why[0]["why"].as_str().unwrap()), "{message}");
+    // Without JSON standard output stays empty.
+    assert!(failure(&none[..none.len() - 1]).1 == message);
+}
+
 #[test]
 fn mistakes_are_named() {
     for (given, status, words) in [

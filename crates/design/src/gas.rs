@@ -33,6 +33,7 @@ mod filling;
 mod muscle;
 mod orifice;
 mod stiffness;
+mod surroundings;
 
 pub use chamber::{Chamber, Inside, LEAST_PRESSURE_PA, Load};
 pub use closed::{ClosedMuscle, ClosedState};

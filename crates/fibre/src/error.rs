@@ -1,5 +1,7 @@
 //! What can go wrong in an equilibrium, with the numbers.
 
+use bulge_muscles::Fault;
+
 /// No equilibrium, or none was found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FibreError {
@@ -170,4 +172,22 @@ pub enum FibreError {
         /// Iterations spent.
         iterations: u32,
     },
+}
+
+impl FibreError {
+    /// Whose fault it is.
+    #[must_use]
+    pub fn fault(&self) -> Fault {
+        match self {
+            Self::NotConverged { .. } | Self::VolumeNotFound { .. } => Fault::NotConverged,
+            Self::PressureNotPositive { .. }
+            | Self::NotFinite { .. }
+            | Self::NotPositive { .. }
+            | Self::ClothTooNarrow { .. }
+            | Self::WallTooThick { .. }
+            | Self::NoClosedForm { .. }
+            | Self::NothingToShoot => Fault::Input,
+            _ => Fault::NoSolution,
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! Why a comparison or a fit can't be made.
 
 use bulge_model::ModelError;
+use bulge_muscles::Fault;
 
 /// What went wrong.
 #[derive(Debug, thiserror::Error)]
@@ -99,6 +100,14 @@ pub enum InferenceError {
     /// The noise of a record can't be described or whitened.
     #[error("the noise: {0}")]
     Noise(#[from] crate::noise::error::NoiseError),
+}
+
+impl InferenceError {
+    /// Whose fault it is.
+    #[must_use]
+    pub fn fault(&self) -> Fault {
+        if let Self::Model { source, .. } = self { source.fault() } else { Fault::Input }
+    }
 }
 
 impl From<ModelError> for InferenceError {

@@ -1,6 +1,7 @@
 //! What can go wrong in a model, with the rows and numbers.
 
 use bulge_fibre::FibreError;
+use bulge_muscles::Fault;
 use bulge_muscles::MuscleError;
 
 /// Why a model has no prediction.
@@ -68,4 +69,17 @@ pub enum ModelError {
         /// Expected.
         expected: usize,
     },
+}
+
+impl ModelError {
+    /// Whose fault it is: data that ask for an equilibrium that doesn't exist are wrong input; a search that failed is not.
+    #[must_use]
+    pub fn fault(&self) -> Fault {
+        match self {
+            Self::NoEquilibrium { source, .. } if source.fault() == Fault::NotConverged => {
+                Fault::NotConverged
+            }
+            _ => Fault::Input,
+        }
+    }
 }

@@ -5,7 +5,7 @@
 
 use bulge_effects::{Group, Known, Moment};
 use bulge_fibre::{Approach, FibreError, Given, Isobar, Problem, Response, isobars};
-use bulge_muscles::{Muscle, Pressure, Quantity};
+use bulge_muscles::{Fault, Muscle, Pressure, Quantity};
 use rayon::prelude::*;
 
 use crate::error::ModelError;
@@ -259,6 +259,18 @@ pub enum ExtendedError {
         /// The force there \[N\].
         force: f64,
     },
+}
+
+impl ExtendedError {
+    /// Whose fault it is.
+    #[must_use]
+    pub fn fault(&self) -> Fault {
+        match self {
+            Self::Equilibrium(source) => source.fault(),
+            Self::Model(source) => source.fault(),
+            Self::Force { .. } => Fault::NoSolution,
+        }
+    }
 }
 
 impl From<FibreError> for ExtendedError {

@@ -2,7 +2,7 @@
 
 use bulge_inference::{DataSummary, Extension, Fit, Fitting, NoiseFloor, extended};
 use bulge_model::ModelError;
-use bulge_muscles::{to_toml, units::significant};
+use bulge_muscles::{Fault, to_toml, units::significant};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -26,6 +26,17 @@ pub enum LearningError {
     /// The muscle can't have an effect with these numbers.
     #[error(transparent)]
     Model(#[from] ModelError),
+}
+
+impl LearningError {
+    /// Whose fault it is.
+    #[must_use]
+    pub fn fault(&self) -> Fault {
+        match self {
+            Self::NotConverged { .. } => Fault::NotConverged,
+            Self::Model(error) => error.fault(),
+        }
+    }
 }
 
 /// A fit, and the muscle that has learnt from it.

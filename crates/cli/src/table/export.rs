@@ -1,6 +1,5 @@
 //! `bulge table export`, `joint` and `papers`: tables for other programs.
 
-use bulge_muscles::units::{self, Quantity};
 use bulge_muscles::{FileError, Ratio};
 use bulge_sweep::export::{self, papers_polynomial, polynomial};
 use bulge_sweep::{JOINT_EXAMPLE, Joint, JointField, TableDescription, build};
@@ -11,6 +10,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use super::{errors, read};
+use crate::arguments::range;
 use crate::diagnose::paragraph::paragraph;
 use crate::failure::Failure;
 use crate::files;
@@ -69,17 +69,13 @@ impl Export {
             Form::Csv => export::csv(&table, self.points)?,
             Form::Json => serde_json::to_string_pretty(&export::json(&table))? + "\n",
             Form::Polynomial => {
-                let range: (Ratio, Ratio) = units::parse_range(&self.contraction).map_err(|source| {
-                    Failure::Option { option: "--contraction", source: Box::new(source) }
-                })?;
-                let percent = [100.0 * range.0.si(), 100.0 * range.1.si()];
+                let percent = range::<Ratio>("--contraction", &self.contraction)?.map(|end| 100.0 * end);
                 let found = papers_polynomial(&table, self.slenderness, self.fibres, percent)?;
                 serde_json::to_string_pretty(&found)? + "\n"
             }
         };
         let Some(path) = &self.out else { return Ok(text) };
-        files::write(path, text.as_bytes())?;
-        Ok(format!("  wrote {}\n", path.display()))
+        files::wrote(Some(path), || Ok(text))
     }
 }
 

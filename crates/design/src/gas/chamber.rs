@@ -12,7 +12,8 @@ use bulge_muscles::Pressure;
 use bulge_numerics::root::{RootError, newton_bracketed};
 use serde::Serialize;
 
-use super::muscle::{Lowest, follow, is_scale_free, load_at};
+use super::muscle::{Lowest, failed, follow, is_scale_free, load_at};
+use super::surroundings::Surroundings;
 use super::{GasError, at_least, positive};
 
 /// Below this gauge pressure \[Pa\] the shape of a muscle is that at this pressure: at none there is no equilibrium to solve.
@@ -85,8 +86,7 @@ enum Body<'a> {
 #[derive(Debug, Clone, Copy)]
 pub struct Chamber<'a> {
     body: Body<'a>,
-    dead_volume_m3: f64,
-    ambient_pa: f64,
+    surroundings: Surroundings,
     approach: Approach,
     /// Where something holds a muscle with a bladder: from where its fibres are taut.
     lowest: Option<Lowest>,
@@ -123,13 +123,7 @@ impl<'a> Chamber<'a> {
     }
 
     const fn of(body: Body<'a>) -> Self {
-        Self {
-            body,
-            dead_volume_m3: 0.0,
-            ambient_pa: bulge_fibre::AMBIENT_PRESSURE,
-            approach: Approach::Auto,
-            lowest: None,
-        }
+        Self { body, surroundings: Surroundings::STANDARD, approach: Approach::Auto, lowest: None }
     }
 
     /// With what is known of slack fibres at the contraction that something holds.
@@ -148,8 +142,7 @@ impl<'a> Chamber<'a> {
     /// # Errors
     /// [`GasError::Number`] unless it is finite and not negative.
     pub fn with_dead_volume(mut self, volume_m3: f64) -> Result<Self, GasError> {
-        self.dead_volume_m3 =
-            at_least("the dead volume [m^3]", volume_m3, 0.0, "give a finite volume from 0 on")?;
+        self.surroundings = self.surroundings.with_dead_volume(volume_m3)?;
         Ok(self)
     }
 
@@ -158,8 +151,14 @@ impl<'a> Chamber<'a> {
     /// # Errors
     /// [`GasError::Number`] unless it is positive.
     pub fn with_ambient(mut self, pressure_pa: f64) -> Result<Self, GasError> {
-        self.ambient_pa = positive("the ambient pressure [Pa]", pressure_pa)?;
+        self.surroundings = self.surroundings.with_ambient(pressure_pa)?;
         Ok(self)
+    }
+
+    /// In the surroundings of another, which are checked.
+    pub(super) const fn within(mut self, surroundings: Surroundings) -> Self {
+        self.surroundings = surroundings;
+        self
     }
 
     /// The load stands on a support at this contraction until the muscle lifts it; of no effect on a vessel or a held muscle.
@@ -192,7 +191,7 @@ impl<'a> Chamber<'a> {
     /// Ambient pressure \[Pa\].
     #[must_use]
     pub const fn ambient_pa(&self) -> f64 {
-        self.ambient_pa
+        self.surroundings.ambient_pa
     }
 
     pub(super) const fn support(&self) -> Option<f64> {
@@ -203,7 +202,7 @@ impl<'a> Chamber<'a> {
     }
 
     pub(super) const fn dead_volume_m3(&self) -> f64 {
-        self.dead_volume_m3
+        self.surroundings.dead_volume_m3
     }
 
     pub(super) const fn is_vessel(&self) -> bool {
@@ -221,7 +220,7 @@ impl<'a> Chamber<'a> {
     /// # Errors
     /// [`GasError::Number`], [`GasError::Muscle`] without equilibrium, or [`GasError::NoBalance`].
     pub fn at(&self, pressure_pa: f64) -> Result<Inside, GasError> {
-        let low = if self.is_vessel() { -self.ambient_pa } else { 0.0 };
+        let low = if self.is_vessel() { -self.ambient_pa() } else { 0.0 };
         at_least(
             "the gauge pressure [Pa]",
             pressure_pa,
@@ -246,10 +245,10 @@ impl<'a> Chamber<'a> {
     ) -> Result<Inside, GasError> {
         let Body::Muscle { muscle, load, support } = self.body else {
             let Body::Vessel(volume_m3) = self.body else { return Err(unreal(pressure_pa)) };
-            if pressure_pa <= -self.ambient_pa || pressure_pa.is_nan() {
+            if pressure_pa <= -self.ambient_pa() || pressure_pa.is_nan() {
                 return Err(unreal(pressure_pa));
             }
-            let gas_volume_m3 = volume_m3 + self.dead_volume_m3;
+            let gas_volume_m3 = self.surroundings.gas_volume(volume_m3);
             return Ok(Inside { pressure_pa, contraction: 0.0, force_n: 0.0, volume_m3, gas_volume_m3 });
         };
         if pressure_pa.is_nan() || pressure_pa < -LEAST_PRESSURE_PA {
@@ -265,7 +264,7 @@ impl<'a> Chamber<'a> {
             contraction: found.contraction,
             force_n: found.force_n,
             volume_m3: found.volume_m3,
-            gas_volume_m3: found.volume_m3 + self.dead_volume_m3,
+            gas_volume_m3: self.surroundings.gas_volume(found.volume_m3),
         })
     }
 
@@ -293,7 +292,7 @@ impl<'a> Chamber<'a> {
         let solve = |given| {
             muscle
                 .solve(Pressure::pa(pressure_pa), given, self.approach)
-                .map_err(|error| GasError::Muscle { pressure_pa, error: Box::new(error) })
+                .map_err(|error| failed(pressure_pa, error))
         };
         let excess = |e: f64| {
             let (found, h) = (solve(Given::Contraction(e))?, 1e-6);

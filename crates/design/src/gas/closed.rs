@@ -15,6 +15,7 @@ use serde::Serialize;
 
 use super::chamber::{Chamber, Inside, Load, with_gas};
 use super::muscle::pulling;
+use super::surroundings::Surroundings;
 use super::{AMBIENT_TEMPERATURE_K, GAMMA, GasError, R_AIR, at_least, positive};
 
 /// A muscle with the gas that was shut in.
@@ -23,8 +24,7 @@ pub struct ClosedMuscle<'a> {
     pub(super) muscle: &'a Extended,
     pub(super) approach: Approach,
     pub(super) exponent: f64,
-    pub(super) dead_volume_m3: f64,
-    pub(super) ambient_pa: f64,
+    pub(super) surroundings: Surroundings,
     pressure_pa: f64,
     temperature_k: f64,
     volume_m3: f64,
@@ -73,8 +73,7 @@ impl<'a> ClosedMuscle<'a> {
             muscle,
             approach: Approach::Auto,
             exponent,
-            dead_volume_m3: 0.0,
-            ambient_pa: bulge_fibre::AMBIENT_PRESSURE,
+            surroundings: Surroundings::STANDARD,
             pressure_pa,
             temperature_k: AMBIENT_TEMPERATURE_K,
             volume_m3: 0.0,
@@ -88,8 +87,7 @@ impl<'a> ClosedMuscle<'a> {
     /// # Errors
     /// [`GasError::Number`] unless it is finite and not negative.
     pub fn with_dead_volume(mut self, volume_m3: f64) -> Result<Self, GasError> {
-        self.dead_volume_m3 =
-            at_least("the dead volume [m^3]", volume_m3, 0.0, "give a finite volume from 0 on")?;
+        self.surroundings = self.surroundings.with_dead_volume(volume_m3)?;
         Ok(self)
     }
 
@@ -98,7 +96,7 @@ impl<'a> ClosedMuscle<'a> {
     /// # Errors
     /// [`GasError::Number`] unless it is positive.
     pub fn with_ambient(mut self, pressure_pa: f64) -> Result<Self, GasError> {
-        self.ambient_pa = positive("the ambient pressure [Pa]", pressure_pa)?;
+        self.surroundings = self.surroundings.with_ambient(pressure_pa)?;
         Ok(self)
     }
 
@@ -113,7 +111,7 @@ impl<'a> ClosedMuscle<'a> {
 
     /// P1 (V1 + Vd) \[J\].
     fn filled(&self) -> f64 {
-        (self.pressure_pa + self.ambient_pa) * (self.volume_m3 + self.dead_volume_m3)
+        self.surroundings.absolute(self.pressure_pa) * self.surroundings.gas_volume(self.volume_m3)
     }
 
     /// Mass of the gas \[kg\], that of the dead volume included.
@@ -149,24 +147,22 @@ impl<'a> ClosedMuscle<'a> {
     }
 
     fn shut(&self, load: Load<'a>) -> Result<Inside, GasError> {
-        let z = (self.pressure_pa + self.ambient_pa).ln()
-            + self.exponent * (self.volume_m3 + self.dead_volume_m3).ln();
-        let chamber = Chamber::muscle(self.muscle, load)?
-            .with_dead_volume(self.dead_volume_m3)?
-            .with_ambient(self.ambient_pa)?
-            .solved_by(self.approach);
+        let around = self.surroundings;
+        let z =
+            around.absolute(self.pressure_pa).ln() + self.exponent * around.gas_volume(self.volume_m3).ln();
+        let chamber = Chamber::muscle(self.muscle, load)?.within(around).solved_by(self.approach);
         let near = Cell::new(None);
         let inside = |p: f64| {
             let found = chamber.inside(p, false, near.get())?;
             near.set(Some(found.contraction));
             Ok(found)
         };
-        with_gas(inside, self.ambient_pa, [z, self.exponent], self.pressure_pa)
+        with_gas(inside, around.ambient_pa, [z, self.exponent], self.pressure_pa)
     }
 
     fn state(&self, pressure_pa: f64, contraction: f64) -> Result<ClosedState, GasError> {
         let response = self.pulling(pressure_pa, contraction)?;
-        let now = (pressure_pa + self.ambient_pa) * (response.volume_m3 + self.dead_volume_m3);
+        let now = self.surroundings.absolute(pressure_pa) * self.surroundings.gas_volume(response.volume_m3);
         Ok(ClosedState {
             pressure_pa,
             contraction,

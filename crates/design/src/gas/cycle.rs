@@ -24,7 +24,8 @@ use serde::Serialize;
 use super::chamber::{Chamber, LEAST_PRESSURE_PA, Load};
 use super::muscle::{follow, pulling};
 use super::orifice::REFERENCE_DENSITY;
-use super::{AMBIENT_TEMPERATURE_K, GasError, R_AIR, at_least, positive};
+use super::surroundings::Surroundings;
+use super::{AMBIENT_TEMPERATURE_K, GasError, R_AIR, positive};
 
 /// Panels of six Gauss points for the gas work.
 const PANELS: u32 = 6;
@@ -169,9 +170,8 @@ impl<'a> Stroke<'a> {
     fn check(&self) -> Result<(), GasError> {
         positive("the load [N]", self.load_n)?;
         positive("the gauge pressure of the supply [Pa]", self.supply_pressure_pa)?;
-        positive("the ambient pressure [Pa]", self.ambient_pa)?;
+        Surroundings::STANDARD.with_ambient(self.ambient_pa)?.with_dead_volume(self.dead_volume_m3)?;
         positive("the temperature [K]", self.temperature_k)?;
-        at_least("the dead volume [m^3]", self.dead_volume_m3, 0.0, "give a finite volume from 0 on")?;
         if let Lift::Isobaric { pressure_pa } = self.lift {
             positive("the gauge pressure of the lift [Pa]", pressure_pa)?;
         }

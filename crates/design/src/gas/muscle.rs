@@ -6,6 +6,11 @@ use bulge_muscles::{Pressure, Quantity as _};
 
 use super::{GasError, Load};
 
+/// What is wrong with the muscle, at a pressure.
+pub(super) fn failed(pressure_pa: f64, error: impl Into<ExtendedError>) -> GasError {
+    GasError::Muscle { pressure_pa, error: Box::new(error.into()) }
+}
+
 /// The muscle with its effects where it pulls.
 pub(super) fn pulling(
     muscle: &Extended,
@@ -13,13 +18,13 @@ pub(super) fn pulling(
     contraction: f64,
     approach: Approach,
 ) -> Result<Response, GasError> {
-    let failed = |error: ExtendedError| GasError::Muscle { pressure_pa, error: Box::new(error) };
-    let found =
-        muscle.solve(Pressure::pa(pressure_pa), Given::Contraction(contraction), approach).map_err(failed)?;
+    let found = muscle
+        .solve(Pressure::pa(pressure_pa), Given::Contraction(contraction), approach)
+        .map_err(|error| failed(pressure_pa, error))?;
     // Effects may turn the pull of the equilibrium into a push. Rounding may as well, at the limit.
     let scale = pressure_pa * muscle.muscle().radius().si().powi(2);
     if found.force_n < -1e-9 * scale {
-        return Err(failed(FibreError::WouldPush { contraction, force_n: found.force_n }.into()));
+        return Err(failed(pressure_pa, FibreError::WouldPush { contraction, force_n: found.force_n }));
     }
     Ok(found)
 }
@@ -41,8 +46,7 @@ pub(super) fn is_scale_free(muscle: &Extended) -> Result<bool, GasError> {
 }
 
 pub(super) fn problem(muscle: &Extended, pressure_pa: f64) -> Result<Problem, GasError> {
-    Problem::new(muscle.muscle(), Pressure::pa(pressure_pa))
-        .map_err(|error| GasError::Muscle { pressure_pa, error: Box::new(error.into()) })
+    Problem::new(muscle.muscle(), Pressure::pa(pressure_pa)).map_err(|error| failed(pressure_pa, error))
 }
 
 /// The muscle with its effects at a pressure and a contraction, also where it would push.
@@ -130,7 +134,6 @@ fn taut(
     contraction: f64,
     approach: Approach,
 ) -> Result<Response, GasError> {
-    let failed = |error: ExtendedError| GasError::Muscle { pressure_pa, error: Box::new(error) };
     let own = muscle.muscle().length().si();
     let own_contraction = match muscle.given(Given::Contraction(contraction)) {
         Given::Length(length) => 1.0 - length / own,
@@ -138,8 +141,8 @@ fn taut(
     };
     let plain = problem(muscle, pressure_pa)?
         .follow(own_contraction, approach)
-        .map_err(|error| failed(error.into()))?;
-    muscle.complete(&plain).map_err(|error| failed(error.into()))
+        .map_err(|error| failed(pressure_pa, error))?;
+    muscle.complete(&plain).map_err(|error| failed(pressure_pa, error))
 }
 
 /// Load at a contraction \[N\].

@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use super::GasError;
 use super::closed::{ClosedMuscle, ClosedState};
-use super::muscle::{follow, problem, stated_length};
+use super::muscle::{failed, follow, problem, stated_length};
 
 /// Part of the pressure over which the force of added effects is differenced.
 const DIFFERENCE: f64 = 1e-3;
@@ -58,9 +58,9 @@ impl ClosedMuscle<'_> {
         let response = &state.response;
         let [force_p, volume_p] = self.by_pressure(state)?;
         let volume_l = response.volume_slope_m2 * response.volume_m3 / response.volume_polygon_m3;
-        let absolute = self.exponent * (state.pressure_pa + self.ambient_pa);
+        let absolute = self.exponent * self.surroundings.absolute(state.pressure_pa);
         let pressure_l =
-            -absolute * volume_l / (response.volume_m3 + self.dead_volume_m3 + absolute * volume_p);
+            -absolute * volume_l / (self.surroundings.gas_volume(response.volume_m3) + absolute * volume_p);
         let geometry_n_per_m = response.stiffness_n_per_m;
         let gas_n_per_m = force_p * pressure_l;
         Ok(StiffnessSplit {
@@ -78,10 +78,7 @@ impl ClosedMuscle<'_> {
     fn by_pressure(&self, state: &ClosedState) -> Result<[f64; 2], GasError> {
         let p = state.pressure_pa;
         let problem = problem(self.muscle, p)?;
-        let failed = |error: bulge_fibre::FibreError| GasError::Muscle {
-            pressure_pa: p,
-            error: Box::new(error.into()),
-        };
+        let failed = |error: bulge_fibre::FibreError| failed(p, error);
         let own = 1.0 - state.response.length_m / self.muscle.muscle().length().si();
         let plain = |p: f64| {
             problem.at_pressure(bulge_muscles::Pressure::pa(p)).and_then(|at| at.follow(own, self.approach))

@@ -1,15 +1,9 @@
 //! Air, and the closures of the heat model: Nusselt numbers, stirring by the jet, axial mixing.
 
+pub(super) use crate::gas::{CP_AIR as CP, CV_AIR as CV, GAMMA, R_AIR as R};
+
 use super::Closures;
 
-/// Gas constant of dry air \[J/(kg K)\].
-pub(super) const R: f64 = 287.05;
-/// Heat capacity at constant volume \[J/(kg K)\], a diatomic gas.
-pub(super) const CV: f64 = 2.5 * R;
-/// Heat capacity at constant pressure \[J/(kg K)\].
-pub(super) const CP: f64 = 3.5 * R;
-/// Ratio of the heat capacities.
-pub(super) const GAMMA: f64 = CP / CV;
 /// Prandtl number of air.
 pub(super) const PRANDTL: f64 = 0.71;
 

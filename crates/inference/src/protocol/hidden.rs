@@ -2,7 +2,7 @@
 
 use bulge_effects::{Catalogue, CatalogueError, Effect, Group, ParameterCard, known};
 use bulge_model::{Model, ModelError};
-use bulge_muscles::{FileError, Muscle, units};
+use bulge_muscles::{Fault, FileError, Muscle, units};
 use bulge_numerics::Random;
 use std::sync::Arc;
 
@@ -31,6 +31,18 @@ pub enum HideError {
     /// The protocol can't be carried out.
     #[error(transparent)]
     Inference(#[from] InferenceError),
+}
+
+impl HideError {
+    /// Whose fault it is.
+    #[must_use]
+    pub fn fault(&self) -> Fault {
+        match self {
+            Self::Model(error) => error.fault(),
+            Self::Inference(error) => error.fault(),
+            Self::Stated(_) | Self::Effect(_) | Self::File(_) => Fault::Input,
+        }
+    }
 }
 
 /// Synthetic measurements of a muscle with hidden effects. `with` lists them as `name`, `name=value`, `name.key=value`, or a further value
