@@ -1,10 +1,8 @@
 //! `bulge compare`: model against measurement, and the error as effects are added.
 
-use bulge_effects::law::{LAWS, Law, LawGeometry};
-use bulge_effects::{Effect, Stage, known};
+use bulge_effects::{Effect, known};
 use bulge_inference::{Comparison, Fit, Options, compare};
 use bulge_measurements::Data;
-use bulge_muscles::Muscle;
 use bulge_report::comparison::{html, plots};
 use clap::Args;
 use std::fmt::Write;
@@ -58,9 +56,9 @@ impl CompareCommand {
         let mut options = Options { known, ..Options::new(catalogue, effects) };
         options.rivals = self.rivals;
         if let Some(name) = &self.law {
-            let law = suited_law(name, &muscle, &options.effects)?;
-            let table = law.table_for(muscle.name());
-            options.law = Some((law, law.start(&LawGeometry::from(&muscle), table), self.fit_law));
+            options = options
+                .with_law(name, &muscle, self.fit_law)
+                .map_err(|what| Failure::Value { option: "--law", what })?;
         }
         let comparison = compare(&data, &muscle, &options)?;
         let document = serde_json::to_string_pretty(&comparison)? + "\n";
@@ -72,43 +70,6 @@ impl CompareCommand {
         }
         if self.json { Ok(document) } else { Ok(text(&comparison, &options.effects) + &wrote) }
     }
-}
-
-/// The law of a name, if it suits the muscle and the effects.
-fn suited_law(name: &str, muscle: &Muscle, effects: &[Arc<dyn Effect>]) -> Result<&'static Law, Failure> {
-    let law = Law::find(name).ok_or_else(|| no_law(name))?;
-    let wrong = |what: String| Err(Failure::Value { option: "--law", what });
-    if let Some(kind) = law.kind.filter(|_| !law.suits(muscle.kind())) {
-        return wrong(format!(
-            "`{}` is a law of {} muscles, and this one is {}",
-            law.name,
-            kind.name(),
-            muscle.kind().name()
-        ));
-    }
-    if let Some(shape) = effects.iter().find(|effect| effect.card().stage == Stage::Shape) {
-        return wrong(format!(
-            "`{}` changes the shape of the muscle, and a law has none; leave out the effect or the law",
-            shape.card().name
-        ));
-    }
-    Ok(law)
-}
-
-/// Names of force laws that are near a mistaken one.
-fn no_law(name: &str) -> Failure {
-    let plain = |text: &str| text.to_lowercase().replace(['_', ' ', '-'], "");
-    let near: Vec<String> = LAWS
-        .iter()
-        .filter(|law| plain(law.name).contains(&plain(name)) || plain(name).contains(&plain(law.name)))
-        .map(|law| format!("`{}`", law.name))
-        .collect();
-    let instead = if near.is_empty() {
-        "`bulge effects --laws` lists them".to_owned()
-    } else {
-        format!("did you mean {}?", near.join(" or "))
-    };
-    Failure::Value { option: "--law", what: format!("there is no force law `{name}`; {instead}") }
 }
 
 /// Writes the report: a page, its plots one by one, and the numbers. Returns what to look at first.

@@ -1,6 +1,7 @@
 //! Model against measurement: the ladder of errors, and where the model fails.
 
 pub(crate) mod analysis;
+mod base_law;
 pub(crate) mod compare;
 pub(crate) mod document;
 pub(crate) mod floor;
