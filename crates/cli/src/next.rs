@@ -16,13 +16,9 @@ use crate::diagnose::progress::Bar;
 use crate::diagnose::text::untested;
 use crate::diagnose::untested::reasons;
 use crate::failure::Failure;
-use crate::text::significant;
 
 const PRESSURE: &str = "--pressure";
 const CONTRACTION: &str = "--contraction";
-/// Highest gauge pressure \[Pa\], and contractions that a bench can set, as for a protocol.
-const MOST_PRESSURE: f64 = 1e8;
-const CONTRACTIONS: [f64; 2] = [-1.0, 0.6];
 /// What stands before the effects that could not be looked for.
 const UNTESTED: &str = "  could not be looked for ";
 
@@ -83,27 +79,18 @@ impl NextCommand {
             .as_deref()
             .map(|text| rising::<Pressure>(PRESSURE, text, "1 bar..6 bar"))
             .transpose()?;
-        if let Some([low, high]) = pressure_pa.filter(|[low, high]| !(*low > 0.0 && *high <= MOST_PRESSURE)) {
-            let what = format!(
-                "{low} to {high} Pa is not possible: gauge pressures lie above 0 and up to 1000 bar; write such as \"1 bar..6 bar\""
-            );
-            return Err(Failure::Value { option: PRESSURE, what });
-        }
         let contraction = self
             .contraction
             .as_deref()
             .map(|text| rising::<Ratio>(CONTRACTION, text, "0 %..20 %"))
             .transpose()?;
-        let [least, most] = CONTRACTIONS;
-        if let Some([low, high]) = contraction.filter(|[low, high]| *low < least || *high > most) {
-            let what = format!(
-                "{} to {} % is not possible: contractions lie within -100 % and 60 %; write such as \"0 %..20 %\"",
-                significant(100.0 * low, 4),
-                significant(100.0 * high, 4)
-            );
-            return Err(Failure::Value { option: CONTRACTION, what });
-        }
-        Ok(NextLimits { pressure_pa, contraction })
+        let limits = NextLimits { pressure_pa, contraction };
+        let wrong = |(name, what)| Failure::Value {
+            option: if name == "pressure" { PRESSURE } else { CONTRACTION },
+            what,
+        };
+        limits.check().map_err(wrong)?;
+        Ok(limits)
     }
 
     /// The answer for people.

@@ -150,6 +150,14 @@ impl Plan {
     }
 }
 
+/// Makes a folder ready for a sweep, or says why it can't be: for whoever hands its chunks to other processes.
+///
+/// # Errors
+/// [`SweepError`].
+pub fn begin(plan: &Plan, path: &Path, options: &RunOptions) -> Result<(), SweepError> {
+    open(&Folder::new(path), path, &plan.canonical()?, options).map(drop)
+}
+
 /// Runs a sweep into a folder. `told` hears how far it is, from several threads.
 ///
 /// # Errors

@@ -35,6 +35,39 @@ pub struct NextLimits {
     pub contraction: Option<[f64; 2]>,
 }
 
+/// Highest gauge pressure \[Pa\], and contractions that a bench can set, as for a protocol.
+const MOST_PRESSURE: f64 = 1e8;
+const CONTRACTIONS: [f64; 2] = [-1.0, 0.6];
+
+impl NextLimits {
+    /// Whether a bench can keep within them.
+    ///
+    /// # Errors
+    /// The name of the limit that none can, and what is wrong with it.
+    pub fn check(&self) -> Result<(), (&'static str, String)> {
+        let [least, most] = CONTRACTIONS;
+        if let Some([low, high]) = self.pressure_pa
+            && !(low > 0.0 && low < high && high <= MOST_PRESSURE)
+        {
+            let what = format!(
+                "{low} to {high} Pa is not possible: gauge pressures lie above 0 and up to 1000 bar; write such as \"1 bar..6 bar\""
+            );
+            return Err(("pressure", what));
+        }
+        if let Some([low, high]) = self.contraction
+            && !(low >= least && low < high && high <= most)
+        {
+            let what = format!(
+                "{} to {} % is not possible: contractions lie within -100 % and 60 %; write such as \"0 %..20 %\"",
+                significant(100.0 * low, 4),
+                significant(100.0 * high, 4)
+            );
+            return Err(("contraction", what));
+        }
+        Ok(())
+    }
+}
+
 /// The limits that hold.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {

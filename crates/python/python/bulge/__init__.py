@@ -1,0 +1,81 @@
+"""Shape, force and volume of pneumatic artificial muscles, and which physical effect a model of one lacks.
+
+>>> import bulge
+>>> muscle = bulge.Muscle.preset("ppam-2-r16")
+>>> print(f"{muscle.force(contraction='20 %', pressure='1 bar'):.1f} N")
+544.0 N
+
+Numbers without a unit are SI (a contraction is a fraction); text has a unit: ``"110 mm"``, ``"2 bar"``, ``"20 %"``. What is computed is SI, and
+its name ends in its unit where it has one (``force_n``). Arrays broadcast as in NumPy, and long calls use all cores, let other threads run, and
+stop on Ctrl-C.
+
+- :class:`Muscle`: what it is; its shape, force, volume and stiffness,
+- :func:`read`: measurements, :func:`compare`, :func:`diagnose`, :func:`fit`, :func:`plan`, :func:`next_experiment`, :func:`simulate`,
+- :class:`Effect`: a physical effect of one's own, :func:`effects`: the catalogue,
+- :class:`Sweep`, :class:`Table`: families of muscles as data sets and as certified tables,
+- :mod:`bulge.distributed`: the same on Dask.
+"""
+
+from bulge._bulge import BulgeError, InputError, NoSolutionError, NotConvergedError, version as _version
+from bulge.effects import Effect, EffectCard, Parameter, effects, quantity, read_effects
+from bulge.inference import (
+    Comparison,
+    Diagnosis,
+    Fit,
+    NextExperiment,
+    Plan,
+    Simulation,
+    compare,
+    diagnose,
+    fit,
+    next_experiment,
+    plan,
+    simulate,
+)
+from bulge.measurements import Data, read
+from bulge.muscle import Muscle, Shape, Surface, presets
+from bulge.results import Result
+from bulge.sweeps import Sweep, read_sweep, sweep, sweep_example
+from bulge.tables import Table
+from bulge.units import si
+
+__version__: str = _version()
+
+__all__ = [
+    "BulgeError",
+    "Comparison",
+    "Data",
+    "Diagnosis",
+    "Effect",
+    "EffectCard",
+    "Fit",
+    "InputError",
+    "Muscle",
+    "NextExperiment",
+    "NoSolutionError",
+    "NotConvergedError",
+    "Parameter",
+    "Plan",
+    "Result",
+    "Shape",
+    "Simulation",
+    "Surface",
+    "Sweep",
+    "Table",
+    "__version__",
+    "compare",
+    "diagnose",
+    "effects",
+    "fit",
+    "next_experiment",
+    "plan",
+    "presets",
+    "quantity",
+    "read",
+    "read_effects",
+    "read_sweep",
+    "si",
+    "simulate",
+    "sweep",
+    "sweep_example",
+]

@@ -1,0 +1,423 @@
+"""Sweeps and suites of diagnoses on Dask: a LocalCluster on one machine, or any cluster that ``dask.distributed.Client`` talks to (Slurm through
+dask-jobqueue, Kubernetes, ...).
+
+The engine is Dask's. What is here is what a task is: a range of chunks of a sweep, or one diagnosis. Chunks are pure functions of their number, and
+each is written whole under its own name, so tasks may die, be repeated, or run twice without harm. What counts as done stands on disk: the promise
+that is written after a chunk's file, with its hash.
+
+    from dask.distributed import Client
+    import bulge.distributed
+
+    bulge.distributed.sweep("sweep.toml", "result", Client())           # the same bytes as `bulge sweep sweep.toml --out result`
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import posixpath
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from bulge import _bulge
+from bulge.inference import Diagnosis, diagnose
+from bulge.measurements import read
+from bulge.muscle import Muscle, write_whole
+from bulge.optional import need
+from bulge.progress import Progress, callback
+from bulge.results import Result
+from bulge.sweeps import Sweep, as_sweep, write_table
+
+#: Seconds that a task should take: what a scheduler costs, some milliseconds per task, is then less than a hundredth.
+TASK_SECONDS = 1.0
+#: Tasks per thread of the cluster, at least, so that the last ones end together.
+LEAST_ROUNDS = 8
+#: How often a range is handed out again when the workers that it ran on have died.
+MOST_DEATHS = 20
+#: Tasks in flight per thread of the cluster: enough that no worker waits, few enough that a scheduler holds 10^9 points easily.
+IN_FLIGHT = 4
+
+
+def sweep(
+    spec: Any,
+    folder: str | os.PathLike[str],
+    client: Any = None,
+    *,
+    resume: bool = False,
+    csv: bool = False,
+    chunks_per_task: int | None = None,
+    storage_options: Mapping[str, Any] | None = None,
+    progress: Progress = None,
+) -> Result:
+    """Runs a sweep on a Dask cluster: the same bytes as ``bulge sweep`` on one machine, whatever the number of workers.
+
+    ``spec`` is a sweep file, its text or a :class:`bulge.Sweep`; ``folder`` is one that all workers share, or a URL of an fsspec store
+    (``"s3://bucket/run"``, with ``storage_options``). ``client`` is a ``dask.distributed.Client`` [default: the current one]. ``chunks_per_task``
+    is chosen so that a task takes about a second. ``resume`` goes on with what is there. A worker that dies costs the chunks in flight; a range
+    whose workers die again and again is named and given up.
+
+    Returns the document: points, infeasible, chunks, computed, is_complete, seconds, tasks, chunks_per_task; and the table, if the sweep wishes one.
+    """
+    plan = as_sweep(spec)
+    if not plan.n_points:
+        raise _bulge.InputError("this sweep has no points, only a table: bulge.sweep builds it on one machine")
+    client = _client(client)
+    place = os.fspath(folder)
+    store = _Store(plan, place, csv, dict(storage_options or {})) if "://" in place else _Folder(plan, os.path.abspath(place), csv)
+    started = time.monotonic()
+    store.begin(resume)
+    threads = max(1, sum(client.nthreads().values()))
+    first = computed = 0
+    if chunks_per_task is None:
+        # The first chunk is timed where the sweep is started; it counts like any other.
+        seconds, computed = store.timed()
+        first = 1
+        most = max(1, plan.n_chunks // (LEAST_ROUNDS * threads))
+        chunks_per_task = max(1, min(most, math.ceil(TASK_SECONDS / max(seconds, 1e-6))))
+    if chunks_per_task < 1:
+        raise _bulge.InputError(f"chunks_per_task: {chunks_per_task}; give 1 or more")
+    ranges = [(a, min(a + chunks_per_task, plan.n_chunks)) for a in range(first, plan.n_chunks, chunks_per_task)]
+    with callback(progress, plan.name) as told:
+        finished = first
+        for (a, b), answer in _run(client, store.task(), ranges, f"bulge-sweep-{_slug(plan.name)}", threads):
+            store.take(answer)
+            computed += answer["computed"]
+            finished += b - a
+            if told is not None:
+                told(finished / plan.n_chunks, "points")
+    document = store.finish()
+    document |= {"computed": computed, "seconds": time.monotonic() - started, "tasks": len(ranges), "chunks_per_task": chunks_per_task}
+    if plan.has_table:
+        document["table"] = store.table()
+    return Result({"name": plan.name, "folder": place, **document})
+
+
+def suite(
+    cases: str | os.PathLike[str],
+    results: str | os.PathLike[str],
+    client: Any = None,
+    *,
+    again: bool = False,
+    progress: Progress = None,
+    **options: Any,
+) -> Result:
+    """Diagnoses every case of a suite of hidden effects on a Dask cluster.
+
+    ``cases`` is a folder of folders, each with data.csv and muscle.toml; ``results`` gets ``<case>.json``, the document of ``bulge diagnose --json``
+    with paths as given here, and cases that have one are skipped unless ``again``. ``options`` are those of :func:`bulge.diagnose`. Returns the
+    document: cases, answered, failed (a sentence for each case that has none), seconds.
+    """
+    client = _client(client)
+    started = time.monotonic()
+    folders = sorted(path.parent for path in Path(cases).glob("*/muscle.toml") if (path.parent / "data.csv").exists())
+    if not folders:
+        raise _bulge.InputError(f"{os.fspath(cases)} holds no folder with data.csv and muscle.toml")
+    into = Path(results)
+    into.mkdir(parents=True, exist_ok=True)
+    waiting = [folder for folder in folders if again or not (into / f"{folder.name}.json").exists()]
+    # The longest files first, so that none is left to run alone at the end.
+    waiting.sort(key=lambda folder: -(folder / "data.csv").stat().st_size)
+    failed: dict[str, str] = {}
+    threads = max(1, sum(client.nthreads().values()))
+    with callback(progress, "suite") as told:
+        names = [str(folder) for folder in waiting]
+        for count, (name, answer) in enumerate(_run(client, _Case(options), names, "bulge-diagnose", threads), 1):
+            case = Path(name).name
+            if "error" in answer:
+                failed[case] = answer["error"]
+            else:
+                write_whole(into / f"{case}.json", answer["document"].encode())
+            if told is not None:
+                told(count / len(waiting), case)
+    return Result({
+        "cases": len(folders),
+        "answered": len(waiting) - len(failed),
+        "failed": failed,
+        "seconds": time.monotonic() - started,
+    })
+
+
+def diagnose_all(cases: Iterable[Mapping[str, Any]], client: Any = None, *, progress: Progress = None) -> list[Diagnosis]:
+    """Diagnoses on a Dask cluster: ``cases`` are the arguments of :func:`bulge.diagnose` by name, such as ``{"data": ..., "muscle": ...}``.
+
+    Measurements and muscles travel as texts, files by their names. Answers come in the order of the cases; the first error is raised.
+    """
+    client = _client(client)
+    orders = [{**case, "data": read(case["data"])} for case in cases]
+    threads = max(1, sum(client.nthreads().values()))
+    found: dict[int, Diagnosis] = {}
+    with callback(progress, "diagnose") as told:
+        for place, answer in _run(client, _Order(orders), range(len(orders)), "bulge-diagnose", threads):
+            found[place] = answer
+            if told is not None:
+                told(len(found) / len(orders), "diagnoses")
+    return [found[place] for place in range(len(orders))]
+
+
+class _Case:
+    """The diagnosis of a case's folder, as a task."""
+
+    def __init__(self, options: Mapping[str, Any]) -> None:
+        self.options = dict(options)
+
+    def __call__(self, folder: str) -> dict[str, str]:
+        _one_thread()
+        try:
+            found = diagnose(os.path.join(folder, "data.csv"), Muscle.from_toml(os.path.join(folder, "muscle.toml")), **self.options)
+        except _bulge.BulgeError as error:
+            return {"error": str(error)}
+        return {"document": found.to_json() + "\n"}
+
+
+class _Order:
+    """One diagnosis of a list, as a task."""
+
+    def __init__(self, orders: list[dict[str, Any]]) -> None:
+        self.orders = orders
+
+    def __call__(self, place: int) -> Diagnosis:
+        _one_thread()
+        return diagnose(**self.orders[place])
+
+
+def _one_thread() -> None:
+    """A task is one thread's work: the cluster has as many tasks as threads."""
+    os.environ.setdefault("RAYON_NUM_THREADS", "1")
+
+
+class _Folder:
+    """A sweep in a folder that all workers share."""
+
+    def __init__(self, plan: Sweep, folder: str, csv: bool) -> None:
+        self.plan, self.folder, self.csv = plan, folder, csv
+
+    def begin(self, resume: bool) -> None:
+        self.plan._native.begin(self.folder, resume, self.csv)
+
+    def timed(self) -> tuple[float, int]:
+        """Runs the first chunk: the seconds that it took, and 1 if it was not there."""
+        started = time.monotonic()
+        document = _run_folder(self.plan, self.folder, self.csv, (0, 1))
+        # One that was there took no time, which says nothing of the others.
+        return (time.monotonic() - started, 1) if document["computed"] else (TASK_SECONDS, 0)
+
+    def task(self) -> Callable[[tuple[int, int]], dict[str, Any]]:
+        return _FolderTask(self.plan, self.folder, self.csv)
+
+    def take(self, answer: dict[str, Any]) -> None:
+        pass
+
+    def finish(self) -> dict[str, Any]:
+        """Every chunk is read once and its hash compared: the manifest says what is there."""
+        document: dict[str, Any] = json.loads(self.plan._native.run(self.folder, True, None, self.csv, [], None, None))
+        return document
+
+    def table(self) -> dict[str, Any]:
+        return write_table(self.plan, Path(self.folder))
+
+
+class _FolderTask:
+    """A range of chunks into a shared folder."""
+
+    def __init__(self, plan: Sweep, folder: str, csv: bool) -> None:
+        self.plan, self.folder, self.csv = plan, folder, csv
+
+    def __call__(self, chunks: tuple[int, int]) -> dict[str, Any]:
+        return _run_folder(self.plan, self.folder, self.csv, chunks)
+
+
+def _run_folder(plan: Sweep, folder: str, csv: bool, chunks: tuple[int, int]) -> dict[str, Any]:
+    document: dict[str, Any] = json.loads(plan._native.run(folder, True, chunks, csv, [], 1, None))
+    return document
+
+
+class _Store:
+    """A sweep in an fsspec store: the same names, each file written under another name and moved where the store can, else put at once."""
+
+    def __init__(self, plan: Sweep, url: str, csv: bool, options: dict[str, Any]) -> None:
+        self.plan, self.url, self.csv, self.options = plan, url, csv, options
+        self.promises: dict[int, str] = {}
+
+    def begin(self, resume: bool) -> None:
+        files = _Files(self.url, self.options)
+        before, now = files.get("plan.json"), self.plan._native.canonical()
+        if before is None:
+            files.put("plan.json", now.encode())
+        elif before.decode() != now:
+            raise _bulge.InputError(f"{self.url} holds another sweep: take another place, or undo the change")
+        elif not resume:
+            raise _bulge.InputError(f"{self.url} holds this sweep already: add resume=True to go on with it, or take another place")
+
+    def timed(self) -> tuple[float, int]:
+        """Runs the first chunk: the seconds that it took, and 1 if it was not there."""
+        started = time.monotonic()
+        answer = self.task()((0, 1))
+        self.take(answer)
+        return (time.monotonic() - started, 1) if answer["computed"] else (TASK_SECONDS, 0)
+
+    def task(self) -> Callable[[tuple[int, int]], dict[str, Any]]:
+        return _StoreTask(self.plan, self.url, self.csv, self.options)
+
+    def take(self, answer: dict[str, Any]) -> None:
+        self.promises.update(answer["promises"])
+
+    def finish(self) -> dict[str, Any]:
+        texts = [self.promises[chunk] for chunk in range(self.plan.n_chunks)]
+        _Files(self.url, self.options).put("manifest.json", self.plan._native.manifest(texts).encode())
+        promises = [json.loads(text) for text in texts]
+        points, infeasible = (sum(promise[key] for promise in promises) for key in ("points", "infeasible"))
+        return {"points": points, "infeasible": infeasible, "chunks": self.plan.n_chunks, "damaged": [], "is_complete": True}
+
+    def table(self) -> dict[str, Any]:
+        content, description, is_met = self.plan._native.table(None)
+        files = _Files(self.url, self.options)
+        files.put("table.bulge", content)
+        files.put("table.json", description.encode())
+        return {**json.loads(description), "is_met": is_met}
+
+
+class _StoreTask:
+    """A range of chunks into a store."""
+
+    def __init__(self, plan: Sweep, url: str, csv: bool, options: dict[str, Any]) -> None:
+        self.plan, self.url, self.csv, self.options = plan, url, csv, options
+
+    def __call__(self, chunks: tuple[int, int]) -> dict[str, Any]:
+        files = _Files(self.url, self.options)
+        promises, computed = {}, 0
+        for chunk in range(*chunks):
+            there = self._standing(files, chunk)
+            if there is None:
+                content, csv, there = self.plan._native.piece(chunk, self.csv)
+                files.put(f"points/{chunk:06}.parquet", content)
+                if csv is not None:
+                    files.put(f"csv/{chunk:06}.csv", csv.encode())
+                # The promise last: it makes the chunk count.
+                files.put(f"chunks/{chunk:06}.json", there.encode())
+                computed += 1
+            promises[chunk] = there
+        return {"promises": promises, "computed": computed}
+
+    def _standing(self, files: _Files, chunk: int) -> str | None:
+        """The promise of a chunk that is there, if its files have the hashes that it says."""
+        text = files.get(f"chunks/{chunk:06}.json")
+        if text is None:
+            return None
+        try:
+            promise = json.loads(text)
+            key = hashlib.sha256(self.plan._native.canonical().encode()).hexdigest()
+            kept = [(f"points/{chunk:06}.parquet", promise["sha256"])]
+            if self.csv:
+                kept.append((f"csv/{chunk:06}.csv", promise["csv_sha256"]))
+            if promise["plan"] != key or promise["chunk"] != chunk:
+                return None
+        except (ValueError, KeyError, TypeError):
+            return None
+        for name, sha256 in kept:
+            content = files.get(name)
+            if content is None or hashlib.sha256(content).hexdigest() != sha256:
+                return None
+        return text.decode()
+
+
+class _Files:
+    """Files below a URL."""
+
+    def __init__(self, url: str, options: dict[str, Any]) -> None:
+        fsspec = need("fsspec", "a store", "distributed")
+        self.system, self.root = fsspec.core.url_to_fs(url, **options)
+        # Where a file appears as it is written, it is moved into place; object stores show a file when it is whole.
+        self.moves = not getattr(self.system, "blocksize", None) or self.system.protocol in ("file", ("file", "local"))
+
+    def get(self, name: str) -> bytes | None:
+        try:
+            content: bytes = self.system.cat_file(posixpath.join(self.root, name))
+        except FileNotFoundError:
+            return None
+        return content
+
+    def put(self, name: str, content: bytes) -> None:
+        path = posixpath.join(self.root, name)
+        self.system.makedirs(posixpath.dirname(path), exist_ok=True)
+        if not self.moves:
+            self.system.pipe_file(path, content)
+            return
+        part = posixpath.join(posixpath.dirname(path), f".unfinished-{os.getpid()}-{time.monotonic_ns()}")
+        self.system.pipe_file(part, content)
+        self.system.mv(part, path)
+
+
+def _run(client: Any, task: Callable[[Any], Any], orders: Iterable[Any], name: str, threads: int) -> Iterator[tuple[Any, Any]]:
+    """Orders and their answers, as they come. At most IN_FLIGHT tasks per thread are with the scheduler; those whose workers die are handed out
+    again, each MOST_DEATHS times."""
+    distributed = need("distributed", "a distributed run", "distributed")
+    killed = distributed.KilledWorker
+    waiting = iter(orders)
+    deaths: dict[Any, int] = {}
+    running: dict[Any, Any] = {}
+    # The task may be large (a muscle's file, a table of orders): it travels once to each worker.
+    shared = client.scatter(task, broadcast=False, hash=False)
+    stamp = f"{name}-{time.time_ns():x}"
+    number = 0
+
+    def submit(order: Any) -> Any:
+        nonlocal number
+        number += 1
+        future = client.submit(_call, shared, order, key=f"{stamp}-{number}", pure=False)
+        running[future] = order
+        return future
+
+    first = [submit(order) for _, order in zip(range(IN_FLIGHT * threads), waiting)]
+    completed = distributed.as_completed(first, raise_errors=False)
+    try:
+        for future in completed:
+            order = running.pop(future)
+            if future.status == "error":
+                error = future.exception()
+                if isinstance(error, killed) and deaths.get(order, 0) < MOST_DEATHS:
+                    deaths[order] = deaths.get(order, 0) + 1
+                    completed.add(submit(order))
+                    continue
+                if isinstance(error, killed):
+                    raise _bulge.BulgeError(
+                        f"{order} was given up: the workers that it ran on died {MOST_DEATHS + 1} times; look at their logs, and give them more memory"
+                    )
+                raise error
+            if future.status == "cancelled":
+                # Its data went with a worker that held them; nothing was wrong with it.
+                shared = client.scatter(task, broadcast=False, hash=False)
+                completed.add(submit(order))
+                continue
+            answer = future.result()
+            future.release()
+            following = next(waiting, _END)
+            if following is not _END:
+                completed.add(submit(following))
+            yield order, answer
+    finally:
+        client.cancel(list(running))
+
+
+_END = object()
+
+
+def _call(task: Callable[[Any], Any], order: Any) -> Any:
+    return task(order)
+
+
+def _client(client: Any) -> Any:
+    distributed = need("distributed", "a distributed run", "distributed")
+    if client is not None:
+        return client
+    try:
+        return distributed.get_client()
+    except ValueError:
+        raise _bulge.InputError("no Dask cluster is known: give a client, such as dask.distributed.Client()") from None
+
+
+def _slug(name: str) -> str:
+    return "".join(c if c.isalnum() else "-" for c in name)[:40]

@@ -1,0 +1,362 @@
+"""Model against measurement: compare, diagnose, fit, plan, next experiment, simulate. The documents are those of the command line's ``--json``."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from bulge import _bulge
+from bulge.effects import OwnEffects, own_text
+from bulge.measurements import Data, DataLike, read
+from bulge.muscle import Muscle, write_whole
+from bulge.progress import Progress, callback
+from bulge.results import Result, number
+from bulge.units import Quantity, si, si_range
+
+
+class _Reported(Result):
+    """A result with a report."""
+
+    _file = "result.json"
+
+    def __init__(self, native: Any, document: dict[str, Any] | None = None) -> None:
+        super().__init__(json.loads(native.document()) if document is None else document)
+        self._native = native
+
+    def _whole(self) -> Any:
+        if self._native is None:
+            raise _bulge.InputError(f"this {self._what} has travelled and left its report behind: make it again where it is drawn")
+        return self._native
+
+    def to_html(self) -> str:
+        """The report: a page that stands for itself, without scripts or network."""
+        page: str = self._whole().html()
+        return page
+
+    def svgs(self) -> dict[str, str]:
+        """The plots of the report as SVG, by name."""
+        return {name: svg for name, _, svg in self._whole().plots()}
+
+    def report(self, folder: str | os.PathLike[str]) -> Path:
+        """Writes report.html, its plots and the document into a folder; returns the page."""
+        page, drawings = self.to_html(), self.svgs()
+        into = Path(folder)
+        into.mkdir(parents=True, exist_ok=True)
+        write_whole(into / self._file, (self.to_json() + "\n").encode())
+        for name, svg in drawings.items():
+            write_whole(into / f"{name}.svg", svg.encode())
+        write_whole(into / "report.html", page.encode())
+        return into / "report.html"
+
+    def __reduce__(self) -> Any:
+        return (type(self), (None, self._document))
+
+
+def _ladder(document: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
+    rows = [
+        [("+ " + rung["added"]) if rung["added"] else "the muscle as stated", number(rung["rmse_n"], 3), number(rung.get("held_out_rmse_n"), 3)]
+        for rung in document["ladder"]
+    ]
+    return ["model", "error [N]", "held out [N]"], rows
+
+
+def _parameters(fit: Mapping[str, Any] | None) -> tuple[list[str], list[list[str]]]:
+    rows = [
+        [f"{p['effect']} {p['name']}", number(p["value"]), f"{number(p['low'])} to {number(p['high'])}", "" if p["unit"] == "1" else p["unit"]]
+        for p in (fit or {}).get("parameters", [])
+    ]
+    return ["fitted", "value", "95 %", "unit"], rows
+
+
+class Comparison(_Reported):
+    """Model against measurement, and the error as effects are added: the document of ``bulge compare --json``."""
+
+    _what, _file = "comparison", "compare.json"
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws measured and computed force; returns the axes (matplotlib)."""
+        from bulge.plots import compared
+
+        return compared(self, ax)
+
+    def _lines(self) -> list[str]:
+        d = self._document
+        floor = d["noise_floor"]
+        lines = [f"{d['muscle']} against {', '.join(d['data']['files'])}: {d['data']['used']} rows"]
+        if floor:
+            lines.append(f"noise floor {number(floor['sd_n'], 3)} N ({floor['source']})")
+        return lines + [f"! {warning}" for warning in d["warnings"]]
+
+    def _tables(self) -> list[tuple[list[str], list[list[str]]]]:
+        return [_ladder(self._document), _parameters(self._document["ladder"][-1].get("fit"))]
+
+
+class Diagnosis(_Reported):
+    """What is missing, and how sure that is: the document of ``bulge diagnose --json``.
+
+    ``verdict`` is "missing", "adequate", "unknown" or "cannot-tell"; ``missing`` lists the effects in the order of adding, each with its
+    ``class`` (all effects that these data can't tell from it), ``confidence`` and ``parameters``.
+    """
+
+    _what, _file = "diagnosis", "diagnosis.json"
+
+    def __init__(self, native: Any, document: dict[str, Any] | None = None, headlines: list[str] | None = None) -> None:
+        super().__init__(native, document)
+        self._headlines: list[str] = native.headlines() if headlines is None else headlines
+
+    @property
+    def says(self) -> list[str]:
+        """The verdict in sentences."""
+        return list(self._headlines)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the missing effects."""
+        return [missing["effect"] for missing in self._document["missing"]]
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws how the error falls; returns the axes (matplotlib)."""
+        from bulge.plots import ladder
+
+        return ladder(self, ax)
+
+    def _lines(self) -> list[str]:
+        lines = list(self._headlines)
+        following = self._document.get("next_experiment")
+        return lines + ([f"next: {following['says']}"] if following and following.get("says") else [])
+
+    def _tables(self) -> list[tuple[list[str], list[list[str]]]]:
+        rows = [
+            [missing["effect"], f"{100 * missing['confidence']:.0f} %", ", ".join(name for name in missing["class"] if name != missing["effect"]) or "-"]
+            for missing in self._document["missing"]
+        ]
+        return [(["missing", "confidence", "not told from"], rows), _ladder(self._document)]
+
+    def __reduce__(self) -> Any:
+        return (Diagnosis, (None, self._document, self._headlines))
+
+
+class Fit(Result):
+    """Fitted effects: the document of ``bulge fit --json``; ``fit.learnt`` is the muscle with what was learnt."""
+
+    _what = "fit"
+
+    def __init__(self, document: dict[str, Any], own: str = "") -> None:
+        super().__init__(document)
+        self._own = own
+
+    @property
+    def learnt(self) -> Muscle:
+        """The muscle with what was learnt, for :meth:`Muscle.force`, the next comparison, or a file (``fit.learnt.to_toml("learnt.toml")``)."""
+        return Muscle.from_toml(self._document["model"], self._own)
+
+    def _lines(self) -> list[str]:
+        d = self._document
+        return [f"{d['muscle']} fitted to {', '.join(d['data']['files'])}: error {number(d['before_rmse_n'], 3)} N before, {number(d['rmse_n'], 3)} N after"]
+
+    def _tables(self) -> list[tuple[list[str], list[list[str]]]]:
+        return [_parameters(self._document["fit"])]
+
+    def __reduce__(self) -> Any:
+        return (Fit, (self._document, self._own))
+
+
+class Plan(Result):
+    """What a test would show: the document of ``bulge plan --json``."""
+
+    _what = "plan"
+
+    def _lines(self) -> list[str]:
+        d = self._document
+        return [f"{d['muscle']}, before measuring: {d['rows']} rows in {d['sweeps']} sweeps", *(f"! {warning}" for warning in d.get("warnings", []))]
+
+    def _tables(self) -> list[tuple[list[str], list[list[str]]]]:
+        rows = [
+            [e["effect"], number(e.get("detection_limit"), 3), "" if e.get("unit") in (None, "1") else e["unit"], number(e.get("detection_limit_n"), 3)]
+            for e in self._document["effects"]
+        ]
+        return [(["effect", "seen from", "unit", "force [N]"], rows)]
+
+
+class NextExperiment(Result):
+    """The next experiment: the document of ``bulge next --json``; ``says`` is the advice."""
+
+    _what = "next experiment"
+
+    def _lines(self) -> list[str]:
+        d = self._document
+        named = f": {', '.join(missing['effect'] for missing in d['missing'])}" if d["missing"] else ""
+        return [f"verdict {d['verdict']}{named}", d["says"]]
+
+
+class Simulation(Result):
+    """Simulated measurements: ``data``, the ``muscle`` as stated (it knows nothing of what is hidden), and the truth as the document."""
+
+    _what = "simulation"
+
+    def __init__(self, csv: str, muscle: str, document: dict[str, Any], own: str = "") -> None:
+        super().__init__(document)
+        self._csv, self._muscle, self._own = csv, muscle, own
+
+    @property
+    def csv(self) -> str:
+        """The text of the data file."""
+        return self._csv
+
+    @property
+    def data(self) -> Data:
+        """The measurements."""
+        from bulge.measurements import _data_of
+
+        return _data_of("csv", (self._csv, "data.csv"))
+
+    @property
+    def muscle(self) -> Muscle:
+        """The muscle as stated."""
+        return Muscle.from_toml(self._muscle, self._own)
+
+    def write(self, folder: str | os.PathLike[str]) -> None:
+        """Writes data.csv, muscle.toml and truth.json, as ``bulge simulate --out``."""
+        into = Path(folder)
+        into.mkdir(parents=True, exist_ok=True)
+        for name, text in [("data.csv", self._csv), ("muscle.toml", self._muscle), ("truth.json", self.to_json() + "\n")]:
+            write_whole(into / name, text.encode())
+
+    def _lines(self) -> list[str]:
+        d = self._document
+        hidden = ", ".join(effect["effect"] for effect in d["effects"]) or "nothing"
+        return [f"{d['rows']} rows of {self._document['muscle']}, seed {d['seed']}; hidden: {hidden}"]
+
+    def __reduce__(self) -> Any:
+        return (Simulation, (self._csv, self._muscle, self._document, self._own))
+
+
+def compare(
+    data: DataLike,
+    muscle: Muscle,
+    with_: Iterable[str] | str = (),
+    *,
+    own: OwnEffects = None,
+    law: str | None = None,
+    fit_law: bool = False,
+    rivals: bool = False,
+) -> Comparison:
+    """Compares the model with measurements: what ``bulge compare`` does.
+
+    ``data`` is what :func:`bulge.read` takes; ``with_`` names effects to fit, in their order; ``own`` are effects of one's own; ``law`` is a force
+    law of the papers as the base (``fit_law``: fitted); ``rivals`` fits every law for comparison.
+    """
+    return Comparison(_bulge.compare(read(data)._native, muscle._native, _names(with_), own_text(own), law, fit_law, rivals))
+
+
+def diagnose(
+    data: DataLike,
+    muscle: Muscle,
+    with_: Iterable[str] | str = (),
+    *,
+    own: OwnEffects = None,
+    tolerance: Quantity | None = None,
+    seed: int = 1,
+    progress: Progress = None,
+) -> Diagnosis:
+    """Finds which physical effect is missing, and how sure that is: what ``bulge diagnose`` does.
+
+    ``tolerance`` is the RMS misfit [N] that doesn't matter. The same ``seed`` gives the same answer. ``own`` effects are looked for too.
+    """
+    allowed = None if tolerance is None else si(tolerance, "N", "tolerance")
+    with callback(progress, "diagnose") as told:
+        return Diagnosis(_bulge.diagnose(read(data)._native, muscle._native, _names(with_), own_text(own), allowed, seed, told))
+
+
+def fit(data: DataLike, muscle: Muscle, with_: Iterable[str] | str, *, own: OwnEffects = None) -> Fit:
+    """Fits effects, and gives the muscle that has learnt them: what ``bulge fit`` does. Raises :class:`bulge.NotConvergedError`."""
+    names = _names(with_)
+    if not names:
+        raise _bulge.InputError("with_: name the effects to fit, such as [\"end-taper\", \"bladder-elasticity\"]")
+    text = own_text(own)
+    document = json.loads(_bulge.fit(read(data)._native, muscle._native, names, text))
+    return Fit(document, "\n".join(part for part in (muscle._native.own, text) if part))
+
+
+def plan(muscle: Muscle, protocol: str | os.PathLike[str], *, own: OwnEffects = None) -> Plan:
+    """What a test would show before it is made: detection limits, and effects that it could not tell apart (``bulge plan``).
+
+    ``protocol`` is a protocol file, or its text.
+    """
+    text, origin = _protocol(protocol)
+    return Plan(json.loads(_bulge.plan(muscle._native, text, origin, own_text(own))))
+
+
+def next_experiment(
+    data: DataLike,
+    muscle: Muscle,
+    with_: Iterable[str] | str = (),
+    *,
+    own: OwnEffects = None,
+    pressure: str | tuple[Quantity, Quantity] | None = None,
+    contraction: str | tuple[Quantity, Quantity] | None = None,
+    seed: int = 1,
+    progress: Progress = None,
+) -> NextExperiment:
+    """The experiment that best separates the effects that measurements leave open (``bulge next``), within ranges such as ``"1 bar..6 bar"``."""
+    limits = [
+        None if value is None else si_range(value, unit, name)
+        for value, unit, name in [(pressure, "Pa", "pressure"), (contraction, "1", "contraction")]
+    ]
+    with callback(progress, "next experiment") as told:
+        document = _bulge.next_experiment(
+            read(data)._native, muscle._native, _names(with_), own_text(own), limits[0], limits[1], seed, told
+        )
+    return NextExperiment(json.loads(document))
+
+
+def simulate(
+    muscle: Muscle,
+    protocol: str | os.PathLike[str],
+    with_: Mapping[str, Any] | Iterable[str] | str = (),
+    *,
+    own: OwnEffects = None,
+    seed: int = 1,
+) -> Simulation:
+    """Synthetic measurements with hidden effects, noise and rig errors (``bulge simulate``); the same seed gives the same bytes.
+
+    ``with_`` names effects, with numbers where they are not the usual ones: ``{"coulomb-friction": "14 N", "end-taper": None}`` or
+    ``["coulomb-friction=14 N", "end-taper"]``; several numbers of one effect as ``{"presliding-hysteresis": ("12 N", "1 %")}`` or by key.
+    """
+    text, origin = _protocol(protocol)
+    own_effects = own_text(own)
+    csv, stated, truth = _bulge.simulate(muscle._native, text, origin, _hidden(with_), own_effects, seed)
+    return Simulation(csv, stated, json.loads(truth), "\n".join(part for part in (muscle._native.own, own_effects) if part))
+
+
+def _hidden(with_: Mapping[str, Any] | Iterable[str] | str) -> list[str]:
+    if not isinstance(with_, Mapping):
+        return _names(with_)
+    items: list[str] = []
+    for name, value in with_.items():
+        if value is None:
+            items.append(name)
+        elif isinstance(value, Mapping):
+            items += [f"{name}.{key}={number}" for key, number in value.items()]
+        elif isinstance(value, (tuple, list)):
+            items.append(f"{name}={value[0]}" if value else name)
+            items += [str(number) for number in value[1:]]
+        else:
+            items.append(f"{name}={value}")
+    return items
+
+
+def _names(names: Iterable[str] | str) -> list[str]:
+    return [name.strip() for name in names.split(",") if name.strip()] if isinstance(names, str) else [str(name) for name in names]
+
+
+def _protocol(protocol: str | os.PathLike[str]) -> tuple[str, str]:
+    if isinstance(protocol, str) and "\n" in protocol:
+        return protocol, "protocol"
+    try:
+        return Path(protocol).read_text(encoding="utf-8"), os.fspath(protocol)
+    except OSError as error:
+        raise _bulge.InputError(f"{os.fspath(protocol)}: {error.strerror or error}") from None

@@ -1,0 +1,119 @@
+"""Measurements: read from files or data frames."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from typing import Any
+
+from bulge import _bulge
+from bulge.optional import need
+from bulge.units import FloatArray, Quantity, si
+
+
+class Data:
+    """A checked set of measurements; :func:`bulge.read` makes one. ``len(data)`` is the number of rows."""
+
+    __slots__ = ("_native", "_source")
+
+    def __init__(self, native: _bulge.Data, source: tuple[str, Any]) -> None:
+        #: Where it comes from: ("files", paths) or ("csv", (text, origin)).
+        self._native, self._source = native, source
+
+    @property
+    def is_path(self) -> bool:
+        """Whether the rows follow each other in time; else they are a static map."""
+        return self._native.is_path
+
+    @property
+    def n_sweeps(self) -> int:
+        """Number of uninterrupted runs."""
+        return self._native.n_sweeps
+
+    @property
+    def files(self) -> list[str]:
+        """Names of the files."""
+        return self._native.files
+
+    @property
+    def sha256(self) -> str:
+        """Fingerprint of the files."""
+        return self._native.sha256
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """Arrays by name, in SI: ``pressure_pa``, ``contraction`` or ``length_m``, ``force_n``, ``time_s``, ..., ``sweep``, ``specimen``."""
+        return self._native.columns()
+
+    def to_pandas(self) -> Any:
+        """The columns as a DataFrame."""
+        return need("pandas", "a data frame", "pandas").DataFrame(self.columns)
+
+    def quality(self, length: Quantity | None = None) -> list[str]:
+        """What is noteworthy about the data, in sentences; of a muscle of the length l0 [m], if that is given."""
+        return self._native.quality(None if length is None else si(length, "m", "length"))
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws force against motion, a colour for each sweep; returns the axes (matplotlib)."""
+        from bulge.plots import measured
+
+        return measured(self, ax)
+
+    def __len__(self) -> int:
+        return len(self._native)
+
+    def __repr__(self) -> str:
+        columns = self.columns
+        force: FloatArray = columns["force_n"]
+        pressure: FloatArray = columns["pressure_pa"]
+        kind = f"{self.n_sweeps} sweeps" if self.is_path else "a static map"
+        return (
+            f"<Data {', '.join(self.files)}: {len(self)} rows, {kind}, {pressure.min() / 1e5:.3g} to {pressure.max() / 1e5:.3g} bar, "
+            f"{force.min():.3g} to {force.max():.3g} N>"
+        )
+
+    def __reduce__(self) -> Any:
+        return (_data_of, self._source)
+
+
+def _data_of(kind: str, source: Any) -> Data:
+    if kind == "files":
+        return Data(_bulge.Data.read(source), (kind, source))
+    return Data(_bulge.Data.from_csv(*source), (kind, source))
+
+
+def read(source: Any, *more: Any) -> Data:
+    """Measurements from a CSV or Parquet file, several of them (one analysis), or a pandas DataFrame.
+
+    Columns are named with their unit: ``pressure [bar]``, ``contraction [%]`` or ``length [mm]``, ``force [N]``, ``time [s]`` and so on, as in a
+    file; a frame may also have the SI names of :attr:`Data.columns`. Raises :class:`bulge.InputError` with the line and the cure.
+    """
+    if isinstance(source, Data):
+        return source
+    if hasattr(source, "to_csv") and hasattr(source, "columns"):
+        if more:
+            raise _bulge.InputError("one data frame at a time: join them first, with a column `sweep` or `specimen`")
+        return _data_of("csv", (_text(source), "the data frame"))
+    paths: Iterable[Any] = [source, *more] if isinstance(source, (str, os.PathLike)) else [*source, *more]
+    names = [os.fspath(path) for path in paths]
+    if not names:
+        raise _bulge.InputError("no file is named: give the name of a CSV file")
+    return _data_of("files", names)
+
+
+#: SI names of :attr:`Data.columns` as headings of a file.
+_HEADINGS = {
+    "pressure_pa": "pressure [Pa]", "length_m": "length [m]", "force_n": "force [N]", "time_s": "time [s]", "temperature_k": "temperature [K]",
+    "diameter_m": "diameter [m]", "volume_m3": "volume [m^3]", "force_sd_n": "force_sd [N]",
+}  # fmt: skip
+
+
+def _text(frame: Any) -> str:
+    """A frame as a CSV file. A frame from :meth:`Data.to_pandas` comes back as it was."""
+    frame = frame.rename(columns=_HEADINGS)
+    text: str = frame.to_csv(index=False)
+    return text
+
+
+#: What may be given as measurements.
+DataLike = Any

@@ -1,0 +1,100 @@
+//! Measurements: read from files or from the text of a table, and as columns.
+
+use bulge_measurements::{self as measurements, Motion, QualityOptions};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::error::OrRaise;
+
+/// A checked set of measurements.
+#[pyclass(frozen, module = "bulge._bulge")]
+#[derive(Clone)]
+pub(crate) struct Data(pub(crate) Arc<measurements::Data>);
+
+#[pymethods]
+impl Data {
+    /// From files of CSV or Parquet.
+    #[staticmethod]
+    fn read(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<Self> {
+        Ok(Self(Arc::new(py.detach(|| measurements::Data::read(&paths)).or_raise()?)))
+    }
+
+    /// From the text of a CSV file.
+    #[staticmethod]
+    fn from_csv(py: Python<'_>, text: &str, origin: &str) -> PyResult<Self> {
+        Ok(Self(Arc::new(py.detach(|| measurements::Data::from_csv(text, origin)).or_raise()?)))
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether the rows follow each other; else they are a static map.
+    #[getter]
+    fn is_path(&self) -> bool {
+        self.0.is_path()
+    }
+
+    #[getter]
+    fn n_sweeps(&self) -> usize {
+        self.0.sweeps().len()
+    }
+
+    #[getter]
+    fn files(&self) -> Vec<String> {
+        self.0.files().iter().map(|file| file.name.clone()).collect()
+    }
+
+    #[getter]
+    fn sha256(&self) -> String {
+        self.0.sha256()
+    }
+
+    /// The columns in SI, by names that say the unit.
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let data = &self.0;
+        let columns = PyDict::new(py);
+        let number = |values: &[f64]| PyArray1::from_slice(py, values);
+        columns.set_item("pressure_pa", number(data.pressure()))?;
+        match data.motion() {
+            Motion::Contraction(values) => columns.set_item("contraction", number(values))?,
+            Motion::Length(values) => columns.set_item("length_m", number(values))?,
+        }
+        columns.set_item("force_n", number(data.force()))?;
+        for (name, values) in [
+            ("time_s", data.time()),
+            ("temperature_k", data.temperature()),
+            ("diameter_m", data.diameter()),
+            ("volume_m3", data.volume()),
+            ("force_sd_n", data.force_sd()),
+        ] {
+            if let Some(values) = values {
+                columns.set_item(name, number(values))?;
+            }
+        }
+        if let Some(values) = data.cycle() {
+            columns.set_item("cycle", PyArray1::from_slice(py, values))?;
+        }
+        let mut sweep = vec![0_i64; data.len()];
+        for (number, one) in (0..).zip(data.sweeps()) {
+            if let Some(rows) = sweep.get_mut(one.rows.clone()) {
+                rows.fill(number);
+            }
+        }
+        columns.set_item("sweep", PyArray1::from_vec(py, sweep))?;
+        let names = data.specimens();
+        let specimen: Vec<&str> =
+            data.specimen().iter().map(|i| names.get(*i as usize).map_or("", String::as_str)).collect();
+        columns.set_item("specimen", specimen)?;
+        Ok(columns)
+    }
+
+    /// What is noteworthy about the data, in sentences; of a muscle of length `l0`, if that is known.
+    fn quality(&self, l0: Option<f64>) -> Vec<String> {
+        let options = QualityOptions { l0_m: l0, ..QualityOptions::default() };
+        self.0.quality(&options).findings.into_iter().map(|finding| finding.says).collect()
+    }
+}

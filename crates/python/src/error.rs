@@ -1,0 +1,83 @@
+//! Errors of the crates as Python exceptions, with the same sentences.
+
+use bulge_effects::CatalogueError;
+use bulge_effects::user::EffectFileError;
+use bulge_fibre::FibreError;
+use bulge_inference::{HideError, InferenceError};
+use bulge_measurements::MeasurementError;
+use bulge_model::{ExtendedError, ModelError};
+use bulge_muscles::{Fault, FileError, MuscleError, PresetError};
+use bulge_report::{LearningError, PlotError};
+use bulge_sweep::{FamilyError, SweepError, TabulateError};
+use bulge_table::TableError;
+use bulge_vtk::VtkError;
+use pyo3::create_exception;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::fmt::Display;
+
+create_exception!(
+    bulge,
+    BulgeError,
+    PyValueError,
+    "What Bulge can't do, in a sentence: what, where, what to write instead."
+);
+create_exception!(bulge, InputError, BulgeError, "The input is wrong (the command line's exit status 1).");
+create_exception!(
+    bulge,
+    NoSolutionError,
+    BulgeError,
+    "No solution exists (exit status 3); the sentence says where the limit lies."
+);
+create_exception!(bulge, NotConvergedError, BulgeError, "The search did not converge (exit status 4).");
+
+/// The exception of a fault, with its sentence.
+pub(crate) fn of_fault(fault: Fault, says: String) -> PyErr {
+    match fault {
+        Fault::Input => InputError::new_err(says),
+        Fault::NoSolution => NoSolutionError::new_err(says),
+        Fault::NotConverged => NotConvergedError::new_err(says),
+    }
+}
+
+/// Wrong input.
+pub(crate) fn input(says: impl Into<String>) -> PyErr {
+    InputError::new_err(says.into())
+}
+
+/// What becomes an exception.
+pub(crate) trait Raised: Display {
+    /// Whose fault it is.
+    fn fault(&self) -> Fault {
+        Fault::Input
+    }
+}
+
+macro_rules! raised {
+    ($($wrong:ty),*; $($own:ty),*) => {
+        $(impl Raised for $wrong {})*
+        $(impl Raised for $own {
+            fn fault(&self) -> Fault {
+                <$own>::fault(self)
+            }
+        })*
+    };
+}
+
+raised!(
+    FileError, PresetError, MuscleError, MeasurementError, CatalogueError, EffectFileError, SweepError, FamilyError, TableError,
+    TabulateError, VtkError, PlotError, serde_json::Error, std::io::Error;
+    FibreError, ModelError, ExtendedError, InferenceError, HideError, LearningError
+);
+
+/// `?` for errors of the crates.
+pub(crate) trait OrRaise<T> {
+    /// The value, or the exception.
+    fn or_raise(self) -> PyResult<T>;
+}
+
+impl<T, E: Raised> OrRaise<T> for Result<T, E> {
+    fn or_raise(self) -> PyResult<T> {
+        self.map_err(|error| of_fault(error.fault(), error.to_string()))
+    }
+}

@@ -1,0 +1,259 @@
+//! Model against measurement: the functions of `bulge-inference` with their documents, and reports.
+
+use bulge_effects::{Catalogue, Effect, describe, known};
+use bulge_inference as inference;
+use bulge_inference::{DiagnoseOptions, NextLimits, Options, Progress, Protocol};
+use bulge_report::diagnosis::NextStep;
+use bulge_report::{Learnt, comparison, diagnosis};
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+use crate::data::Data;
+use crate::error::{OrRaise, input};
+use crate::muscle::{Muscle, catalogue, own_effects};
+use crate::task::{Watch, beside};
+
+/// Name, title and drawing of each plot of a report.
+type Plots = Vec<(String, String, String)>;
+
+/// A comparison, with its reports.
+#[pyclass(frozen, module = "bulge._bulge")]
+pub(crate) struct Comparison(inference::Comparison);
+
+#[pymethods]
+impl Comparison {
+    /// The JSON document.
+    fn document(&self) -> PyResult<String> {
+        serde_json::to_string(&self.0).or_raise()
+    }
+
+    /// The report, a page that stands for itself.
+    fn html(&self, py: Python<'_>) -> PyResult<String> {
+        py.detach(|| comparison::html(&self.0)).or_raise()
+    }
+
+    /// Its plots as SVG: name, title, drawing.
+    fn plots(&self, py: Python<'_>) -> PyResult<Plots> {
+        Ok(drawings(py.detach(|| comparison::plots(&self.0)).or_raise()?))
+    }
+}
+
+/// A diagnosis, with its reports.
+#[pyclass(frozen, module = "bulge._bulge")]
+pub(crate) struct Diagnosis(inference::Diagnosis);
+
+#[pymethods]
+impl Diagnosis {
+    /// The JSON document.
+    fn document(&self) -> PyResult<String> {
+        serde_json::to_string(&self.0).or_raise()
+    }
+
+    /// The verdict in sentences.
+    fn headlines(&self) -> Vec<String> {
+        diagnosis::headlines(&self.0)
+    }
+
+    /// The report, a page that stands for itself.
+    fn html(&self, py: Python<'_>) -> PyResult<String> {
+        py.detach(|| diagnosis::html(&self.0)).or_raise()
+    }
+
+    /// Its plots as SVG: name, title, drawing.
+    fn plots(&self, py: Python<'_>) -> PyResult<Plots> {
+        Ok(drawings(py.detach(|| diagnosis::plots(&self.0)).or_raise()?))
+    }
+}
+
+fn drawings(plots: Vec<comparison::Plot>) -> Plots {
+    plots.into_iter().map(|plot| (plot.name.to_owned(), plot.title, plot.svg)).collect()
+}
+
+/// The effects of the muscle and the user's own, and those that are named.
+fn options(muscle: &Muscle, own: &str, with: &[String]) -> PyResult<Options> {
+    let catalogue = all(muscle, own)?;
+    let effects = with
+        .iter()
+        .map(|name| Ok(Arc::clone(catalogue.find(name.trim()).or_raise()?)))
+        .collect::<PyResult<Vec<Arc<dyn Effect>>>>()?;
+    let known = known(&muscle.muscle, &catalogue).or_raise()?;
+    Ok(Options { known, ..Options::new(catalogue, effects) })
+}
+
+/// The built-in effects, the muscle's own and further ones; an effect that both state is one.
+fn all(muscle: &Muscle, own: &str) -> PyResult<Catalogue> {
+    let stated = own_effects(&muscle.own)?;
+    let mut catalogue = catalogue(&muscle.own)?;
+    for effect in own_effects(own)?.into_iter().filter(|effect| !stated.contains(effect)) {
+        catalogue = catalogue.with(effect).or_raise()?;
+    }
+    Ok(catalogue)
+}
+
+fn telling(watch: &Watch) -> Progress {
+    let watch = watch.clone();
+    Progress::to(move |share, what| watch.at(share, what))
+}
+
+/// Compares; see `bulge.compare`.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "called by the Python part alone")]
+pub(crate) fn compare(
+    py: Python<'_>,
+    data: &Data,
+    muscle: &Muscle,
+    with_: Vec<String>,
+    own: &str,
+    law: Option<&str>,
+    fit_law: bool,
+    rivals: bool,
+) -> PyResult<Comparison> {
+    let mut options = options(muscle, own, &with_)?;
+    options.rivals = rivals;
+    if let Some(name) = law {
+        options =
+            options.with_law(name, &muscle.muscle, fit_law).map_err(|what| input(format!("law: {what}")))?;
+    }
+    let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
+    let found = beside(py, None, move |_| inference::compare(&data, &muscle, &options))?;
+    Ok(Comparison(found.or_raise()?))
+}
+
+/// The options of a diagnosis.
+struct Asked {
+    base: Options,
+    tolerance_n: Option<f64>,
+    seed: u64,
+    limits: NextLimits,
+}
+
+/// Diagnoses beside the interpreter.
+fn diagnosed(
+    py: Python<'_>,
+    data: &Data,
+    muscle: &Muscle,
+    asked: Asked,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<inference::Diagnosis> {
+    let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
+    let found = beside(py, progress, move |watch| {
+        let Asked { base, tolerance_n, seed, limits } = asked;
+        let progress = telling(watch);
+        let options = DiagnoseOptions { tolerance_n, seed, limits, progress, ..DiagnoseOptions::new(base) };
+        inference::diagnose(&data, &muscle, &options)
+    })?;
+    found.or_raise()
+}
+
+/// Diagnoses; see `bulge.diagnose`.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "called by the Python part alone")]
+pub(crate) fn diagnose(
+    py: Python<'_>,
+    data: &Data,
+    muscle: &Muscle,
+    with_: Vec<String>,
+    own: &str,
+    tolerance: Option<f64>,
+    seed: u64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Diagnosis> {
+    if tolerance.is_some_and(|tolerance| tolerance.is_nan() || tolerance < 0.0) {
+        return Err(input("tolerance: give the RMS misfit that doesn't matter, such as \"5 N\""));
+    }
+    let base = options(muscle, own, &with_)?;
+    let asked = Asked { base, tolerance_n: tolerance, seed, limits: NextLimits::default() };
+    Ok(Diagnosis(diagnosed(py, data, muscle, asked, progress)?))
+}
+
+/// The document of the next experiment; see `bulge.next_experiment`.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "called by the Python part alone")]
+pub(crate) fn next_experiment(
+    py: Python<'_>,
+    data: &Data,
+    muscle: &Muscle,
+    with_: Vec<String>,
+    own: &str,
+    pressure: Option<[f64; 2]>,
+    contraction: Option<[f64; 2]>,
+    seed: u64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<String> {
+    let limits = NextLimits { pressure_pa: pressure, contraction };
+    limits.check().map_err(|(name, what)| input(format!("{name}: {what}")))?;
+    let base = options(muscle, own, &with_)?;
+    let catalogue = base.catalogue.clone();
+    let asked = Asked { base, tolerance_n: None, seed, limits };
+    let found = diagnosed(py, data, muscle, asked, progress)?;
+    serde_json::to_string(&NextStep::after(&found, &catalogue, limits).document()).or_raise()
+}
+
+/// The document of a fit; see `bulge.fit`.
+#[pyfunction]
+pub(crate) fn fit(
+    py: Python<'_>,
+    data: &Data,
+    muscle: &Muscle,
+    with_: Vec<String>,
+    own: &str,
+) -> PyResult<String> {
+    let options = options(muscle, own, &with_)?;
+    let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
+    let fitting = beside(py, None, move |_| inference::fit_effects(&data, &muscle, &options))?;
+    let learnt = Learnt::of(fitting.or_raise()?).or_raise()?;
+    serde_json::to_string(&learnt.document()).or_raise()
+}
+
+/// The document of a plan; see `bulge.plan`.
+#[pyfunction]
+pub(crate) fn plan(
+    py: Python<'_>,
+    muscle: &Muscle,
+    protocol: &str,
+    origin: &str,
+    own: &str,
+) -> PyResult<String> {
+    let protocol = Protocol::from_toml(protocol, origin).or_raise()?;
+    let catalogue = all(muscle, own)?;
+    let known = known(&muscle.muscle, &catalogue).or_raise()?;
+    let muscle = muscle.muscle.clone();
+    let found = beside(py, None, move |_| inference::plan(&muscle, &known, &catalogue, &protocol))?;
+    serde_json::to_string(&found.or_raise()?).or_raise()
+}
+
+/// Simulated measurements: the text of the data, the file of the muscle as stated, and the truth as a JSON document.
+#[pyfunction]
+pub(crate) fn simulate(
+    py: Python<'_>,
+    muscle: &Muscle,
+    protocol: &str,
+    origin: &str,
+    with_: Vec<String>,
+    own: &str,
+    seed: u64,
+) -> PyResult<(String, String, String)> {
+    let protocol = Protocol::from_toml(protocol, origin).or_raise()?;
+    let catalogue = all(muscle, own)?;
+    let muscle = muscle.muscle.clone();
+    let found =
+        beside(py, None, move |_| inference::simulate_with(&muscle, &catalogue, &protocol, &with_, seed))?;
+    let found = found.or_raise()?;
+    let truth = serde_json::to_string(&found.truth).or_raise()?;
+    Ok((found.csv, bulge_muscles::to_toml(&found.muscle), truth))
+}
+
+/// Names of the effects.
+#[pyfunction]
+pub(crate) fn effect_names(own: &str) -> PyResult<Vec<String>> {
+    Ok(catalogue(own)?.iter().map(|effect| effect.card().name.to_owned()).collect())
+}
+
+/// The card of an effect: the page to read, and the JSON document.
+#[pyfunction]
+pub(crate) fn effects(name: &str, own: &str) -> PyResult<(String, String)> {
+    let catalogue = catalogue(own)?;
+    let effect = catalogue.find(name).or_raise()?;
+    let document = serde_json::to_string(&bulge_effects::CardDocument::of(effect.as_ref())).or_raise()?;
+    Ok((describe(effect.as_ref()), document))
+}

@@ -1,0 +1,93 @@
+//! Certified tables: looked up at arrays of points.
+
+use bulge_sweep::TableDescription;
+use bulge_table as tables;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2, ndarray::Array2};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use rayon::prelude::*;
+
+use crate::error::{OrRaise, input};
+
+/// Points of one task.
+const BLOCK: usize = 4096;
+
+/// A table.
+#[pyclass(frozen, module = "bulge._bulge")]
+pub(crate) struct Table(Vec<u8>);
+
+/// Values (points, outputs) and gradients (points, outputs x axes), with NaN outside of the domain.
+type Looked<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
+
+#[pymethods]
+impl Table {
+    /// From the bytes of a table file.
+    #[staticmethod]
+    fn from_bytes(bytes: &[u8], origin: &str) -> PyResult<Self> {
+        tables::Table::from_bytes(bytes).map_err(|error| input(format!("{origin}: {error}")))?;
+        Ok(Self(bytes.to_vec()))
+    }
+
+    /// Its bytes.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.0)
+    }
+
+    /// The JSON document of what it says of itself.
+    fn document(&self) -> PyResult<String> {
+        let table = tables::Table::from_bytes(&self.0).or_raise()?;
+        serde_json::to_string(&TableDescription::of(&table).or_raise()?).or_raise()
+    }
+
+    /// Values and gradients at points (points, axes).
+    fn sample<'py>(&self, py: Python<'py>, points: PyReadonlyArray2<'py, f64>) -> PyResult<Looked<'py>> {
+        let table = tables::Table::from_bytes(&self.0).or_raise()?;
+        let (axes, outputs) = (table.axes(), table.outputs());
+        let points = points.as_array();
+        let count = points.nrows();
+        if points.ncols() != axes {
+            return Err(input(format!(
+                "{} numbers per point, but the table has {axes} axes",
+                points.ncols()
+            )));
+        }
+        let flat: Vec<f64> = points.iter().copied().collect();
+        let (mut values, mut gradients) =
+            (vec![f64::NAN; count * outputs], vec![f64::NAN; count * outputs * axes]);
+        py.detach(|| {
+            let blocks = flat
+                .par_chunks(BLOCK * axes)
+                .zip(values.par_chunks_mut(BLOCK * outputs))
+                .zip(gradients.par_chunks_mut(BLOCK * outputs * axes));
+            blocks.for_each(|((points, values), gradients)| {
+                let rows = points
+                    .chunks_exact(axes)
+                    .zip(values.chunks_exact_mut(outputs))
+                    .zip(gradients.chunks_exact_mut(outputs * axes));
+                for ((point, values), gradients) in rows {
+                    if table.sample(point, values, gradients).is_none() {
+                        values.fill(f64::NAN);
+                        gradients.fill(f64::NAN);
+                    }
+                }
+            });
+        });
+        let array = |values: Vec<f64>, columns: usize| {
+            let array = Array2::from_shape_vec((count, columns), values);
+            array.map(|array| PyArray2::from_owned_array(py, array)).map_err(|error| input(error.to_string()))
+        };
+        Ok((array(values, outputs)?, array(gradients, outputs * axes)?))
+    }
+
+    /// The end of the first axis at points of the others (points, axes); NaN outside of them.
+    fn upper_end<'py>(
+        &self,
+        py: Python<'py>,
+        points: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let table = tables::Table::from_bytes(&self.0).or_raise()?;
+        let of =
+            |point: numpy::ndarray::ArrayView1<'_, f64>| table.upper_end(&point.to_vec()).unwrap_or(f64::NAN);
+        Ok(PyArray1::from_iter(py, points.as_array().rows().into_iter().map(of)))
+    }
+}
