@@ -184,9 +184,10 @@ pub(crate) fn parameters(out: &mut String, fit: &Fit) {
     for p in &fit.parameters {
         let mut notes = Vec::new();
         if p.nuisance {
-            notes.push("nuisance, within its stated width".to_owned());
+            let where_it_is = if p.plausible { "within" } else { "BEYOND" };
+            notes.push(format!("nuisance, {where_it_is} its stated width"));
         }
-        if !p.plausible {
+        if !p.plausible && !p.nuisance {
             notes.push("IMPLAUSIBLE".to_owned());
         }
         if let Some(side) = p.at_bound {

@@ -6,19 +6,42 @@ use std::sync::Arc;
 /// Called with the share that is done, 0 to 1, and what is going on.
 type Told = Arc<dyn Fn(f64, &str) + Send + Sync>;
 
+/// Called often, from several threads.
+type Beat = Arc<dyn Fn() + Send + Sync>;
+
 /// Who is told how far it is; nobody by default.
 #[derive(Clone, Default)]
-pub struct Progress(Option<Told>);
+pub struct Progress {
+    told: Option<Told>,
+    beat: Option<Beat>,
+}
+
+/// Nobody.
+pub(crate) static NOBODY: Progress = Progress { told: None, beat: None };
 
 impl Progress {
     /// Tells a function the share that is done, 0 to 1, and what is going on.
     pub fn to(told: impl Fn(f64, &str) + Send + Sync + 'static) -> Self {
-        Self(Some(Arc::new(told)))
+        Self { told: Some(Arc::new(told)), beat: None }
+    }
+
+    /// Also calls a function before each of the many fits that the work consists of, from several threads: a place from which a caller who has
+    /// given up may unwind it.
+    #[must_use]
+    pub fn beating(self, beat: impl Fn() + Send + Sync + 'static) -> Self {
+        Self { beat: Some(Arc::new(beat)), ..self }
+    }
+
+    /// One more fit begins.
+    pub(crate) fn beat(&self) {
+        if let Some(beat) = &self.beat {
+            beat();
+        }
     }
 
     /// Tells.
     pub(crate) fn at(&self, share: f64, what: &str) {
-        if let Some(told) = &self.0 {
+        if let Some(told) = &self.told {
             told(share, what);
         }
     }
@@ -26,6 +49,6 @@ impl Progress {
 
 impl fmt::Debug for Progress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if self.0.is_some() { "Progress(..)" } else { "Progress(nobody)" })
+        f.write_str(if self.told.is_some() { "Progress(..)" } else { "Progress(nobody)" })
     }
 }

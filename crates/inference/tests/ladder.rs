@@ -131,3 +131,20 @@ fn the_floor_is_the_noise_and_not_below_the_resolution() {
     let coarse = floor(&loops(|row, _| 80.0 * (exact[row] / 80.0).round() - exact[row]));
     assert!(coarse >= 80.0 / 12.0_f64.sqrt() - 1e-6, "{coarse}");
 }
+
+/// Where the model lacks something, the rig errors of the data sheet may not make up for it in silence.
+#[test]
+fn a_rig_error_beyond_its_data_sheet_is_said() {
+    let sheet = "[instruments]\nforce = { noise = \"0.1 N\", zero = \"2 N\" }";
+    let small = loops(|row, _| 1.5 + 0.05 * alternating(row));
+    let large = loops(|row, _| 150.0 + 0.05 * alternating(row));
+    let found = |data: &Data| climbed(data, &muscle(sheet), &[]).ladder[0].fit.clone().unwrap();
+    let [within, beyond] = [found(&small), found(&large)];
+    assert!(within.parameters[0].plausible && within.warnings.is_empty(), "{:?}", within.warnings);
+    assert!(!beyond.parameters[0].plausible && (beyond.parameters[0].value - 150.0).abs() < 1.0);
+    assert!(
+        beyond.warnings[0].contains("far beyond its data sheet (-8.00 to 8.00 N)"),
+        "{:?}",
+        beyond.warnings
+    );
+}

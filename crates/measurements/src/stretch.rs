@@ -181,6 +181,43 @@ fn rests(s: &[f64], time: Option<&[f64]>, legs: &[Leg], band: DeadBand) -> Vec<R
         }
         first = end + 1;
     }
+    merged(found, dwells(s, &clock))
+}
+
+/// Rests by equal readings: rows that stay on one reading for much longer than on the readings before and after it.
+///
+/// A steady motion stays equally long on every level of a sensor, a sine 5 times as long on that of its turning point as beside it. Of a motion along
+/// set points, which may look like a coarse sensor, nothing else tells the rests.
+fn dwells(s: &[f64], clock: &dyn Fn(usize) -> f64) -> Vec<Range<usize>> {
+    const TIMES: f64 = 10.0;
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for part in s.chunk_by(|a, b| a.total_cmp(b).is_eq()) {
+        let start = runs.last().map_or(0, |run| run.end);
+        runs.push(start..start + part.len());
+    }
+    // To the reading that follows, if there is one.
+    let dwell = |run: &Range<usize>| clock(run.end.min(s.len() - 1)) - clock(run.start);
+    let beside = |i: usize| {
+        let before = i.checked_sub(1).map(|i| &runs[i]);
+        let longest = [before, runs.get(i + 1)].into_iter().flatten().map(&dwell).fold(f64::NAN, f64::max);
+        // The last reading is followed by none.
+        if longest > 0.0 { longest } else { f64::INFINITY }
+    };
+    let is_rest = |(i, run): &(usize, &Range<usize>)| run.len() > 2 && dwell(run) > TIMES * beside(*i);
+    runs.iter().enumerate().filter(is_rest).map(|(_, run)| run.clone()).collect()
+}
+
+/// Two lists of ranges as one, in order; what overlaps is one range.
+fn merged(mut one: Vec<Range<usize>>, other: Vec<Range<usize>>) -> Vec<Range<usize>> {
+    one.extend(other);
+    one.sort_by_key(|range| range.start);
+    let mut found: Vec<Range<usize>> = Vec::new();
+    for range in one {
+        match found.last_mut() {
+            Some(before) if range.start < before.end => before.end = before.end.max(range.end),
+            _ => found.push(range),
+        }
+    }
     found
 }
 
@@ -325,6 +362,23 @@ mod tests {
         let found = directions(&coarse);
         assert_eq!(found.iter().map(|(_, d)| *d).collect::<Vec<_>>(), [1, -1]);
         assert!(found[0].0.abs_diff(2001) <= 25, "{found:?}");
+    }
+
+    /// Steps of one ramp row each look like the levels of a coarse sensor, and hide the holds between them from the band.
+    #[test]
+    fn holds_between_set_points_on_a_grid_are_rests() {
+        let mut corners = vec![(0.0, 0)];
+        for level in [1, 2, 3, 2, 1, 0] {
+            let last = corners[corners.len() - 1].0;
+            corners.extend([(last, 60), (0.03 * f64::from(level), 6)]);
+        }
+        let s: Vec<f64> = polyline(&corners).iter().map(|v| (v / 0.005).round() * 0.005).collect();
+        let holds: Vec<i8> = directions(&s).iter().map(|(_, d)| *d).collect();
+        assert_eq!(holds, [0, 1, 0, 1, 0, 1, 0, -1, 0, -1, 0, -1]);
+        // A slow sine on the same grid stays longest at its turning points, and never rests.
+        let sine = (0..=4000).map(|i| 0.05 * (1.0 - (f64::from(i) * std::f64::consts::TAU / 2000.0).cos()));
+        let coarse: Vec<f64> = sine.map(|v: f64| (v / 0.005).round() * 0.005).collect();
+        assert!(directions(&coarse).iter().all(|(_, d)| *d != 0), "{:?}", directions(&coarse));
     }
 
     #[test]

@@ -91,8 +91,8 @@ fn all(muscle: &Muscle, own: &str) -> PyResult<Catalogue> {
 }
 
 fn telling(watch: &Watch) -> Progress {
-    let watch = watch.clone();
-    Progress::to(move |share, what| watch.at(share, what))
+    let (told, beat) = (watch.clone(), watch.clone());
+    Progress::to(move |share, what| told.at(share, what)).beating(move || beat.look())
 }
 
 /// Compares; see `bulge.compare`.

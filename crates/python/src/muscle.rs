@@ -102,7 +102,12 @@ impl Muscle {
     /// Names of the effects that the file states.
     #[getter]
     fn effects(&self) -> Vec<String> {
-        self.muscle.learnt().iter().map(|learnt| learnt.name().to_owned()).collect()
+        // Those that shape the muscle are numbers of it, and tables of effects in its file alone.
+        let text = self.to_toml();
+        let named = |line: &str| {
+            line.strip_prefix("[effects.").and_then(|rest| rest.strip_suffix(']')).map(str::to_owned)
+        };
+        text.lines().filter_map(named).collect()
     }
 
     /// A number of the muscle in SI, if it has it.

@@ -137,7 +137,7 @@ fn provenance(fitting: &Fitting) -> String {
         let _ = writeln!(text, "# {line}");
     }
     for p in &fitting.fit.parameters {
-        let flag = if p.plausible { "" } else { "; IMPLAUSIBLE: a wrong cure" };
+        let flag = if p.plausible || p.nuisance { "" } else { "; IMPLAUSIBLE: a wrong cure" };
         let [value, low, high] = shown(p.value, p.low, p.high);
         let unit = if p.unit.is_empty() || p.unit == "1" { String::new() } else { format!(" {}", p.unit) };
         let _ = writeln!(text, "# {} {} = {value}{unit} (95 %: {low} to {high}){flag}", p.effect, p.name);

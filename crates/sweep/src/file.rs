@@ -65,7 +65,7 @@ tolerance = 1e-6                # largest relative error of the values
 gradient = 1e-4                 # and of their gradients
 max_size = \"64 KiB\"
 form = \"fastest\"                # or \"smallest\", \"splines\", \"chebyshev\"
-checks = 131072                 # points off the grid that certify it
+checks = 131072                 # points off the grid that certify it, 100000 or more
 ";
 
 /// Keys of the file, with an example of each.

@@ -7,8 +7,8 @@ use crate::family::{Family, Member};
 use crate::family_error::FamilyError;
 use crate::output::Output;
 
-/// Points of one task: long enough (milliseconds) to hide what a task costs, short enough to share and to stop.
-const BLOCK: usize = 4096;
+/// Points of one task: long enough (half a millisecond of the closed form) to hide what a task costs, short enough to share and to stop.
+const BLOCK: usize = 512;
 
 /// Values of an axis at all points.
 #[derive(Debug, Clone, Copy)]

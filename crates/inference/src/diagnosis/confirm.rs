@@ -99,6 +99,7 @@ impl Given<'_> {
         let searched: Vec<Result<(Minimum, Vec<f64>), ModelError>> = starts
             .par_iter()
             .map(|start| {
+                self.progress.beat();
                 let problem = FitProblem::whitened(
                     &prepared.model,
                     self.record,
@@ -293,6 +294,7 @@ mod tests {
     use super::*;
     use crate::noise::law::{NoiseLaw, NoiseSource};
     use crate::noise::whitening::Whitening;
+    use crate::progress::NOBODY;
     use bulge_effects::{Catalogue, Moment};
     use bulge_model::{Record, Wanted};
     use bulge_muscles::preset;
@@ -327,6 +329,7 @@ mod tests {
             seed: 1,
             tolerance_n: None,
             only: None,
+            progress: &NOBODY,
         };
         let offset = catalogue.find("force-offset").unwrap();
         let without = given.confirm(&base, &[], None, &[]).unwrap();

@@ -114,6 +114,7 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
         seed: options.seed,
         tolerance_n: options.tolerance_n,
         only: None,
+        progress,
     };
     let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
     progress.at(0.25, "the catalogue");

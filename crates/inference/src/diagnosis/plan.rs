@@ -21,6 +21,7 @@ use crate::fit::nuisance::with_nuisances;
 use crate::fit::weights::Noise;
 use crate::noise::law::{CorrelationTime, NoiseLaw, NoiseSource};
 use crate::noise::whitening::Whitening;
+use crate::progress::NOBODY;
 use crate::protocol::bench::Protocol;
 use bulge_model::Wanted;
 
@@ -191,6 +192,7 @@ impl Planned {
             row_n: self.law.white_n,
             tolerance_n: None,
             only: None,
+            progress: &NOBODY,
         }
     }
 }

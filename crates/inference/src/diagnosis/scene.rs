@@ -13,6 +13,7 @@ use crate::dot::dot;
 use crate::fit::nuisance::Prepared;
 use crate::noise::law::NoiseLaw;
 use crate::noise::whitening::Whitening;
+use crate::progress::Progress;
 
 /// A smooth function adds nothing if less than this part of it is new.
 const NEW: f64 = 1e-3;
@@ -35,6 +36,8 @@ pub(crate) struct Given<'a> {
     pub(crate) tolerance_n: Option<f64>,
     /// Looks for these effects only.
     pub(crate) only: Option<&'a [String]>,
+    /// Who hears of the work.
+    pub(crate) progress: &'a Progress,
 }
 
 /// A smooth function outside what the model's numbers can do.

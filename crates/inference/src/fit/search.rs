@@ -19,6 +19,8 @@ use bulge_muscles::units::significant;
 const FEW_ROWS: usize = 400;
 /// Starting points.
 const STARTS: usize = 8;
+/// Standard deviations of a data sheet within which a rig error is its noise.
+const SHEET: f64 = 4.0;
 /// Part of the plausible box at either end in which no start lies.
 const EDGE: f64 = 0.1;
 /// Minima of the thinned record that are followed further.
@@ -294,7 +296,8 @@ fn report(
             Side::Lower => "lower",
             Side::Upper => "upper",
         });
-        let flagged = fitted.at_bound.is_some() || !fitted.plausible || !fitted.determined;
+        let implausible = !fitted.plausible && !fitted.nuisance;
+        let flagged = fitted.at_bound.is_some() || implausible || !fitted.determined;
         let found = interval::of(problem, minimum, place, &scale, flagged);
         fitted.interval = found.method;
         let factor = model.parameters()[index].factor;
@@ -308,7 +311,10 @@ fn report(
 fn fitted(prepared: &Prepared, index: usize, value: f64) -> Fitted {
     let p = &prepared.model.parameters()[index];
     let tiny = 1e-9 * (p.high - p.low);
-    let plausible = value >= p.plausible.0 - tiny && value <= p.plausible.1 + tiny;
+    // What is fitted along as noise is plausible as far as its data sheet goes.
+    let sheet = prepared.priors[index].filter(|_| prepared.nuisance[index]);
+    let (low, high) = sheet.map_or(p.plausible, |(mean, sd)| (mean - SHEET * sd, mean + SHEET * sd));
+    let plausible = value >= low - tiny && value <= high + tiny;
     let effect = prepared.model.effects().iter().find(|c| c.effect.card().name == p.effect);
     let cards = effect.map(|c| c.effect.parameters()).unwrap_or_default();
     let reciprocal = cards.iter().find(|card| card.name == p.name).and_then(|card| card.reciprocal);
@@ -325,8 +331,8 @@ fn fitted(prepared: &Prepared, index: usize, value: f64) -> Fitted {
         unit: p.unit.clone(),
         interval: "covariance",
         at_bound: None,
-        plausible: plausible || prepared.nuisance[index],
-        plausible_range: [p.shown(p.plausible.0), p.shown(p.plausible.1)],
+        plausible,
+        plausible_range: [p.shown(low), p.shown(high)],
         determined: true,
         nuisance: prepared.nuisance[index],
         also,
@@ -345,7 +351,15 @@ fn warnings(fit: &Fit) -> Vec<String> {
     }
     for p in &fit.parameters {
         let value = format!("{} {}", significant(p.value, 3), p.unit);
-        if !p.plausible {
+        if !p.plausible && p.nuisance {
+            warnings.push(format!(
+                "{} is fitted as {value}, far beyond its data sheet ({} to {} {}): it makes up for something that the model lacks",
+                label(p),
+                significant(p.plausible_range[0], 3),
+                significant(p.plausible_range[1], 3),
+                p.unit
+            ));
+        } else if !p.plausible {
             warnings.push(format!(
                 "implausible: {} = {value}, outside {} to {} {}: a wrong cure, even if the error falls",
                 label(p),

@@ -32,10 +32,10 @@ from bulge.progress import Progress, callback
 from bulge.results import Result
 from bulge.sweeps import Sweep, as_sweep, write_table
 
-#: Seconds that a task should take: what a scheduler costs, some milliseconds per task, is then less than a hundredth.
-TASK_SECONDS = 1.0
+#: Seconds that a task should take: what a scheduler costs, some milliseconds per task, is then about a hundredth.
+TASK_SECONDS = 0.5
 #: Tasks per thread of the cluster, at least, so that the last ones end together.
-LEAST_ROUNDS = 8
+LEAST_ROUNDS = 16
 #: How often a range is handed out again when the workers that it ran on have died.
 MOST_DEATHS = 20
 #: Tasks in flight per thread of the cluster: enough that no worker waits, few enough that a scheduler holds 10^9 points easily.
@@ -57,7 +57,7 @@ def sweep(
 
     ``spec`` is a sweep file, its text or a :class:`bulge.Sweep`; ``folder`` is one that all workers share, or a URL of an fsspec store
     (``"s3://bucket/run"``, with ``storage_options``). ``client`` is a ``dask.distributed.Client`` [default: the current one]. ``chunks_per_task``
-    is chosen so that a task takes about a second. ``resume`` goes on with what is there. A worker that dies costs the chunks in flight; a range
+    is chosen so that a task takes about half a second. ``resume`` goes on with what is there. A worker that dies costs the chunks in flight; a range
     whose workers die again and again is named and given up.
 
     Returns the document: points, infeasible, chunks, computed, is_complete, seconds, tasks, chunks_per_task; and the table, if the sweep wishes one.
@@ -151,7 +151,7 @@ def diagnose_all(cases: Iterable[Mapping[str, Any]], client: Any = None, *, prog
     threads = max(1, sum(client.nthreads().values()))
     found: dict[int, Diagnosis] = {}
     with callback(progress, "diagnose") as told:
-        for place, answer in _run(client, _Order(orders), range(len(orders)), "bulge-diagnose", threads):
+        for (place, _), answer in _run(client, _ordered, enumerate(orders), "bulge-diagnose", threads):
             found[place] = answer
             if told is not None:
                 told(len(found) / len(orders), "diagnoses")
@@ -173,15 +173,10 @@ class _Case:
         return {"document": found.to_json() + "\n"}
 
 
-class _Order:
+def _ordered(order: tuple[int, dict[str, Any]]) -> Diagnosis:
     """One diagnosis of a list, as a task."""
-
-    def __init__(self, orders: list[dict[str, Any]]) -> None:
-        self.orders = orders
-
-    def __call__(self, place: int) -> Diagnosis:
-        _one_thread()
-        return diagnose(**self.orders[place])
+    _one_thread()
+    return diagnose(**order[1])
 
 
 def _one_thread() -> None:
@@ -355,49 +350,41 @@ def _run(client: Any, task: Callable[[Any], Any], orders: Iterable[Any], name: s
     """Orders and their answers, as they come. At most IN_FLIGHT tasks per thread are with the scheduler; those whose workers die are handed out
     again, each MOST_DEATHS times."""
     distributed = need("distributed", "a distributed run", "distributed")
-    killed = distributed.KilledWorker
     waiting = iter(orders)
-    deaths: dict[Any, int] = {}
-    running: dict[Any, Any] = {}
-    # The task may be large (a muscle's file, a table of orders): it travels once to each worker.
-    shared = client.scatter(task, broadcast=False, hash=False)
+    #: Orders with the scheduler, each with the number of times that it was given back because workers died.
+    running: dict[Any, tuple[Any, int]] = {}
     stamp = f"{name}-{time.time_ns():x}"
     number = 0
 
-    def submit(order: Any) -> Any:
+    def submit(order: Any, deaths: int = 0) -> Any:
         nonlocal number
         number += 1
-        future = client.submit(_call, shared, order, key=f"{stamp}-{number}", pure=False)
-        running[future] = order
+        future = client.submit(_call, task, order, key=f"{stamp}-{number}", pure=False)
+        running[future] = (order, deaths)
         return future
 
     first = [submit(order) for _, order in zip(range(IN_FLIGHT * threads), waiting)]
     completed = distributed.as_completed(first, raise_errors=False)
     try:
         for future in completed:
-            order = running.pop(future)
-            if future.status == "error":
-                error = future.exception()
-                if isinstance(error, killed) and deaths.get(order, 0) < MOST_DEATHS:
-                    deaths[order] = deaths.get(order, 0) + 1
-                    completed.add(submit(order))
-                    continue
-                if isinstance(error, killed):
-                    raise _bulge.BulgeError(
-                        f"{order} was given up: the workers that it ran on died {MOST_DEATHS + 1} times; look at their logs, and give them more memory"
-                    )
-                raise error
-            if future.status == "cancelled":
-                # Its data went with a worker that held them; nothing was wrong with it.
-                shared = client.scatter(task, broadcast=False, hash=False)
-                completed.add(submit(order))
+            order, deaths = running.pop(future)
+            if future.status == "finished":
+                answer = future.result()
+                future.release()
+                following = next(waiting, _END)
+                if following is not _END:
+                    completed.add(submit(following))
+                yield order, answer
                 continue
-            answer = future.result()
-            future.release()
-            following = next(waiting, _END)
-            if following is not _END:
-                completed.add(submit(following))
-            yield order, answer
+            error = future.exception() if future.status == "error" else None
+            # A cancelled task was lost with a worker; nothing was wrong with it.
+            if error is not None and not isinstance(error, distributed.KilledWorker):
+                raise error
+            if deaths >= MOST_DEATHS:
+                raise _bulge.BulgeError(
+                    f"{order} was given up: the workers that it ran on died again and again; look at their logs, and give them more memory"
+                )
+            completed.add(submit(order, deaths + 1))
     finally:
         client.cancel(list(running))
 

@@ -121,11 +121,15 @@ class Muscle:
         return self._native.effects
 
     def number(self, name: str) -> float | None:
-        """A number of the muscle in SI, by its name in sweeps ("length", "radius", "fibre_stiffness", ...); None if it has none."""
+        """A number of the muscle in SI; None if this muscle has none of that name.
+
+        Names are those of sweeps: length, radius, fitting_radius, braid_angle, fibres, pleat_depth, misalignment, fibre_stiffness, c10, c01, wall,
+        gas_wall, hoop_stiffness, unfolded_radius, cloth_circumference. Any other raises :class:`bulge.InputError`.
+        """
         return self._native.get(name)
 
     def replace(self, **numbers: Quantity) -> Muscle:
-        """The muscle with other numbers, by their names in sweeps: ``muscle.replace(radius="17 mm", fibres=36)``."""
+        """The muscle with other numbers, by the names of :meth:`number`: ``muscle.replace(radius="17 mm", fibres=36)``."""
         native, units = self._native, _effect_units("")
         for name, value in numbers.items():
             native = native.with_number(name, si(value, units.get(name, "1"), name))
@@ -162,7 +166,7 @@ class Muscle:
         return Shape(native)
 
     def contraction_limit(self, pressure: Quantities, method: str = "auto") -> Any:
-        """The contraction at which the muscle pulls no more, at each gauge pressure [Pa]."""
+        """The contraction at which the muscle pulls no more, at each gauge pressure [Pa]; of other muscles ask ``muscle.replace(...)``."""
         p = si_array(pressure, "Pa", "pressure")
         if isinstance(p, float):
             return float(self._native.contraction_limit(np.array([p]), method)[0])
@@ -186,7 +190,7 @@ class Muscle:
         "force_f" F/(p l0^2 a), "volume_v" V/l0^3, "max_radius" [m], "radius_ratio", "fibre_tension" [N], "fibre_strain", "end_slope" [rad],
         "force_by_contraction", "force_by_pressure" and the like, in SI. Numbers that vary are given by name: ``slenderness=`` (l0/R; the radius
         changes), ``radius=``, ``fibres=``, ``braid_angle=``, ``fibre_stiffness=``, ``elastic_group=`` (p sin(2 pi/n) R^2/EA); those of effects in
-        ``numbers={"bladder-elasticity.c10": ...}``.
+        ``numbers={"bladder-elasticity.c10": ...}``. Effects of a history (friction, creep) act as at rest.
 
         One name gives an array (a float for floats), a list gives a dict. Dimensionless outputs of muscles that don't depend on the pressure need
         none. Where there is no equilibrium at which the muscle pulls, :class:`bulge.NoSolutionError` names the first such point;
@@ -211,7 +215,7 @@ class Muscle:
             base = None
         count = int(np.prod(shape, dtype=np.int64))
         axes = [(name, value if isinstance(value, float) else _flat(value, shape)) for name, value in varied.items()]
-        with callback(progress, self.name) as told:
+        with callback(progress, ", ".join(names)) as told:
             arrays, failed, reasons = self._native.evaluate(names, axes, count, base, method, told)
         if failed and errors == "raise":
             row, why = reasons[0]

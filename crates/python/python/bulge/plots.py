@@ -100,6 +100,6 @@ def ladder(diagnosis: Diagnosis, ax: Any) -> Any:
     if floor:
         ax.axhline(floor, color=COLOURS[1], linestyle="--", label=f"noise floor {floor:.3g} N")
         ax.legend()
-    ax.set(ylabel="RMS error [N]", title=diagnosis.says[0] if diagnosis.says else diagnosis.verdict)
+    ax.set(ylabel="RMS error [N]", title=f"{diagnosis.verdict}: {', '.join(diagnosis.names)}" if diagnosis.names else diagnosis.verdict)
     ax.tick_params(axis="x", labelrotation=20)
     return ax

@@ -23,8 +23,13 @@ def callback(progress: Progress, about: str) -> Iterator[Callable[[float, str], 
             raise _bulge.InputError(f"progress: {progress!r} can't be called; give a function of (share, what), or True for a bar")
         yield progress
         return
+    import warnings
+
     try:
-        from tqdm.auto import tqdm
+        with warnings.catch_warnings():
+            # Notebooks without widgets get a bar of text, which needs no apology.
+            warnings.simplefilter("ignore")
+            from tqdm.auto import tqdm
     except ImportError:
         yield None
         return

@@ -108,7 +108,8 @@ class Sweep:
         return made
 
     def __repr__(self) -> str:
-        size = f"{self.n_points} points in {self.n_chunks} chunks" if self.n_points else "a table only"
+        chunks = "1 chunk" if self.n_chunks == 1 else f"{self.n_chunks} chunks"
+        size = f"{self.n_points} points in {chunks}" if self.n_points else "a table only"
         return f"<Sweep {self.name}: {', '.join(self.columns)}; {size}>"
 
     def __reduce__(self) -> Any:
@@ -128,6 +129,20 @@ def as_sweep(spec: Any) -> Sweep:
     return Sweep.read(spec)
 
 
+class Swept(Result):
+    """What a sweep has left in its folder: ``points`` and ``table`` are the documents of the two, or None."""
+
+    _what = "sweep"
+
+    def _lines(self) -> list[str]:
+        d = self._document
+        lines = [f"{d['name']} in {d['folder']}"]
+        for part, about in [(d.get("points"), ["points", "infeasible", "chunks", "computed", "is_complete"]), (d.get("table"), ["form", "bytes", "is_met"])]:
+            if part:
+                lines.append(", ".join(f"{key} {part[key]}" for key in about if key in part))
+        return lines
+
+
 def sweep(
     spec: Any,
     folder: str | os.PathLike[str],
@@ -135,7 +150,7 @@ def sweep(
     resume: bool = False,
     csv: bool = False,
     progress: Progress = None,
-) -> Result:
+) -> Swept:
     """Runs a sweep (file, text or :class:`Sweep`) into a folder with its points and its table: what ``bulge sweep`` does."""
     plan = as_sweep(spec)
     found: dict[str, Any] = {"name": plan.name, "folder": os.fspath(folder), "points": None, "table": None}
@@ -143,7 +158,7 @@ def sweep(
         found["points"] = plan.run(folder, resume=resume, csv=csv, progress=progress).to_dict()
     if plan.has_table:
         found["table"] = write_table(plan, Path(folder), progress)
-    return Result(found)
+    return Swept(found)
 
 
 def write_table(plan: Sweep, folder: Path, progress: Progress = None) -> dict[str, Any]:

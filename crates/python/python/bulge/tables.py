@@ -17,6 +17,8 @@ from bulge.units import FloatArray, Quantities, si_array
 class Table(Result):
     """A table: the document of ``bulge table info --json``, with values and exact gradients of its splines or polynomials.
 
+    The certified errors in ``outputs`` are relative to max(|y|, 0.001 max |y|): where an output passes through zero, to a thousandth of its largest value.
+
     >>> table = bulge.Table.read("table.bulge")                     # doctest: +SKIP
     >>> table(contraction=[0.1, 0.2], slenderness=6.875)["force_f"]     # doctest: +SKIP
     """

@@ -29,8 +29,10 @@ pub(super) fn rows(comparison: &Comparison) -> Vec<Row> {
 
 fn row(parameter: &Fitted) -> Row {
     let mut alerts = Vec::new();
-    if !parameter.plausible {
-        alerts.push("implausible: a wrong cure".to_owned());
+    match (parameter.plausible, parameter.nuisance) {
+        (true, _) => {}
+        (false, true) => alerts.push("beyond its data sheet: it makes up for something else".to_owned()),
+        (false, false) => alerts.push("implausible: a wrong cure".to_owned()),
     }
     if let Some(end) = parameter.at_bound {
         alerts.push(format!("at the {end} bound"));
@@ -39,7 +41,7 @@ fn row(parameter: &Fitted) -> Row {
         alerts.push("not determined by these data".to_owned());
     }
     let mut notes = Vec::new();
-    if parameter.nuisance {
+    if parameter.nuisance && parameter.plausible {
         notes.push("nuisance, within its stated width".to_owned());
     }
     if parameter.interval == "profile" {

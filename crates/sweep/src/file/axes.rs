@@ -100,7 +100,9 @@ fn axis<'a>(
 
 /// What a name varies, its name in columns, and what its values are measured in.
 pub(crate) fn quantity(name: &str, muscle: &Muscle) -> Option<(Quantity, String, Scale)> {
-    let parameter = Parameter::ALL.into_iter().find(|p| p.name() == name || p.key() == name);
+    let is_it =
+        |p: &Parameter| [p.name(), p.key()].contains(&name) || p.key().strip_prefix("effects.") == Some(name);
+    let parameter = Parameter::ALL.into_iter().find(is_it);
     if let Some(parameter) = parameter {
         return Some((
             Quantity::Parameter(parameter),
