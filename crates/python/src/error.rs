@@ -33,6 +33,8 @@ create_exception!(bulge, NotConvergedError, BulgeError, "The search did not conv
 
 /// The exception of a fault, with its sentence.
 pub(crate) fn of_fault(fault: Fault, says: String) -> PyErr {
+    // The same advice in the words of this language.
+    let says = says.replace("`--resume`", "`resume=True`");
     match fault {
         Fault::Input => InputError::new_err(says),
         Fault::NoSolution => NoSolutionError::new_err(says),

@@ -223,6 +223,10 @@ pub(crate) fn units_of(own: &str) -> PyResult<Vec<(String, String)>> {
             all.push((format!("{}.{}", effect.card().name, card.key), unit));
         }
     }
+    // Last, as it counts: in files, effects that shape the muscle have the keys of its numbers.
+    let of_shape = |p: &Parameter| Some((p.key().strip_prefix("effects.")?.to_owned(), p.unit().to_owned()));
+    all.extend(Parameter::ALL.iter().filter_map(of_shape));
+    all.push(("bladder-elasticity.wall".to_owned(), Parameter::Wall.unit().to_owned()));
     Ok(all)
 }
 
@@ -235,7 +239,8 @@ pub(crate) fn si(name: &str, text: &str, unit: &str) -> PyResult<f64> {
         return Ok(found.si);
     }
     let (is, must) = (found.dimension.describe(), dimension.describe());
-    Err(input(format!("{name}: `{text}` is {is}, but {name} is {must}; write such as \"2 {unit}\"")))
+    let example = if unit == "1" { "20 %".to_owned() } else { format!("2 {unit}") };
+    Err(input(format!("{name}: `{text}` is {is}, but {name} is {must}; write such as \"{example}\"")))
 }
 
 /// How many SI units a unit is.

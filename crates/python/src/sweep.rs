@@ -166,7 +166,9 @@ impl Sweep {
     ) -> PyResult<(Bound<'py, PyBytes>, String, bool)> {
         let plan = Arc::clone(&self.plan);
         let built = beside(py, progress, move |watch| {
-            plan.table.as_ref().map(|wish| tabulate(&plan, wish, &|what| watch.at(0.0, what)))
+            let built = plan.table.as_ref().map(|wish| tabulate(&plan, wish, &|what| watch.at(0.0, what)));
+            watch.at(1.0, "done");
+            built
         })?;
         let Some(built) = built else {
             return Err(input(

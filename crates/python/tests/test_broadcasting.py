@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 BAR = 1e5
-CONTRACTIONS, PRESSURES = [0.05, 0.17, 0.31], [1.0 * BAR, 1.7 * BAR, 2.2 * BAR, 3.0 * BAR]
+CONTRACTIONS, PRESSURES = [0.05, 0.17, 0.31], [1.0 * BAR, 1.5 * BAR, 2.5 * BAR, 3.0 * BAR]
 
 
 @pytest.fixture(scope="module", params=["ppam", "braid"])
@@ -43,7 +43,7 @@ def test_arrays_broadcast(muscle, expected):
         (e[:, None], p.astype(np.uint32).astype(">u4")),
         (e[:, None], p.astype(np.float32)),
         (e[:, None], np.array([str(x) + " Pa" for x in PRESSURES])),
-        (e[:, None], np.array([PRESSURES[0], "1.7 bar", 220000, np.float64(3e5)], dtype=object)),
+        (e[:, None], np.array([PRESSURES[0], "1.5 bar", 250000, np.float64(3e5)], dtype=object)),
     ]:
         np.testing.assert_array_equal(muscle.force(contraction, pressure=pressure), expected)
     np.testing.assert_array_equal(muscle.force(e[:, None, None], pressure=p[None, :, None])[:, :, 0], expected)
@@ -177,7 +177,7 @@ WRONG = {
     "no unit": (lambda m: m.force(0.1, pressure="2"), "pressure: `2` is a pure number"),
     "another unit in a list": (lambda m: m.force(0.1, pressure=["2 bar", "2 N"]), "pressure: `2 N` is a force"),
     "no pressure": (lambda m: m.evaluate("force", 0.1), "gauge pressure"),
-    "none": (lambda m: m.force(None, pressure=BAR), "neither a number"),
+    "none": (lambda m: m.force(None, pressure=BAR), "contraction.*number"),
     "complex": (lambda m: m.force(np.array([0.1j]), pressure=BAR), "complex128"),
     "dates": (lambda m: m.force(np.array(["2020-01-01"], dtype="M8[D]"), pressure=BAR), "datetime64"),
     "no such method": (lambda m: m.force(0.1, pressure=BAR, method="newton"), "no `newton`.*shooting"),
@@ -207,7 +207,6 @@ def test_pressure_must_push(ppam):
             ppam.force(0.1, pressure=pressure)
 
 
-@pytest.mark.xfail(reason="force() calls a wrong scalar NoSolutionError, shape() InputError", strict=True)
 def test_the_same_mistake_is_the_same_exception(ppam):
     kinds = set()
     for call in [lambda: ppam.force(float("nan"), pressure=BAR), lambda: ppam.shape(contraction=float("nan"), pressure=BAR)]:
@@ -217,7 +216,6 @@ def test_the_same_mistake_is_the_same_exception(ppam):
     assert len(kinds) == 1
 
 
-@pytest.mark.xfail(reason="the last of radius and slenderness wins", strict=True)
 def test_numbers_that_contradict_each_other_are_refused(ppam):
     with pytest.raises(bulge.InputError):
         ppam.force(0.1, pressure=BAR, radius="20 mm", slenderness=5.0)

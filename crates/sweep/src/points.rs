@@ -38,7 +38,8 @@ pub struct Points {
 }
 
 /// Outputs of a family at `count` points: `axes` has the values of its axes, in their order. Points that follow each other with the same muscle
-/// share its preparation. `told` hears, from several threads, how many points have been added to those that are done.
+/// share its preparation. `told` hears, from several threads, how many points have been added to those that are done,
+/// also before each block.
 #[must_use]
 pub fn evaluate(
     family: &Family,
@@ -50,6 +51,8 @@ pub fn evaluate(
     let blocks: Vec<Points> = (0..count.div_ceil(BLOCK))
         .into_par_iter()
         .map(|i| {
+            // A caller that has given up unwinds from here: what has not begun is then never begun.
+            told(0);
             let rows = i * BLOCK..((i + 1) * BLOCK).min(count);
             let done = rows.len();
             let block = block(family, axes, rows, outputs);

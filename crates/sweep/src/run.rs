@@ -244,6 +244,8 @@ impl Run<'_> {
 
     /// A chunk that is there, or is computed now.
     fn chunk(&self, number: u64) -> Result<(Promise, bool), SweepError> {
+        // A caller that has given up unwinds from here, and the chunks that have not begun are left.
+        self.tell(0, 0);
         let path = self.folder.promise(number);
         match self.folder.standing(number, &self.key, self.csv).map_err(at(&path))? {
             Standing::Done(promise) => {

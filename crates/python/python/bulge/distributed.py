@@ -38,6 +38,8 @@ TASK_SECONDS = 0.5
 LEAST_ROUNDS = 16
 #: How often a range is handed out again when the workers that it ran on have died.
 MOST_DEATHS = 20
+#: Stores in which a file that is put appears whole or not at all.
+WHOLE = {"s3", "s3a", "gs", "gcs", "az", "abfs", "adl", "oss", "memory"}
 #: Tasks in flight per thread of the cluster: enough that no worker waits, few enough that a scheduler holds 10^9 points easily.
 IN_FLIGHT = 4
 
@@ -325,8 +327,10 @@ class _Files:
     def __init__(self, url: str, options: dict[str, Any]) -> None:
         fsspec = need("fsspec", "a store", "distributed")
         self.system, self.root = fsspec.core.url_to_fs(url, **options)
-        # Where a file appears as it is written, it is moved into place; object stores show a file when it is whole.
-        self.moves = not getattr(self.system, "blocksize", None) or self.system.protocol in ("file", ("file", "local"))
+        protocols = self.system.protocol
+        known = {protocols} if isinstance(protocols, str) else set(protocols)
+        # Object stores show a file when it is whole; elsewhere it is moved into place.
+        self.moves = not known & WHOLE
 
     def get(self, name: str) -> bytes | None:
         try:

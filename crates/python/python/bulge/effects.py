@@ -34,14 +34,20 @@ class Parameter:
     """
 
     unit: str = "1"
-    typical: float = 1.0
-    low: float = 0.0
-    high: float = 10.0
+    typical: float | str = 1.0
+    low: float | str = 0.0
+    high: float | str = 10.0
     prior: tuple[float, float] | None = None
     about: str = ""
 
+    def __post_init__(self) -> None:
+        for name in ("typical", "low", "high"):
+            value = getattr(self, name)
+            if isinstance(value, str):
+                object.__setattr__(self, name, _bulge.si(name, value, self.unit) / _bulge.unit_factor(self.unit))
+
     def _toml(self) -> str:
-        def text(value: float) -> str:
+        def text(value: float | str) -> str:
             return repr(float(value)) if self.unit == "1" else _quoted(f"{float(value)!r} {self.unit}")
 
         parts = [f"unit = {_quoted(self.unit)}", f"typical = {text(self.typical)}", f"low = {text(self.low)}", f"high = {text(self.high)}"]
@@ -54,7 +60,7 @@ class Parameter:
         return "{ " + ", ".join(parts) + " }"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Effect:
     """A physical effect of one's own: a force that is added to that of the muscle.
 
@@ -105,6 +111,12 @@ class Effect:
         lines += [f"parameters.{_key(name)} = {parameter._toml()}" for name, parameter in self.parameters.items()]
         return "\n".join(lines) + "\n"
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Effect) and self.to_toml() == other.to_toml()
+
+    def __hash__(self) -> int:
+        return hash(self.to_toml())
+
     def __reduce__(self) -> Any:
         # A function may be of a notebook; its expression goes anywhere.
         own = (self.name, self.expression, dict(self.parameters), self.title, self.about, self.source, self.family, self.twins)
@@ -123,7 +135,16 @@ def own_text(own: OwnEffects) -> str:
         return own.to_toml()
     if isinstance(own, (str, os.PathLike)):
         return own if isinstance(own, str) and "\n" in own else read_effects(own)
-    return "\n".join(own_text(one) for one in own)
+    return joined(*(own_text(one) for one in own))
+
+
+def joined(*texts: str) -> str:
+    """Texts of effect files as one; what stands in another is not repeated."""
+    kept: list[str] = []
+    for text in texts:
+        if text.strip() and not any(text.strip() in other for other in kept):
+            kept = [other for other in kept if other.strip() not in text] + [text]
+    return "\n".join(kept)
 
 
 def read_effects(path: str | os.PathLike[str]) -> str:
@@ -183,6 +204,40 @@ class _Constant(float):
         made.text = text
         return made
 
+    def _with(self, operator: str, other: Any, value: Any, turned: bool = False) -> Any:
+        """What a calculation with another number gives; of arrays and symbols, what they make of it."""
+        if not isinstance(other, (int, float)) or value is NotImplemented:
+            return value
+        left, right = (_text(other), self.text) if turned else (self.text, _text(other))
+        return _Constant(value, f"({left} {operator} {right})")
+
+    def __add__(self, other: Any) -> Any:
+        return self._with("+", other, float.__add__(self, other))
+
+    def __radd__(self, other: Any) -> Any:
+        return self._with("+", other, float.__radd__(self, other), True)
+
+    def __sub__(self, other: Any) -> Any:
+        return self._with("-", other, float.__sub__(self, other))
+
+    def __rsub__(self, other: Any) -> Any:
+        return self._with("-", other, float.__rsub__(self, other), True)
+
+    def __mul__(self, other: Any) -> Any:
+        return self._with("*", other, float.__mul__(self, other))
+
+    def __rmul__(self, other: Any) -> Any:
+        return self._with("*", other, float.__rmul__(self, other), True)
+
+    def __truediv__(self, other: Any) -> Any:
+        return self._with("/", other, float.__truediv__(self, other))
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return self._with("/", other, float.__rtruediv__(self, other), True)
+
+    def __neg__(self) -> _Constant:
+        return _Constant(-float(self), f"(-{self.text})")
+
 
 def quantity(text: str) -> float:
     """A constant with a unit for the function of an :class:`Effect`: ``bulge.quantity("50 N")`` is the float 50.0 (SI), whose unit is known."""
@@ -206,6 +261,11 @@ class _Condition:
         raise TypeError(
             "the force of an effect can't branch on its variables with `if`, `and`, `or`, `min` or `max`: use numpy.where, numpy.minimum, numpy.maximum"
         )
+
+    def _refuse(self, *_: Any) -> Any:
+        raise TypeError("the force of an effect can't join comparisons: write one numpy.where inside another")
+
+    __and__ = __rand__ = __or__ = __ror__ = __xor__ = __invert__ = _refuse
 
     def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
         return _array_function(function, args, kwargs)
@@ -281,6 +341,17 @@ class _Symbol:
     def __float__(self) -> float:
         raise TypeError("the force of an effect is traced with symbols: use NumPy's functions (numpy.sqrt), not those of math")
 
+    def _refuse(self, *_: Any) -> Any:
+        raise TypeError(f"the force of an effect can't do that with its variables: it has {_KNOWN}")
+
+    __floordiv__ = __rfloordiv__ = __mod__ = __rmod__ = __divmod__ = __round__ = __int__ = __index__ = __floor__ = __ceil__ = __trunc__ = _refuse
+    __and__ = __rand__ = __or__ = __ror__ = __xor__ = __matmul__ = __rmatmul__ = __getitem__ = __len__ = _refuse
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise TypeError(f"a variable of an effect has no `.{name}`: use functions of NumPy, such as numpy.clip(eps, 0, 1)")
+
     def __iter__(self) -> Any:
         raise TypeError("a variable of an effect is a number of one moment: it can't be looped over")
 
@@ -334,7 +405,7 @@ def _text(value: Any) -> str:
     if isinstance(value, _Symbol):
         return value.text
     if isinstance(value, _Constant):
-        return value.text if value >= 0 else f"({value.text})"
+        return f"({value.text})" if value.text.startswith("-") else value.text
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.integer, np.floating)):
         raise TypeError(f"the force of an effect can't use {value!r}: its constants are numbers, or quantities such as bulge.quantity(\"50 N\")")
     if not np.isfinite(value):

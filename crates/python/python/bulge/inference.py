@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from bulge import _bulge
-from bulge.effects import OwnEffects, own_text
+from bulge.effects import OwnEffects, joined, own_text
 from bulge.measurements import Data, DataLike, read
-from bulge.muscle import Muscle, write_whole
+from bulge.muscle import Muscle, count, effect_units, write_whole
 from bulge.progress import Progress, callback
 from bulge.results import Result, number
 from bulge.units import Quantity, si, si_range
@@ -268,7 +268,7 @@ def diagnose(
     """
     allowed = None if tolerance is None else si(tolerance, "N", "tolerance")
     with callback(progress, "diagnose") as told:
-        return Diagnosis(_bulge.diagnose(read(data)._native, muscle._native, _names(with_), own_text(own), allowed, seed, told))
+        return Diagnosis(_bulge.diagnose(read(data)._native, muscle._native, _names(with_), own_text(own), allowed, count("seed", seed, 0), told))
 
 
 def fit(data: DataLike, muscle: Muscle, with_: Iterable[str] | str, *, own: OwnEffects = None) -> Fit:
@@ -278,7 +278,7 @@ def fit(data: DataLike, muscle: Muscle, with_: Iterable[str] | str, *, own: OwnE
         raise _bulge.InputError("with_: name the effects to fit, such as [\"end-taper\", \"bladder-elasticity\"]")
     text = own_text(own)
     document = json.loads(_bulge.fit(read(data)._native, muscle._native, names, text))
-    return Fit(document, "\n".join(part for part in (muscle._native.own, text) if part))
+    return Fit(document, joined(muscle._native.own, text))
 
 
 def plan(muscle: Muscle, protocol: str | os.PathLike[str], *, own: OwnEffects = None) -> Plan:
@@ -308,7 +308,7 @@ def next_experiment(
     ]
     with callback(progress, "next experiment") as told:
         document = _bulge.next_experiment(
-            read(data)._native, muscle._native, _names(with_), own_text(own), limits[0], limits[1], seed, told
+            read(data)._native, muscle._native, _names(with_), own_text(own), limits[0], limits[1], count("seed", seed, 0), told
         )
     return NextExperiment(json.loads(document))
 
@@ -324,15 +324,22 @@ def simulate(
     """Synthetic measurements with hidden effects, noise and rig errors (``bulge simulate``); the same seed gives the same bytes.
 
     ``with_`` names effects, with numbers where they are not the usual ones: ``{"coulomb-friction": "14 N", "end-taper": None}`` or
-    ``["coulomb-friction=14 N", "end-taper"]``; several numbers of one effect as ``{"presliding-hysteresis": ("12 N", "1 %")}`` or by key.
+    ``["coulomb-friction=14 N", "end-taper"]``; floats are SI; several numbers of one effect as ``{"presliding-hysteresis": ("12 N", "1 %")}`` or by key.
     """
     text, origin = _protocol(protocol)
     own_effects = own_text(own)
-    csv, stated, truth = _bulge.simulate(muscle._native, text, origin, _hidden(with_), own_effects, seed)
-    return Simulation(csv, stated, json.loads(truth), "\n".join(part for part in (muscle._native.own, own_effects) if part))
+    known = joined(muscle._native.own, own_effects)
+    hidden = _hidden(with_, effect_units(known))
+    csv, stated, truth = _bulge.simulate(muscle._native, text, origin, hidden, own_effects, count("seed", seed, 0))
+    return Simulation(csv, stated, json.loads(truth), known)
 
 
-def _hidden(with_: Mapping[str, Any] | Iterable[str] | str) -> list[str]:
+def _hidden(with_: Mapping[str, Any] | Iterable[str] | str, units: Mapping[str, str]) -> list[str]:
+    """Effects with their numbers as the command line takes them; ``units`` are those of floats."""
+
+    def text(value: Any, unit: str) -> str:
+        return value if isinstance(value, str) else f"{float(value)!r} {unit}".removesuffix(" 1")
+
     if not isinstance(with_, Mapping):
         return _names(with_)
     items: list[str] = []
@@ -340,12 +347,12 @@ def _hidden(with_: Mapping[str, Any] | Iterable[str] | str) -> list[str]:
         if value is None:
             items.append(name)
         elif isinstance(value, Mapping):
-            items += [f"{name}.{key}={number}" for key, number in value.items()]
-        elif isinstance(value, (tuple, list)):
-            items.append(f"{name}={value[0]}" if value else name)
-            items += [str(number) for number in value[1:]]
+            items += [f"{name}.{key}={text(one, units.get(f'{name}.{key}', '1'))}" for key, one in value.items()]
         else:
-            items.append(f"{name}={value}")
+            values = list(value) if isinstance(value, (tuple, list)) else [value]
+            own = [unit for key, unit in units.items() if key.startswith(f"{name}.")] + ["1"] * len(values)
+            written = [text(one, unit) for one, unit in zip(values, own)]
+            items += [f"{name}={written[0]}", *written[1:]] if written else [name]
     return items
 
 

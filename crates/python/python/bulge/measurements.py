@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
+
+import numpy as np
 
 from bulge import _bulge
 from bulge.optional import need
@@ -43,7 +45,12 @@ class Data:
     @property
     def columns(self) -> dict[str, Any]:
         """Arrays by name, in SI: ``pressure_pa``, ``contraction`` or ``length_m``, ``force_n``, ``time_s``, ..., ``sweep``, ``specimen``."""
-        return self._native.columns()
+        found = self._native.columns()
+        found["specimen"] = np.array(found["specimen"])
+        if not self.is_path:
+            # A map has none; with labels it would be read as a path.
+            del found["sweep"]
+        return found
 
     def to_pandas(self) -> Any:
         """The columns as a DataFrame."""
@@ -94,8 +101,13 @@ def read(source: Any, *more: Any) -> Data:
         if more:
             raise _bulge.InputError("one data frame at a time: join them first, with a column `sweep` or `specimen`")
         return _data_of("csv", (_text(source), "the data frame"))
-    paths: Iterable[Any] = [source, *more] if isinstance(source, (str, os.PathLike)) else [*source, *more]
-    names = [os.fspath(path) for path in paths]
+    if isinstance(source, Mapping):
+        raise _bulge.InputError("a mapping is no table of measurements: make it a frame, pandas.DataFrame(...)")
+    try:
+        paths: Iterable[Any] = [source, *more] if isinstance(source, (str, os.PathLike)) else [*source, *more]
+        names = [os.fspath(path) for path in paths]
+    except TypeError:
+        raise _bulge.InputError(f"{source!r} is neither the name of a file, nor a list of such names, nor a data frame") from None
     if not names:
         raise _bulge.InputError("no file is named: give the name of a CSV file")
     return _data_of("files", names)

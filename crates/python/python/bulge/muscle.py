@@ -38,7 +38,7 @@ class Muscle:
     >>> print(f"{shape.force_n:.0f} N, largest diameter {2e3 * shape.max_radius_m:.1f} mm")
     1041 N, largest diameter 77.5 mm
 
-    - ``name``, ``kind`` ("pleated" or "braided"), ``length`` [m], ``radius`` [m], ``fibres``, ``braid_angle`` [rad], ``ends`` ("clamped" or
+    - ``name``, ``kind`` ("pleated" or "braided"), ``length`` [m], ``radius`` [m], ``fibres`` (a number, or "continuous"), ``braid_angle`` [rad], ``ends`` ("clamped" or
       "cylinder"), ``fibre`` ({"stiffness": [N], "section": [m^2]}), ``wall`` [m],
     - ``effects``: ``{"bladder-elasticity": {"c10": "0.2 MPa"}}``, each with the keys of its card (:func:`bulge.effects`),
     - ``instruments``: ``{"force": {"noise": "4 N", "zero": "1 N", "gain": "0.1 %"}}``,
@@ -54,7 +54,7 @@ class Muscle:
         length: Quantity,
         radius: Quantity,
         name: str = "muscle",
-        fibres: int | None = None,
+        fibres: int | str | None = None,
         braid_angle: Quantity | None = None,
         ends: str | None = None,
         fibre: Mapping[str, Quantity] | None = None,
@@ -64,27 +64,27 @@ class Muscle:
         own: OwnEffects = None,
     ) -> None:
         own_effects = own_text(own)
-        lines = [f"name = {json.dumps(name)}", f"kind = {json.dumps(kind)}"]
+        lines = [f"name = {quoted(name)}", f"kind = {quoted(kind)}"]
         for key, value, unit in [("length", length, "m"), ("radius", radius, "m"), ("braid_angle", braid_angle, "rad"), ("wall", wall, "m")]:
             if value is not None:
                 lines.append(f"{key} = {_written(value, unit)}")
         if fibres is not None:
-            lines.append(f"fibres = {_whole(fibres)}")
+            lines.append(f"fibres = {quoted(fibres) if isinstance(fibres, str) else _whole(fibres)}")
         if ends is not None:
-            lines.append(f"ends = {json.dumps(ends)}")
+            lines.append(f"ends = {quoted(ends)}")
         if fibre is not None:
             units = {"stiffness": "N", "section": "m^2"}
             lines.append("fibre = " + _inline({key: _written(value, units.get(key, "1")) for key, value in fibre.items()}))
-        known = _effect_units(own_effects)
+        known = effect_units(own_effects)
         for effect, numbers in (effects or {}).items():
-            lines.append(f"[effects.{json.dumps(effect)}]")
-            lines += [f"{json.dumps(key)} = {_written(value, known.get(f'{effect}.{key}', '1'))}" for key, value in numbers.items()]
+            lines.append(f"[effects.{quoted(effect)}]")
+            lines += [f"{quoted(key)} = {_written(value, known.get(f'{effect}.{key}', '1'))}" for key, value in numbers.items()]
         if instruments:
             lines.append("[instruments]")
             for instrument, widths in instruments.items():
                 unit = _INSTRUMENT_UNITS.get(instrument, "1")
                 entries = {key: _written(value, "1" if key == "gain" else unit) for key, value in widths.items()}
-                lines.append(f"{json.dumps(instrument)} = {_inline(entries)}")
+                lines.append(f"{quoted(instrument)} = {_inline(entries)}")
         self._native = _bulge.Muscle.from_text("\n".join(lines) + "\n", name, own_effects)
 
     @classmethod
@@ -98,6 +98,8 @@ class Muscle:
         """A muscle from a muscle file, or from its text (which has line breaks)."""
         if isinstance(source, str) and "\n" in source:
             return cls._of(_bulge.Muscle.from_text(source, "muscle", own_text(own)))
+        if source in presets() and not Path(source).exists():
+            raise _bulge.InputError(f"there is no file `{source}`; the shipped muscle of that name is bulge.Muscle.preset({json.dumps(source)})")
         return cls._of(_bulge.Muscle.from_file(os.fspath(source), own_text(own)))
 
     @classmethod
@@ -130,8 +132,10 @@ class Muscle:
 
     def replace(self, **numbers: Quantity) -> Muscle:
         """The muscle with other numbers, by the names of :meth:`number`: ``muscle.replace(radius="17 mm", fibres=36)``."""
-        native, units = self._native, _effect_units("")
+        native, units = self._native, effect_units("")
         for name, value in numbers.items():
+            # An unknown name is refused before its value is looked at.
+            native.get(name)
             native = native.with_number(name, si(value, units.get(name, "1"), name))
         return Muscle._of(native)
 
@@ -162,7 +166,7 @@ class Muscle:
         if len(stated) != 1:
             raise _bulge.InputError("give one of contraction, length, force and volume" + (", not several" if stated else ""))
         name, value = stated[0]
-        native = self._native.shape(si(pressure, "Pa", "pressure"), name, si(value, _GIVEN[name], name), method, int(points))
+        native = self._native.shape(si(pressure, "Pa", "pressure"), name, si(value, _GIVEN[name], name), method, count("points", points, 3))
         return Shape(native)
 
     def contraction_limit(self, pressure: Quantities, method: str = "auto") -> Any:
@@ -203,11 +207,16 @@ class Muscle:
         if pressure is not None:
             varied["pressure"] = si_array(pressure, "Pa", "pressure")
         elif any(name not in _PRESSURELESS for name in names):
-            raise _bulge.InputError(f"pressure: {', '.join(names)} need a gauge pressure, such as pressure=\"2 bar\"")
-        known = _effect_units(self._native.own)
+            raise _bulge.InputError(f"pressure: give the gauge pressure for {', '.join(names)}, such as pressure=\"2 bar\"")
+        known = effect_units(self._native.own)
         for name, value in {**(numbers or {}), **more}.items():
             varied[name] = si_array(value, _STATE_UNITS.get(name) or known.get(name, "1"), name)
-        shape = np.broadcast_shapes(*(np.shape(value) for value in varied.values()))
+        for one, other in [("radius", "slenderness"), ("fibre_stiffness", "elastic_group")]:
+            if one in varied and other in varied:
+                raise _bulge.InputError(f"{one} and {other} say the same thing twice: give one of them")
+        shape = _common_shape(varied)
+        if errors == "raise":
+            _check_numbers(varied)
         base = varied.get("pressure")
         if isinstance(base, float):
             del varied["pressure"]
@@ -230,8 +239,8 @@ class Muscle:
         """Axial force [N] over arrays of contraction, pressure and further numbers: see :meth:`evaluate`."""
         return self.evaluate("force", contraction, pressure=pressure, **options)
 
-    def volume(self, contraction: Quantities, *, pressure: Quantities, **options: Any) -> Any:
-        """Enclosed volume [m^3], circular sections: see :meth:`evaluate`."""
+    def volume(self, contraction: Quantities, *, pressure: Quantities | None = None, **options: Any) -> Any:
+        """Enclosed volume [m^3], circular sections: see :meth:`evaluate`. Only that of muscles whose shape depends on the pressure needs one."""
         return self.evaluate("volume", contraction, pressure=pressure, **options)
 
     def stiffness(self, contraction: Quantities, *, pressure: Quantities, gas: str = "open", **options: Any) -> Any:
@@ -245,6 +254,8 @@ class Muscle:
         """Isobaric characteristics as a pandas DataFrame: force, volume and stiffness from ``start`` to the limit at each pressure."""
         pandas = need("pandas", "a table of characteristics", "pandas")
         frames = []
+        if np.size(si_array(pressure, "Pa", "pressure")) == 0:
+            raise _bulge.InputError("pressure: no pressure is given")
         for p in np.atleast_1d(np.asarray(si_array(pressure, "Pa", "pressure"))):
             limit = self.contraction_limit(float(p), method)
             singular = self.kind == "pleated" and self.number("fibre_stiffness") is None
@@ -316,7 +327,7 @@ class Shape(Result):
         """The bulging surface: "pleats" between the fibres or of "revolution" [default: pleats for pleated muscles]; ``cloth`` is the
         circumference of the unfolded cloth [m], ``facets`` the segments of a pleat (or around the axis)."""
         width = None if cloth is None else si(cloth, "m", "cloth")
-        return Surface(**self._whole().surface(surface, width, facets))
+        return Surface(**self._whole().surface(surface, width, None if facets is None else count("facets", facets, 4)))
 
     def write_vtk(self, path: str | os.PathLike[str], surface: str | None = None, *, cloth: Quantity | None = None) -> None:
         """Writes the surface for ParaView (.vtp)."""
@@ -398,15 +409,55 @@ def presets() -> dict[str, str]:
 
 
 @lru_cache(maxsize=16)
-def _effect_units(own: str) -> dict[str, str]:
+def effect_units(own: str) -> dict[str, str]:
     """SI units of the numbers of muscles and effects."""
     return dict(_bulge.units_of(own))
+
+
+def quoted(text: str) -> str:
+    """Text as TOML has it."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def count(name: str, value: Any, least: int) -> int:
+    """A whole number that is not too small."""
+    try:
+        whole = int(value)
+        if whole == value and least <= whole < 2**63 and not isinstance(value, (bool, str)):
+            return whole
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise _bulge.InputError(f"{name}: {value!r}: give a whole number of {least} or more")
+
+
+def _common_shape(varied: Mapping[str, float | FloatArray]) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(*(np.shape(value) for value in varied.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {np.shape(value)}" for name, value in varied.items() if np.ndim(value))
+        raise _bulge.InputError(f"these arrays don't broadcast: {shapes}") from None
+
+
+def _check_numbers(varied: Mapping[str, float | FloatArray]) -> None:
+    """Refuses what is no question: numbers that are none, pressures that don't press, parts of fibres."""
+    for name, value in varied.items():
+        wrong = ~np.isfinite(value)
+        must = "a finite number"
+        if not wrong.any() and name == "pressure":
+            wrong, must = np.asarray(value) <= 0, "greater than 0"
+        elif not wrong.any() and name == "fibres":
+            wrong, must = np.asarray(value) % 1 != 0, "a whole number"
+        if np.any(wrong):
+            place = tuple(int(i) for i in np.argwhere(np.atleast_1d(wrong))[0])
+            found = float(np.atleast_1d(value)[place])
+            where = f" at index {place}" if np.ndim(value) else ""
+            raise _bulge.InputError(f"{name}: {found}{where}: it must be {must}")
 
 
 def _written(value: Quantity, unit: str) -> str:
     """A value of a muscle file."""
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
+        return quoted(value)
     number = si(value, unit)
     if not np.isfinite(number):
         raise _bulge.InputError(f"{number} is no number that a muscle can have")
@@ -420,7 +471,7 @@ def _whole(value: Any) -> str:
 
 
 def _inline(entries: Mapping[str, str]) -> str:
-    return "{ " + ", ".join(f"{json.dumps(key)} = {value}" for key, value in entries.items()) + " }"
+    return "{ " + ", ".join(f"{quoted(key)} = {value}" for key, value in entries.items()) + " }"
 
 
 def _flat(value: FloatArray, shape: tuple[int, ...]) -> FloatArray:

@@ -62,8 +62,9 @@ def measured(data: Data, ax: Any) -> Any:
     columns = data.columns
     label, motion = ("contraction [%]", 100 * columns["contraction"]) if "contraction" in columns else ("length [mm]", 1e3 * columns["length_m"])
     style = "-" if data.is_path else "."
-    for i, sweep in enumerate(np.unique(columns["sweep"])):
-        rows = columns["sweep"] == sweep
+    sweeps = columns.get("sweep", np.zeros(len(data), dtype=int))
+    for i, sweep in enumerate(np.unique(sweeps)):
+        rows = sweeps == sweep
         bar = float(np.median(columns["pressure_pa"][rows])) / 1e5
         ax.plot(motion[rows], columns["force_n"][rows], style, color=_colour(i), linewidth=1, label=f"{bar:.3g} bar" if data.is_path else None)
     ax.set(xlabel=label, ylabel="force [N]")

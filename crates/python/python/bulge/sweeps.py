@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from bulge import _bulge
-from bulge.muscle import write_whole
+from bulge.muscle import count, write_whole
 from bulge.optional import need
 from bulge.progress import Progress, callback
 from bulge.results import Result
@@ -93,7 +93,8 @@ class Sweep:
         Ctrl-C loses the chunks in flight at most. Returns the document: points, infeasible, chunks, computed, damaged, is_complete.
         """
         with callback(progress, self.name) as told:
-            text = self._native.run(os.fspath(folder), resume, chunks, csv, [], threads, told)
+            own = None if threads is None else count("threads", threads, 1)
+            text = self._native.run(os.fspath(folder), resume, chunks, csv, [], own, told)
         return Result(json.loads(text))
 
     def table(self, progress: Progress = None) -> Table:

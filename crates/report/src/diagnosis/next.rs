@@ -12,7 +12,8 @@ const MOST_HINTS: usize = 4;
 /// A compensation from which other numbers, and not the noise, set a detection limit.
 const MUCH: f64 = 0.5;
 /// Said where no test separates, and nobody has stated what can be tested.
-const WIDER: &str = "these limits are those of the data; --pressure and --contraction allow for others";
+const WIDER: &str =
+    "these limits are those of the data: state wider ones of pressure and contraction to allow for others";
 
 /// What to do next.
 #[derive(Debug)]

@@ -1,0 +1,224 @@
+"""Model against measurement: what is hidden in simulated measurements is found, with its number."""
+
+import json
+import pickle
+import xml.etree.ElementTree as xml
+
+import bulge
+import numpy as np
+import pytest
+
+BAR = 1e5
+HIDDEN = {"coulomb-friction": (14.0, "force", 1.0), "bladder-elasticity": (0.3, "modulus", 1.0)}
+
+
+def test_the_same_seed_gives_the_same_bytes(cylinder, protocol, rubbed, tmp_path):
+    hidden = {"coulomb-friction": "14 N", "bladder-elasticity": "0.3 MPa"}
+    again = bulge.simulate(cylinder, protocol, hidden, seed=7)
+    assert (again.csv, again.to_dict(), again.muscle) == (rubbed.csv, rubbed.to_dict(), rubbed.muscle)
+    assert bulge.simulate(cylinder, protocol, hidden, seed=8).csv != rubbed.csv
+    for same in [
+        ["coulomb-friction=14 N", "bladder-elasticity=0.3 MPa"],
+        "coulomb-friction=14 N,bladder-elasticity=0.3 MPa",
+        {"coulomb-friction": {"force": "14 N"}, "bladder-elasticity": ("0.3 MPa",)},
+    ]:
+        assert bulge.simulate(cylinder, protocol, same, seed=7).csv == rubbed.csv
+    (tmp_path / "protocol.toml").write_text(protocol)
+    assert bulge.simulate(cylinder, tmp_path / "protocol.toml", hidden, seed=7).csv == rubbed.csv
+
+
+def test_simulated_measurements_are_the_model_with_noise(cylinder, protocol, rubbed):
+    data = rubbed.data.columns
+    assert rubbed.rows == len(rubbed.data) == 180 and rubbed.seed == 7 and rubbed.muscle == cylinder
+    assert {e["effect"]: e["numbers"][0]["value"] for e in rubbed.effects} == {"coulomb-friction": 14.0, "bladder-elasticity": 0.3}
+    np.testing.assert_array_equal(np.unique(data["pressure_pa"]), [2 * BAR, 3 * BAR, 4 * BAR])
+    rubber = bulge.Muscle(
+        kind="braided", length="250 mm", radius="10.725 mm", braid_angle="25 deg", ends="cylinder", wall="2 mm", effects={"bladder-elasticity": {"c10": 3e5}}
+    )
+    rest = data["force_n"] - rubber.force(data["contraction"], pressure=data["pressure_pa"])
+    turning = np.sign(np.gradient(data["contraction"]))
+    inner = (data["contraction"] > 0.02) & (data["contraction"] < 0.19)
+    # Friction works against the motion: it takes from the force while the muscle shortens.
+    for direction in (1, -1):
+        assert np.mean(rest[inner & (turning == direction)]) == pytest.approx(-14 * direction, abs=1.0)
+    assert np.std((rest + 14 * turning)[inner & (turning != 0)]) == pytest.approx(2.0, rel=0.25)
+
+
+def test_the_error_falls_as_effects_are_added(rubbed):
+    found = bulge.compare(rubbed.data, rubbed.muscle, ["bladder-elasticity", "coulomb-friction"])
+    errors = [rung["rmse_n"] for rung in found.ladder]
+    assert [rung["added"] for rung in found.ladder] == [None, "bladder-elasticity", "coulomb-friction"]
+    data = rubbed.data.columns
+    stated = data["force_n"] - rubbed.muscle.force(data["contraction"], pressure=data["pressure_pa"])
+    # The error of the first rung may have the zero of the load cell fitted, no more.
+    assert np.std(stated) * 0.99 < errors[0] <= np.sqrt(np.mean(stated**2)) * (1 + 1e-9)
+    assert errors[0] > 40 > 16 > errors[1] > 10 > 2.3 > errors[2] > 1.7
+    assert found.ladder[2]["held_out_rmse_n"] == pytest.approx(errors[2], rel=0.1)
+    assert "+ coulomb-friction" in repr(found) and f"{errors[1]:.3g}" in repr(found) and "<table>" in found._repr_html_()
+    assert bulge.compare(rubbed.data.to_pandas(), rubbed.muscle, "bladder-elasticity, coulomb-friction").ladder[2]["rmse_n"] == pytest.approx(errors[2], rel=1e-12)
+
+
+def test_a_fit_recovers_what_is_hidden(rubbed, cylinder):
+    found = bulge.fit(rubbed.data, rubbed.muscle, list(HIDDEN))
+    numbers = {p["effect"]: p for p in found.fit["parameters"]}
+    for effect, (true, name, widest) in HIDDEN.items():
+        p = numbers[effect]
+        assert p["name"] == name and p["low"] <= true <= p["high"] and p["high"] - p["low"] < widest
+        assert p["value"] == pytest.approx(true, rel=0.03)
+    assert found.before_rmse_n > 40 and found.rmse_n == pytest.approx(2.0, rel=0.2)
+    learnt = found.learnt
+    true = bulge.Muscle(
+        kind="braided", length="250 mm", radius="10.725 mm", braid_angle="25 deg", ends="cylinder", wall="2 mm", effects={"bladder-elasticity": {"c10": 3e5}}
+    )
+    e = np.linspace(0.01, 0.2, 9)[:, None]
+    p = np.array([2.5, 5.0]) * BAR
+    np.testing.assert_allclose(learnt.force(e, pressure=p), true.force(e, pressure=p), atol=5.0)
+    assert np.abs(cylinder.force(e, pressure=p) - true.force(e, pressure=p)).max() > 40
+    assert pickle.loads(pickle.dumps(found)).learnt == learnt
+    # The muscle that has learnt lacks nothing.
+    assert bulge.compare(rubbed.data, learnt).ladder[0]["rmse_n"] == pytest.approx(found.rmse_n, rel=0.02)
+
+
+def test_the_hidden_effects_are_named(rubbed, diagnosed):
+    assert diagnosed.verdict == "missing" and set(diagnosed.names) == set(HIDDEN)
+    for missing in diagnosed.missing:
+        true, name, _ = HIDDEN[missing["effect"]]
+        number = missing["parameters"][name]
+        assert number["low"] <= true <= number["high"] and 0.5 < missing["confidence"] <= 1 and missing["effect"] in missing["class"]
+    assert any("bladder-elasticity" in line for line in diagnosed.says)
+    assert "coulomb-friction" in repr(diagnosed) and diagnosed.ladder[-1]["adequate"]
+    assert bulge.diagnose(rubbed.data, rubbed.muscle, seed=1).to_json() == diagnosed.to_json()
+
+
+def test_what_is_known_is_not_missing(rubbed):
+    found = bulge.diagnose(rubbed.data, rubbed.muscle, "bladder-elasticity")
+    assert found.names == ["coulomb-friction"]
+    # 14 N of friction are no matter where 100 N are none.
+    assert bulge.diagnose(rubbed.data, rubbed.muscle, tolerance="100 N").verdict == "adequate"
+    with pytest.raises(bulge.InputError, match="tolerance"):
+        bulge.diagnose(rubbed.data, rubbed.muscle, tolerance=-1.0)
+
+
+def test_nothing_hidden_is_adequate(cylinder, protocol):
+    plain = bulge.simulate(cylinder, protocol, seed=3)
+    found = bulge.diagnose(plain.data, plain.muscle)
+    assert (found.verdict, found.names, plain.effects) == ("adequate", [], [])
+    assert "hidden: nothing" in repr(plain)
+
+
+def hose(eps, k, eps_free):
+    """An effect of one's own."""
+    return -k * np.maximum(eps - eps_free, 0)
+
+
+NUMBERS = {"k": bulge.Parameter("N", typical=100, low=0, high=2000), "eps_free": bulge.Parameter("1", typical=0.1, low=0.05, high=0.15)}
+
+
+def test_an_effect_of_ones_own_is_simulated_fitted_and_found(cylinder, protocol):
+    traced = bulge.Effect("hose", hose, parameters=NUMBERS, title="Hose")
+    written = bulge.Effect("hose", "(-k) * max(eps - eps_free, 0)", parameters=NUMBERS, title="Hose")
+    hidden = {"hose": {"k": "900 N", "eps_free": "0.1"}}
+    made, same = (bulge.simulate(cylinder, protocol, hidden, own=own, seed=5) for own in (traced, written))
+    assert made.csv == same.csv
+    fits = [bulge.fit(made.data, cylinder, "hose", own=own) for own in (traced, written)]
+    assert fits[0].to_json() == fits[1].to_json()
+    numbers = {p["name"]: p for p in fits[0].fit["parameters"] if p["effect"] == "hose"}
+    assert numbers["k"]["low"] <= 900 <= numbers["k"]["high"] and numbers["eps_free"]["value"] == pytest.approx(0.1, abs=0.01)
+    learnt = fits[0].learnt
+    assert learnt.force(0.2, pressure=3 * BAR) - cylinder.force(0.2, pressure=3 * BAR) == pytest.approx(-90, abs=4)
+    found = [bulge.diagnose(made.data, cylinder, own=own) for own in (traced, written)]
+    assert found[0].to_json() == found[1].to_json() and found[0].verdict == "missing"
+    assert "hose" in [name for missing in found[0].missing for name in missing["class"]]
+
+
+def test_the_muscle_of_a_simulation_brings_its_own_effects(cylinder, protocol):
+    own = bulge.Effect("hose", hose, parameters=NUMBERS, title="Hose")
+    made = bulge.simulate(cylinder, protocol, {"hose": {"k": "900 N", "eps_free": "0.1"}}, own=own, seed=5)
+    assert bulge.fit(made.data, made.muscle, "hose").learnt.effects == ["hose"]
+    assert bulge.fit(made.data, made.muscle, "hose", own=own).learnt.effects == ["hose"]
+
+
+def test_laws_and_rivals(rubbed):
+    plain, law = bulge.compare(rubbed.data, rubbed.muscle, rivals=True), bulge.compare(rubbed.data, rubbed.muscle, law="s2-cylinder")
+    # The law of the cylinder is the equilibrium of the cylinder.
+    assert law.ladder[0]["rmse_n"] == pytest.approx(plain.ladder[0]["rmse_n"], rel=1e-6)
+    fitted = bulge.compare(rubbed.data, rubbed.muscle, law="s3-eight", fit_law=True)
+    assert 13 < fitted.ladder[0]["rmse_n"] < 16
+    assert len(plain.rivals) > 3 and not law.rivals
+    with pytest.raises(bulge.InputError, match="law: .*colour"):
+        bulge.compare(rubbed.data, rubbed.muscle, law="colour")
+
+
+def test_before_measuring(cylinder, protocol):
+    found = bulge.plan(cylinder, protocol)
+    limits = {effect["effect"]: effect for effect in found.effects}
+    assert (found.rows, found.sweeps) == (180, 3)
+    friction = limits["coulomb-friction"]
+    # 180 rows with 2 N: friction is seen from about 3.29 sigma on.
+    assert friction["unit"] == "N" and friction["detection_limit"] == pytest.approx(3.29 * 2 / np.sqrt(180), rel=0.1)
+    half = bulge.plan(cylinder, protocol.replace('force = "2 N"', 'force = "4 N"', 1))
+    assert {e["effect"]: e for e in half.effects}["coulomb-friction"]["detection_limit"] == pytest.approx(2 * friction["detection_limit"], rel=0.05)
+    assert "coulomb-friction" in repr(found) and "<table>" in found._repr_html_()
+
+
+def test_the_next_experiment(rubbed):
+    found = bulge.next_experiment(rubbed.data, rubbed.muscle, pressure="1 bar..6 bar", contraction=(0.0, 0.2))
+    assert found.verdict == "missing" and {m["effect"] for m in found.missing} == set(HIDDEN)
+    assert found.says and "coulomb-friction" in found.says and found.says in repr(found)
+    for wrong in ["1 bar", "6 bar..1 bar", ("1 bar", "2 N")]:
+        with pytest.raises(bulge.InputError, match="pressure"):
+            bulge.next_experiment(rubbed.data, rubbed.muscle, pressure=wrong)
+
+
+@pytest.mark.parametrize("kind", ["diagnosis", "compare"])
+def test_reports(kind, rubbed, diagnosed, tmp_path):
+    found = diagnosed if kind == "diagnosis" else bulge.compare(rubbed.data, rubbed.muscle, "coulomb-friction")
+    page = found.report(tmp_path / "report")
+    assert page == tmp_path / "report" / "report.html" and page.read_text(encoding="utf-8") == found.to_html()
+    assert "coulomb-friction" in found.to_html() and "<script" not in found.to_html()
+    assert json.loads((tmp_path / "report" / f"{kind}.json").read_text()) == found.to_dict()
+    drawings = found.svgs()
+    assert {"ladder", "residual-map"} <= set(drawings)
+    for name, svg in drawings.items():
+        assert xml.fromstring(svg).tag.endswith("svg") and (tmp_path / "report" / f"{name}.svg").read_text(encoding="utf-8") == svg
+    assert not list((tmp_path / "report").glob(".unfinished*"))
+
+
+def test_results_travel(rubbed, diagnosed, cylinder, protocol):
+    for found in [diagnosed, bulge.compare(rubbed.data, rubbed.muscle), bulge.plan(cylinder, protocol), rubbed]:
+        other = pickle.loads(pickle.dumps(found))
+        assert other.to_dict() == found.to_dict() and repr(other) == repr(found) and type(other) is type(found)
+    assert pickle.loads(pickle.dumps(diagnosed)).says == diagnosed.says
+    assert pickle.loads(pickle.dumps(rubbed)).data.sha256 == rubbed.data.sha256
+    with pytest.raises(bulge.InputError, match="left its report behind"):
+        pickle.loads(pickle.dumps(diagnosed)).to_html()
+    copied = diagnosed.to_dict()
+    copied["missing"].clear()
+    assert diagnosed.missing
+
+
+def test_a_simulation_as_files(rubbed, tmp_path):
+    rubbed.write(tmp_path / "trial")
+    assert bulge.read(tmp_path / "trial" / "data.csv").sha256 == rubbed.data.sha256
+    assert bulge.Muscle.from_toml(tmp_path / "trial" / "muscle.toml") == rubbed.muscle
+    assert json.loads((tmp_path / "trial" / "truth.json").read_text()) == rubbed.to_dict()
+
+
+def test_mistakes_are_said_with_their_cure(rubbed, cylinder, protocol):
+    for wrong, words in [
+        (lambda: bulge.fit(rubbed.data, rubbed.muscle, []), "name the effects"),
+        (lambda: bulge.fit(rubbed.data, rubbed.muscle, "coulomb-frction"), "coulomb-friction"),
+        (lambda: bulge.compare("none.csv", cylinder), r"none\.csv"),
+        (lambda: bulge.simulate(cylinder, protocol, "coulomb-friction=14 bar"), "coulomb-friction|force"),
+        (lambda: bulge.simulate(cylinder, "none.toml"), r"none\.toml"),
+        (lambda: bulge.plan(cylinder, protocol.replace("rows", "lines")), "lines"),
+    ]:
+        with pytest.raises(bulge.InputError, match=words):
+            wrong()
+
+
+def test_plots(rubbed, diagnosed):
+    pytest.importorskip("matplotlib").use("Agg")
+    ax = diagnosed.plot()
+    assert [bar.get_height() for bar in ax.patches] == [rung["rmse_n"] for rung in diagnosed.ladder]
+    assert len(bulge.compare(rubbed.data, rubbed.muscle, "coulomb-friction").plot().lines) == 9

@@ -1,0 +1,176 @@
+"""Measurements: the same rows from files and frames, and mistakes with their place and cure."""
+
+import pickle
+
+import bulge
+import numpy as np
+import pytest
+
+pandas = pytest.importorskip("pandas")
+
+#: Every column that a file may have, in units that are not SI.
+FULL = """pressure [mbar],length [cm],force [kgf],time [ms],specimen,temperature [K],diameter [in],volume [ml],force_sd [mN],sweep,cycle
+1000,10,50,0,A,300,1,300,5,1,1
+1000,9,40,1000,A,301,1.1,310,5,1,1
+2000,10,60,0,B,300,1,300,5,2,1
+2000,9,45,900,B,300,1,310,6,2,2
+"""
+PLAIN = "pressure [bar],contraction [%],force [N]\n1,10,500\n1,20,300\n2,10,1000\n2,20,610\n"
+
+
+@pytest.fixture
+def full(tmp_path):
+    path = tmp_path / "full.csv"
+    path.write_text(FULL)
+    return path
+
+
+@pytest.fixture
+def plain(tmp_path):
+    path = tmp_path / "plain.csv"
+    path.write_text(PLAIN)
+    return path
+
+
+def same(one, other):
+    assert set(one.columns) == set(other.columns)
+    for name, values in one.columns.items():
+        assert list(values) == list(other.columns[name]), name
+
+
+def test_units_of_headings(full):
+    data = bulge.read(full)
+    g, inch = 9.80665, 0.0254
+    expected = {
+        "pressure_pa": [1e5, 1e5, 2e5, 2e5], "length_m": [0.1, 0.09, 0.1, 0.09], "force_n": [50 * g, 40 * g, 60 * g, 45 * g],
+        "time_s": [0, 1, 0, 0.9], "temperature_k": [300, 301, 300, 300], "diameter_m": [inch, 1.1 * inch, inch, inch],
+        "volume_m3": [3e-4, 3.1e-4, 3e-4, 3.1e-4], "force_sd_n": [0.005, 0.005, 0.005, 0.006],
+    }  # fmt: skip
+    for name, values in expected.items():
+        np.testing.assert_allclose(data.columns[name], values, rtol=1e-14, err_msg=name)
+        assert data.columns[name].dtype == np.float64
+    assert list(data.columns["specimen"]) == ["A", "A", "B", "B"] and list(data.columns["cycle"]) == [1, 1, 1, 2]
+    assert list(data.columns["sweep"]) == [0, 0, 1, 1]
+    assert (len(data), data.is_path, data.n_sweeps, data.files) == (4, True, 2, [str(full)])
+    assert len(data.sha256) == 64
+    assert "4 rows" in repr(data) and "2 sweeps" in repr(data) and "1 to 2 bar" in repr(data)
+
+
+def test_the_same_rows_from_everywhere(plain, tmp_path):
+    data = bulge.read(plain)
+    assert not data.is_path and len(data) == 4 and data.columns["contraction"].tolist() == [0.1, 0.2, 0.1, 0.2]
+    frame = pandas.read_csv(plain)
+    same(data, bulge.read(frame))
+    same(data, bulge.read(frame.set_index(pandas.Index([5, 6, 9, 1]))))
+    same(data, bulge.read(str(plain)))
+    same(data, bulge.read([plain]))
+    assert bulge.read(data) is data
+    pytest.importorskip("pyarrow")
+    frame.to_parquet(tmp_path / "plain.parquet")
+    same(data, bulge.read(tmp_path / "plain.parquet"))
+    si = pandas.DataFrame({"pressure_pa": [1e5, 1e5, 2e5, 2e5], "contraction": [0.1, 0.2, 0.1, 0.2], "force_n": [500, 300, 1000, 610]})
+    same(data, bulge.read(si))
+    same(data, bulge.read(si[["force_n", "contraction", "pressure_pa"]]))
+
+
+def test_several_files_are_one_analysis(plain, tmp_path):
+    other = tmp_path / "other.csv"
+    other.write_text("force [kN],pressure [kPa],contraction\n0.2,300,0.25\n")
+    for data in [bulge.read(plain, other), bulge.read([plain, str(other)])]:
+        assert data.files == [str(plain), str(other)] and len(data) == 5
+        assert data.columns["force_n"].tolist() == [500, 300, 1000, 610, 200]
+        assert data.columns["pressure_pa"][-1] == pytest.approx(3e5, rel=1e-15)
+    with pytest.raises(bulge.InputError, match="same content"):
+        bulge.read(plain, plain)
+
+
+#: The frame has the column `sweep` in any case.
+
+
+@pytest.mark.parametrize("fixture", ["full", "plain", "rubbed"])
+def test_to_pandas_and_back(fixture, request):
+    source = request.getfixturevalue(fixture)
+    data = source.data if fixture == "rubbed" else bulge.read(source)
+    frame = data.to_pandas()
+    assert len(frame) == len(data) and list(frame.columns) == list(data.columns)
+    back = bulge.read(frame)
+    same(data, back)
+    assert (back.is_path, back.n_sweeps) == (data.is_path, data.n_sweeps)
+
+
+def test_frames_keep_every_digit():
+    thirds = pandas.DataFrame({"pressure_pa": [1e5 / 3, 2e5], "contraction": [0.1 / 3, 0.2], "force_n": [1 / 3, 1e-17]})
+    assert bulge.read(thirds).to_pandas()[list(thirds)].equals(thirds)
+
+
+def test_measurements_travel(full, rubbed):
+    for data in [bulge.read(full), rubbed.data, bulge.read(pandas.read_csv(full))]:
+        other = pickle.loads(pickle.dumps(data))
+        same(data, other)
+        assert (other.sha256, other.files) == (data.sha256, data.files)
+
+
+def test_the_fingerprint_is_of_the_content(plain, tmp_path):
+    copied, changed = tmp_path / "copied.csv", tmp_path / "changed.csv"
+    copied.write_text(PLAIN)
+    changed.write_text(PLAIN.replace("610", "611"))
+    assert bulge.read(copied).sha256 == bulge.read(plain).sha256 != bulge.read(changed).sha256
+
+
+def test_quality(plain, rubbed):
+    assert bulge.read(plain).quality() == ["there are only 4 rows"]
+    frame = rubbed.data.to_pandas()
+    assert not [finding for finding in rubbed.data.quality("250 mm") if "rows" in finding]
+    frame.loc[20, "force_n"] += 400
+    found = bulge.read(frame).quality(0.25)
+    assert any("22" in finding or "21" in finding for finding in found), found
+
+
+#: Text of a file, and what must be said of it.
+MISTAKES = {
+    "no number": ("pressure [bar],contraction [%],force [N]\n1,10,500\n1,x,300\n", r"bad\.csv:3: column `contraction \[%\]`: `x` is not a number.*12\.5"),
+    "no force": ("pressure [bar],contraction [%]\n1,10\n", r"bad\.csv:1: there is no column `force`: add one"),
+    "unit of another": ("pressure [N],contraction [%],force [N]\n1,10,5\n", r"bad\.csv:1: column `pressure \[N\]` has a unit of force.*pressure \[bar\]"),
+    "no unit": ("pressure,contraction [%],force [N]\n1,10,3\n", r"bad\.csv:1: column `pressure` has no unit.*pressure \[bar\]"),
+    "no row": ("pressure [bar],contraction [%],force [N]\n", r"bad\.csv: has a header but no row"),
+    "few fields": ("pressure [bar],contraction [%],force [N]\n1,10\n", r"bad\.csv:2: the row has 2 fields, the header has 3"),
+    "not finite": ("pressure [bar],contraction [%],force [N]\n1,1,1\n1,10,nan\n", r"bad\.csv:3: column `force \[N\]`: `nan` is not a finite number"),
+    "empty": ("", r"bad\.csv: is empty: write a header"),
+    "decimal comma": ("pressure [bar];contraction [%];force [N]\n1,5;10;3\n", r"bad\.csv:2: .*decimal comma: write `1\.5`"),
+}
+
+
+@pytest.mark.parametrize("name", list(MISTAKES))
+def test_mistakes_are_said_with_their_place_and_cure(name, tmp_path):
+    text, words = MISTAKES[name]
+    (tmp_path / "bad.csv").write_text(text)
+    with pytest.raises(bulge.InputError, match=f"(?s){words}"):
+        bulge.read(tmp_path / "bad.csv")
+
+
+def test_mistakes_of_frames():
+    with pytest.raises(bulge.InputError, match="the data frame:3: column `contraction"):
+        bulge.read(pandas.DataFrame({"pressure_pa": [1.0, 2], "contraction": [0.1, np.nan], "force_n": [1, 2]}))
+    frame = pandas.DataFrame({"pressure_pa": [1.0, 2], "contraction": [0.1, 0.2], "force_n": [1, 2]})
+    with pytest.raises(bulge.InputError, match="join them first"):
+        bulge.read(frame, frame)
+    with pytest.raises(bulge.InputError, match="no file is named"):
+        bulge.read([])
+    with pytest.raises(bulge.InputError, match=r"none\.csv: can't be read"):
+        bulge.read("none.csv")
+
+
+def test_what_is_no_source_is_refused():
+    with pytest.raises(bulge.InputError):
+        bulge.read(3)
+
+
+def test_columns_are_arrays(full):
+    assert all(isinstance(values, np.ndarray) for values in bulge.read(full).columns.values())
+
+
+def test_a_plot(rubbed):
+    pytest.importorskip("matplotlib").use("Agg")
+    ax = rubbed.data.plot()
+    assert len(ax.lines) == 3
+    np.testing.assert_array_equal(ax.lines[1].get_ydata(), rubbed.data.columns["force_n"][60:120])
