@@ -6,7 +6,7 @@
 //! csv/000000.csv          the same as CSV, where it was asked for
 //! chunks/000000.json      written after the chunk's files: its hashes, by which it counts as done
 //! manifest.json           written at the end: all chunks
-//! .lock                   held by every process at work: what others have unfinished is left alone
+//! .lock                   held by every process at work: only who is alone removes what a killed one left
 //! ```
 //! Every file is written under another name, forced to the disk, renamed, and its folder forced to the disk. What a crash or a power loss leaves is
 //! either the whole file or none; a chunk whose file doesn't have the hash of its promise is computed again.
@@ -80,16 +80,20 @@ impl Folder {
             .any(|name| fs::read_dir(self.0.join(name)).is_ok_and(|mut entries| entries.any(finished)))
     }
 
-    /// A lock that every process at work in the folder shares, and whether this one is alone. The system lets go of it when a process ends,
-    /// however it ends. None where the file system has no locks.
+    /// A lock on the folder, and whether this process is alone in it. Who is alone holds the lock alone, until [`Self::share`]: nobody begins to
+    /// write while unfinished files are removed. All others share it; they wait for whoever is alone. The system lets go of it when a process
+    /// ends, however it ends. None where the file system has no locks.
     pub(crate) fn lock(&self) -> io::Result<(Option<File>, bool)> {
         let file = File::options().create(true).truncate(false).write(true).open(self.0.join(".lock"))?;
         let is_alone = file.try_lock().is_ok();
-        if is_alone {
-            file.unlock()?;
-        }
-        let is_shared = file.try_lock_shared().is_ok();
-        Ok((is_shared.then_some(file), is_alone))
+        let is_held = is_alone || file.lock_shared().is_ok();
+        Ok((is_held.then_some(file), is_alone))
+    }
+
+    /// Lets others in.
+    pub(crate) fn share(lock: &File) -> io::Result<()> {
+        lock.unlock()?;
+        lock.lock_shared()
     }
 
     pub(crate) fn plan(&self) -> PathBuf {

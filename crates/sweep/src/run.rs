@@ -395,6 +395,9 @@ fn open(
         }
         Err(error) => return Err(at(&plan)(error)),
     }
+    if let (Some(lock), true) = (&lock, is_alone) {
+        Folder::share(lock).map_err(at(path))?;
+    }
     Ok(lock)
 }
 

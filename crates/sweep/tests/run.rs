@@ -280,6 +280,31 @@ fn the_unfinished_files_of_others_at_work_are_left_alone() {
     assert!(!other.exists());
 }
 
+/// Each begins when others write: whoever looks for half-written files must not take theirs.
+#[test]
+fn many_begin_at_once_and_none_removes_what_another_writes() {
+    let plan = plan(&CLOSED.replace("chunk = 64", "chunk = 5"));
+    let expected = bytes(whole(&plan, false).path());
+    for _ in 0..5 {
+        let folder = TempDir::new().unwrap();
+        std::thread::scope(|scope| {
+            let work = |worker: u64| {
+                let (plan, path) = (&plan, folder.path());
+                move || {
+                    for chunk in (worker..plan.chunks()).step_by(6) {
+                        let one = RunOptions { chunks: Some(chunk..chunk + 1), ..resume() };
+                        go(plan, path, &one).unwrap();
+                    }
+                }
+            };
+            let workers: Vec<_> = (0..6).map(|worker| scope.spawn(work(worker))).collect();
+            workers.into_iter().for_each(|worker| worker.join().unwrap());
+        });
+        go(&plan, folder.path(), &resume()).unwrap();
+        assert!(bytes(folder.path()) == expected);
+    }
+}
+
 #[test]
 fn chunks_without_a_plan_are_nobodys() {
     let plan = plan(CLOSED);
