@@ -61,7 +61,13 @@ pub(crate) fn evaluate<'py>(
         });
     }
     let known = known(&muscle.muscle, &catalogue(&muscle.own)?).or_raise()?;
-    // Without a pressure an axis varies it: the Python part has seen to that.
+    let has_pressure = pressure.is_some() || quantities.contains(&Quantity::Pressure);
+    if !has_pressure && depends_on_pressure(muscle, &quantities) {
+        return Err(input(
+            "pressure: the shape of this muscle depends on it; give the gauge pressure, such as pressure=\"2 bar\"",
+        ));
+    }
+    // Nothing that is asked for depends on a pressure that isn't given.
     let family =
         Family::of(&muscle.muscle, known, pressure.unwrap_or(1.0), approach, quantities).or_raise()?;
     let run = move |told: &(dyn Fn(usize) + Sync)| {
@@ -88,6 +94,17 @@ pub(crate) fn evaluate<'py>(
     let arrays = outputs.into_iter().map(|values| PyArray1::from_vec(py, values)).collect();
     let many = infeasible.len();
     Ok((arrays, many, infeasible.into_iter().take(REASONS).collect()))
+}
+
+/// Whether the dimensionless shape of a muscle depends on the pressure: where something stretches, or effects act.
+fn depends_on_pressure(muscle: &Muscle, varied: &[Quantity]) -> bool {
+    let stretches = |parameter: Parameter| {
+        muscle.muscle.get(parameter).is_some() || varied.contains(&Quantity::Parameter(parameter))
+    };
+    // The elastic group stands for the stiffness of the fibres.
+    let fibres = stretches(Parameter::FibreStiffness) && !varied.contains(&Quantity::ElasticGroup);
+    let wall = [Parameter::C10, Parameter::C01, Parameter::HoopStiffness].into_iter().any(stretches);
+    fibres || wall || !muscle.muscle.learnt().is_empty()
 }
 
 fn output(name: &str) -> PyResult<Output> {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use crate::data::Data;
 use crate::error::{OrRaise, input};
 use crate::muscle::{Muscle, catalogue, own_effects};
-use crate::task::{Watch, beside};
+use crate::task::{Watch, beside, beside_on};
 
 /// Name, title and drawing of each plot of a report.
 type Plots = Vec<(String, String, String)>;
@@ -133,10 +133,11 @@ fn diagnosed(
     data: &Data,
     muscle: &Muscle,
     asked: Asked,
+    threads: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<inference::Diagnosis> {
     let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
-    let found = beside(py, progress, move |watch| {
+    let found = beside_on(py, progress, threads, move |watch| {
         let Asked { base, tolerance_n, seed, limits } = asked;
         let progress = telling(watch);
         let options = DiagnoseOptions { tolerance_n, seed, limits, progress, ..DiagnoseOptions::new(base) };
@@ -156,6 +157,7 @@ pub(crate) fn diagnose(
     own: &str,
     tolerance: Option<f64>,
     seed: u64,
+    threads: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Diagnosis> {
     if tolerance.is_some_and(|tolerance| tolerance.is_nan() || tolerance < 0.0) {
@@ -163,7 +165,7 @@ pub(crate) fn diagnose(
     }
     let base = options(muscle, own, &with_)?;
     let asked = Asked { base, tolerance_n: tolerance, seed, limits: NextLimits::default() };
-    Ok(Diagnosis(diagnosed(py, data, muscle, asked, progress)?))
+    Ok(Diagnosis(diagnosed(py, data, muscle, asked, threads, progress)?))
 }
 
 /// The document of the next experiment; see `bulge.next_experiment`.
@@ -185,7 +187,7 @@ pub(crate) fn next_experiment(
     let base = options(muscle, own, &with_)?;
     let catalogue = base.catalogue.clone();
     let asked = Asked { base, tolerance_n: None, seed, limits };
-    let found = diagnosed(py, data, muscle, asked, progress)?;
+    let found = diagnosed(py, data, muscle, asked, None, progress)?;
     serde_json::to_string(&NextStep::after(&found, &catalogue, limits).document()).or_raise()
 }
 

@@ -3,16 +3,16 @@
 use bulge_muscles::{Quantity as _, to_toml};
 use bulge_sweep::{
     Built, Plan, Promise, RunOptions, SWEEP_EXAMPLE, TableDescription, begin, manifest, piece, run, tabulate,
+    write_durably,
 };
 use bulge_table::Table;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use rayon::ThreadPoolBuilder;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::error::{OrRaise, input};
-use crate::task::beside;
+use crate::task::{beside, beside_on};
 
 /// A sweep.
 #[pyclass(frozen, module = "bulge._bulge")]
@@ -100,6 +100,13 @@ impl Sweep {
         self.plan.canonical().or_raise()
     }
 
+    /// Writes a file so that it is there whole or not at all.
+    #[staticmethod]
+    fn write(py: Python<'_>, path: PathBuf, content: Vec<u8>) -> PyResult<()> {
+        let wrong = |error: std::io::Error| input(format!("cannot write {}: {error}", path.display()));
+        py.detach(|| write_durably(&path, &content)).map_err(wrong)
+    }
+
     /// Makes a folder ready for the chunks.
     fn begin(&self, folder: PathBuf, resume: bool, csv: bool) -> PyResult<()> {
         begin(&self.plan, &folder, &RunOptions { resume, csv, ..RunOptions::default() }).or_raise()
@@ -120,20 +127,10 @@ impl Sweep {
     ) -> PyResult<String> {
         let plan = Arc::clone(&self.plan);
         let options = RunOptions { chunks: chunks.map(|(a, b)| a..b), resume, csv, merge };
-        let pool = match threads {
-            Some(threads) => {
-                let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-                Some(pool.map_err(|error| input(format!("threads: {error}")))?)
-            }
-            None => None,
-        };
-        let found = beside(py, progress, move |watch| {
-            let work = || {
-                run(&plan, &folder, &options, &|done| {
-                    watch.at(done.done as f64 / done.all.max(1) as f64, "points");
-                })
-            };
-            pool.map_or_else(work, |pool| pool.install(work))
+        let found = beside_on(py, progress, threads, move |watch| {
+            run(&plan, &folder, &options, &|done| {
+                watch.at(done.done as f64 / done.all.max(1) as f64, "points");
+            })
         })?;
         serde_json::to_string(&found.or_raise()?).or_raise()
     }

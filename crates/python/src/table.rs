@@ -6,15 +6,17 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray2, ndarray::Array2};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 use crate::error::{OrRaise, input};
+use crate::task::{Watch, beside};
 
 /// Points of one task.
 const BLOCK: usize = 4096;
 
 /// A table.
 #[pyclass(frozen, module = "bulge._bulge")]
-pub(crate) struct Table(Vec<u8>);
+pub(crate) struct Table(Arc<Vec<u8>>);
 
 /// Values (points, outputs) and gradients (points, outputs x axes), with NaN outside of the domain.
 type Looked<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
@@ -25,7 +27,7 @@ impl Table {
     #[staticmethod]
     fn from_bytes(bytes: &[u8], origin: &str) -> PyResult<Self> {
         tables::Table::from_bytes(bytes).map_err(|error| input(format!("{origin}: {error}")))?;
-        Ok(Self(bytes.to_vec()))
+        Ok(Self(Arc::new(bytes.to_vec())))
     }
 
     /// Its bytes.
@@ -41,25 +43,19 @@ impl Table {
 
     /// Values and gradients at points (points, axes).
     fn sample<'py>(&self, py: Python<'py>, points: PyReadonlyArray2<'py, f64>) -> PyResult<Looked<'py>> {
-        let table = tables::Table::from_bytes(&self.0).or_raise()?;
-        let (axes, outputs) = (table.axes(), table.outputs());
-        let points = points.as_array();
-        let count = points.nrows();
-        if points.ncols() != axes {
-            return Err(input(format!(
-                "{} numbers per point, but the table has {axes} axes",
-                points.ncols()
-            )));
-        }
-        let flat: Vec<f64> = points.iter().copied().collect();
-        let (mut values, mut gradients) =
-            (vec![f64::NAN; count * outputs], vec![f64::NAN; count * outputs * axes]);
-        py.detach(|| {
+        let (flat, count) = self.points(&points)?;
+        let bytes = Arc::clone(&self.0);
+        let (axes, outputs) = self.size()?;
+        let found = looked_up(py, count, move |watch| {
+            let table = tables::Table::from_bytes(&bytes)?;
+            let mut values = vec![f64::NAN; count * outputs];
+            let mut gradients = vec![f64::NAN; count * outputs * axes];
             let blocks = flat
                 .par_chunks(BLOCK * axes)
                 .zip(values.par_chunks_mut(BLOCK * outputs))
                 .zip(gradients.par_chunks_mut(BLOCK * outputs * axes));
             blocks.for_each(|((points, values), gradients)| {
+                watch.look();
                 let rows = points
                     .chunks_exact(axes)
                     .zip(values.chunks_exact_mut(outputs))
@@ -71,7 +67,9 @@ impl Table {
                     }
                 }
             });
-        });
+            Ok((values, gradients))
+        })?;
+        let (values, gradients) = found;
         let array = |values: Vec<f64>, columns: usize| {
             let array = Array2::from_shape_vec((count, columns), values);
             array.map(|array| PyArray2::from_owned_array(py, array)).map_err(|error| input(error.to_string()))
@@ -85,9 +83,50 @@ impl Table {
         py: Python<'py>,
         points: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let table = tables::Table::from_bytes(&self.0).or_raise()?;
-        let of =
-            |point: numpy::ndarray::ArrayView1<'_, f64>| table.upper_end(&point.to_vec()).unwrap_or(f64::NAN);
-        Ok(PyArray1::from_iter(py, points.as_array().rows().into_iter().map(of)))
+        let (flat, count) = self.points(&points)?;
+        let bytes = Arc::clone(&self.0);
+        let (axes, _) = self.size()?;
+        let ends = looked_up(py, count, move |watch| {
+            let table = tables::Table::from_bytes(&bytes)?;
+            let mut ends = vec![f64::NAN; count];
+            flat.par_chunks(BLOCK * axes).zip(ends.par_chunks_mut(BLOCK)).for_each(|(points, ends)| {
+                watch.look();
+                for (point, end) in points.chunks_exact(axes).zip(ends) {
+                    *end = table.upper_end(point).unwrap_or(f64::NAN);
+                }
+            });
+            Ok(ends)
+        })?;
+        Ok(PyArray1::from_vec(py, ends))
     }
+}
+
+impl Table {
+    /// Numbers of axes and outputs.
+    fn size(&self) -> PyResult<(usize, usize)> {
+        let table = tables::Table::from_bytes(&self.0).or_raise()?;
+        Ok((table.axes(), table.outputs()))
+    }
+
+    /// Points one after the other, and how many there are.
+    fn points(&self, points: &PyReadonlyArray2<'_, f64>) -> PyResult<(Vec<f64>, usize)> {
+        let (axes, _) = self.size()?;
+        let points = points.as_array();
+        if points.ncols() != axes {
+            return Err(input(format!(
+                "{} numbers per point, but the table has {axes} axes",
+                points.ncols()
+            )));
+        }
+        Ok((points.iter().copied().collect(), points.nrows()))
+    }
+}
+
+/// Looks up on this thread where there are few points, else beside the interpreter.
+fn looked_up<T: Send + 'static>(
+    py: Python<'_>,
+    count: usize,
+    work: impl FnOnce(&Watch) -> Result<T, tables::TableError> + Send + 'static,
+) -> PyResult<T> {
+    if count <= BLOCK { work(&Watch::default()).or_raise() } else { beside(py, None, work)?.or_raise() }
 }

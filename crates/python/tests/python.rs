@@ -1,8 +1,8 @@
 //! Runs the Python tests: makes an environment and a wheel in folders of their own below the target folder, installs one into the other, and lets
-//! pytest run. Where there is no Python 3.10 with `venv`, or nothing can be installed, that is said, and the tests count as skipped; with
-//! `BULGE_REQUIRE_PYTHON` set (as continuous integration has it) it is an error.
+//! pytest run. Where there is no Python 3.10 with `venv`, or what the tests need can't be had, that is said, and the tests count as skipped; with
+//! `BULGE_REQUIRE_PYTHON` set (as continuous integration has it) it is an error. A wheel that can't be built or installed always is.
 //!
-//! Arguments after `--` are words that the names of the tests must contain.
+//! Words on the command line are parts of the names of tests, as for tests in Rust: where no Python test has such a name, nothing is built.
 
 use std::env;
 use std::ffi::OsString;
@@ -28,56 +28,92 @@ const NEEDED: &[&str] = &[
 /// Least version of Python.
 const LEAST: (u32, u32) = (3, 10);
 
+/// Options of Rust's test programs that have a value, which is no name.
+const WITH_VALUE: &[&str] = &["--test-threads", "--format", "--color", "--logfile", "--shuffle-seed", "-Z"];
+
+/// Why no test has run.
+enum Why {
+    /// This machine can't.
+    Absent(String),
+    /// Something is wrong.
+    Broken(String),
+}
+
 fn main() -> ExitCode {
-    let words: Vec<String> = env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
-    if env::args().any(|word| word == "--list") {
-        return ExitCode::SUCCESS;
+    let (mut words, mut skipped) = (Vec::new(), Vec::new());
+    let mut arguments = env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--list" => {
+                // One test, for programs that ask.
+                println!("python: test");
+                return ExitCode::SUCCESS;
+            }
+            "--skip" => skipped.extend(arguments.next()),
+            option if WITH_VALUE.contains(&option) => drop(arguments.next()),
+            option if option.starts_with('-') || option == "python" => {}
+            _ => words.push(argument),
+        }
     }
     let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
-    match run(&tests, &words) {
+    let names = names(&tests);
+    let all = names.len();
+    if !words.is_empty() && !names.iter().any(|name| words.iter().any(|word| name.contains(word))) {
+        println!("\ntest result: ok. 0 passed; 0 failed; 0 ignored; 0 measured; {all} filtered out\n");
+        return ExitCode::SUCCESS;
+    }
+    match run(&tests, &words, &skipped) {
         Ok(status) => status,
-        Err(why) if env::var_os("BULGE_REQUIRE_PYTHON").is_some() => {
+        Err(Why::Absent(why)) if env::var_os("BULGE_REQUIRE_PYTHON").is_none() => {
+            println!("\nthe {all} Python tests are skipped: {why}");
+            println!("\ntest result: ok. 0 passed; 0 failed; {all} ignored; 0 measured; 0 filtered out\n");
+            ExitCode::SUCCESS
+        }
+        Err(Why::Absent(why) | Why::Broken(why)) => {
             println!("\nthe Python tests could not run: {why}");
             ExitCode::FAILURE
-        }
-        Err(why) => {
-            let count = count(&tests);
-            println!("\nthe {count} Python tests are skipped: {why}");
-            println!("\ntest result: ok. 0 passed; 0 failed; {count} ignored; 0 measured; 0 filtered out\n");
-            ExitCode::SUCCESS
         }
     }
 }
 
-/// Runs the tests, or says why that is not possible here.
-fn run(tests: &Path, words: &[String]) -> Result<ExitCode, String> {
-    let python = python()?;
-    let target = target()?;
+/// Runs the tests, or says why not.
+fn run(tests: &Path, words: &[String], skipped: &[String]) -> Result<ExitCode, Why> {
+    let python = python().map_err(Why::Absent)?;
+    let target = target().map_err(Why::Broken)?;
     let folder = target.join("python-tests");
-    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let venv = environment(&python, &folder)?;
-    let wheel = wheel(&venv, &folder, &target)?;
+    fs::create_dir_all(&folder).map_err(|error| Why::Broken(format!("{}: {error}", folder.display())))?;
+    let venv = environment(&python, &folder).map_err(Why::Absent)?;
+    let wheel = wheel(&venv, &folder, &target).map_err(Why::Broken)?;
     let install =
         ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--force-reinstall"];
-    said(Command::new(&venv).args(install).arg(&wheel), "the wheel could not be installed")?;
+    said(Command::new(&venv).args(install).arg(&wheel), "the wheel could not be installed")
+        .map_err(Why::Broken)?;
     let mut pytest = Command::new(&venv);
     pytest.args(["-m", "pytest", "-p", "no:cacheprovider", "--rootdir"]).arg(tests).arg(tests);
+    let mut chosen: Vec<String> = skipped.iter().map(|word| format!("not {word}")).collect();
     if !words.is_empty() {
-        pytest.args(["-k", &words.join(" or ")]);
+        chosen.push(format!("({})", words.join(" or ")));
     }
-    // Cross-checks with the command line, where it has been built.
+    if !chosen.is_empty() {
+        pytest.args(["-k", &chosen.join(" and ")]);
+    }
+    // Cross-checks with the command line, where it has been built from this source.
     let command = target.join("debug").join(format!("bulge{}", env::consts::EXE_SUFFIX));
-    if command.exists() {
+    if is_newer(&command, env::current_exe().ok().as_deref()) {
         pytest.env("BULGE_COMMAND", command);
     }
     pytest.env("PYTHONDONTWRITEBYTECODE", "1").env("MPLBACKEND", "Agg");
-    let status = pytest.status().map_err(|error| format!("pytest: {error}"))?;
-    // 5: no test has such a name.
-    Ok(if status.success() || (status.code() == Some(5) && !words.is_empty()) {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
+    let status = pytest.status().map_err(|error| Why::Broken(format!("pytest: {error}")))?;
+    // 5: all are skipped by name.
+    let none_left = status.code() == Some(5) && !skipped.is_empty();
+    Ok(if status.success() || none_left { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Whether a program was built in the same run of cargo as this test, or later: within an hour before it.
+fn is_newer(program: &Path, than: Option<&Path>) -> bool {
+    let built = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
+    let (Some(program), Some(test)) = (built(program), than.and_then(built)) else { return false };
+    test.duration_since(program).is_ok_and(|before| before.as_secs() < 3600) || program >= test
 }
 
 /// A Python that is new enough and has `venv`.
@@ -167,9 +203,13 @@ fn said(command: &mut Command, what: &str) -> Result<(), String> {
     ))
 }
 
-/// How many test functions there are, to say how many are skipped.
-fn count(tests: &Path) -> usize {
-    let Ok(entries) = fs::read_dir(tests) else { return 0 };
+/// Names of the test functions.
+fn names(tests: &Path) -> Vec<String> {
+    let Ok(entries) = fs::read_dir(tests) else { return Vec::new() };
     let texts = entries.flatten().filter_map(|entry| fs::read_to_string(entry.path()).ok());
-    texts.map(|text| text.lines().filter(|line| line.trim_start().starts_with("def test_")).count()).sum()
+    let name = |line: &str| Some(line.trim_start().strip_prefix("def ")?.split('(').next()?.to_owned());
+    texts
+        .flat_map(|text| text.lines().filter_map(name).collect::<Vec<_>>())
+        .filter(|name| name.starts_with("test_"))
+        .collect()
 }

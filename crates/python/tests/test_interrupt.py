@@ -32,6 +32,14 @@ SHORT = 'muscle = "dmsp-20-250"\noutputs = ["force"]\nchunk = 128\n[axes.contrac
 RUN_ON = ["evaluate", "sweep"]
 
 
+@pytest.fixture(autouse=True)
+def ctrl_c():
+    """Ctrl-C is heard also where this process was started in the background, with the signal ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def until_quiet(longest=20.0):
     """Waits until no thread of this process works; returns how long that took."""
     began = time.monotonic()

@@ -170,9 +170,11 @@ pub fn run(
 ) -> Result<Summary, SweepError> {
     let layout = Layout::new(plan).ok_or(SweepError::NoPoints)?;
     let all = plan.chunks();
-    let chunks = options.chunks.clone().unwrap_or(0..all);
-    if chunks.is_empty() || chunks.end > all {
-        return Err(SweepError::NoSuchChunks { asked: chunks, all });
+    // The last of equal parts may reach beyond the last chunk.
+    let asked = options.chunks.clone().unwrap_or(0..all);
+    let chunks = asked.start..asked.end.min(all);
+    if chunks.is_empty() {
+        return Err(SweepError::NoSuchChunks { asked, all });
     }
     let canonical = plan.canonical()?;
     let key = hash(canonical.as_bytes());

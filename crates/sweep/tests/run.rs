@@ -370,7 +370,7 @@ fn chunks_that_do_not_exist_are_refused() {
     let plan = plan(CLOSED);
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("new");
-    for (asked, says) in [(3..9, "3..9"), (5..6, "0..5"), (2..2, "2..2"), (7..u64::MAX, "0..5")] {
+    for (asked, says) in [(6..9, "6..9"), (5..6, "0..5"), (2..2, "2..2"), (7..u64::MAX, "0..5")] {
         let options = RunOptions { chunks: Some(asked), ..RunOptions::default() };
         let error = go(&plan, &path, &options).unwrap_err();
         assert!(
@@ -379,6 +379,9 @@ fn chunks_that_do_not_exist_are_refused() {
         );
     }
     assert!(!path.exists());
+    // The last of equal parts ends where the sweep does.
+    let summary = go(&plan, &path, &RunOptions { chunks: Some(3..9), ..RunOptions::default() }).unwrap();
+    assert_eq!(summary.chunks, 2);
     let table_only = CLOSED.replace("points = 7\n", "").replace("points = 41\n", "") + "[table]\n";
     let error = go(&crate::plan(&table_only), &path, &RunOptions::default()).unwrap_err();
     assert!(matches!(error, SweepError::NoPoints));

@@ -13,12 +13,14 @@ that is written after a chunk's file, with its hash.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import math
 import os
 import posixpath
 import time
+import uuid
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -26,20 +28,21 @@ from typing import Any
 from bulge import _bulge
 from bulge.inference import Diagnosis, diagnose
 from bulge.measurements import read
-from bulge.muscle import Muscle, write_whole
+from bulge.muscle import Muscle
 from bulge.optional import need
 from bulge.progress import Progress, callback
 from bulge.results import Result
 from bulge.sweeps import Sweep, as_sweep, write_table
+from bulge.texts import count, write_whole
 
 #: Seconds that a task should take: what a scheduler costs, some milliseconds per task, is then about a hundredth.
 TASK_SECONDS = 0.5
 #: Tasks per thread of the cluster, at least, so that the last ones end together.
 LEAST_ROUNDS = 16
-#: How often a range is handed out again when the workers that it ran on have died.
-MOST_DEATHS = 20
+#: How often a task is handed out again that Dask has given up, each time after the deaths of 4 workers (its setting ``allowed-failures``, and 1).
+MOST_RETURNS = 4
 #: Stores in which a file that is put appears whole or not at all.
-WHOLE = {"s3", "s3a", "gs", "gcs", "az", "abfs", "adl", "oss", "memory"}
+WHOLE = {"s3", "s3a", "gs", "gcs", "az", "abfs", "adl", "oss"}
 #: Tasks in flight per thread of the cluster: enough that no worker waits, few enough that a scheduler holds 10^9 points easily.
 IN_FLIGHT = 4
 
@@ -67,9 +70,23 @@ def sweep(
     plan = as_sweep(spec)
     if not plan.n_points:
         raise _bulge.InputError("this sweep has no points, only a table: bulge.sweep builds it on one machine")
-    client = _client(client)
     place = os.fspath(folder)
-    store = _Store(plan, place, csv, dict(storage_options or {})) if "://" in place else _Folder(plan, os.path.abspath(place), csv)
+    if chunks_per_task is not None:
+        count("chunks_per_task", chunks_per_task, 1)
+    store: _Folder | _Store
+    if "://" in place:
+        store = _Store(plan, place, csv, dict(storage_options or {}))
+    elif storage_options:
+        raise _bulge.InputError(f"storage_options are those of a store, such as s3://bucket/run: {place} is a folder")
+    else:
+        store = _Folder(plan, os.path.abspath(place), csv)
+    with _connected(client) as client:
+        return _sweep(plan, place, store, client, resume, chunks_per_task, progress)
+
+
+def _sweep(
+    plan: Sweep, place: str, store: _Folder | _Store, client: Any, resume: bool, chunks_per_task: int | None, progress: Progress
+) -> Result:
     started = time.monotonic()
     store.begin(resume)
     threads = max(1, sum(client.nthreads().values()))
@@ -80,12 +97,10 @@ def sweep(
         first = 1
         most = max(1, plan.n_chunks // (LEAST_ROUNDS * threads))
         chunks_per_task = max(1, min(most, math.ceil(TASK_SECONDS / max(seconds, 1e-6))))
-    if chunks_per_task < 1:
-        raise _bulge.InputError(f"chunks_per_task: {chunks_per_task}; give 1 or more")
     ranges = [(a, min(a + chunks_per_task, plan.n_chunks)) for a in range(first, plan.n_chunks, chunks_per_task)]
     with callback(progress, plan.name) as told:
         finished = first
-        for (a, b), answer in _run(client, store.task(), ranges, f"bulge-sweep-{_slug(plan.name)}", threads):
+        for (a, b), answer in _run(client, store.task(), ranges, f"bulge-sweep-{_slug(plan.name)}"):
             store.take(answer)
             computed += answer["computed"]
             finished += b - a
@@ -113,7 +128,6 @@ def suite(
     with paths as given here, and cases that have one are skipped unless ``again``. ``options`` are those of :func:`bulge.diagnose`. Returns the
     document: cases, answered, failed (a sentence for each case that has none), seconds.
     """
-    client = _client(client)
     started = time.monotonic()
     folders = sorted(path.parent for path in Path(cases).glob("*/muscle.toml") if (path.parent / "data.csv").exists())
     if not folders:
@@ -124,17 +138,18 @@ def suite(
     # The longest files first, so that none is left to run alone at the end.
     waiting.sort(key=lambda folder: -(folder / "data.csv").stat().st_size)
     failed: dict[str, str] = {}
-    threads = max(1, sum(client.nthreads().values()))
-    with callback(progress, "suite") as told:
+    with _connected(client) as client, callback(progress, "suite") as told:
         names = [str(folder) for folder in waiting]
-        for count, (name, answer) in enumerate(_run(client, _Case(options), names, "bulge-diagnose", threads), 1):
-            case = Path(name).name
-            if "error" in answer:
-                failed[case] = answer["error"]
+        for done, (name, answer) in enumerate(_run(client, _Case(options), names, "bulge-diagnose", raises=False), 1):
+            file = into / f"{Path(name).name}.json"
+            if isinstance(answer, str):
+                write_whole(file, answer.encode())
             else:
-                write_whole(into / f"{case}.json", answer["document"].encode())
+                # An answer of an earlier run would pass for one of this.
+                file.unlink(missing_ok=True)
+                failed[file.stem] = f"{answer}" if isinstance(answer, _bulge.BulgeError) else f"{type(answer).__name__}: {answer}"
             if told is not None:
-                told(count / len(waiting), case)
+                told(done / len(waiting), file.stem)
     return Result({
         "cases": len(folders),
         "answered": len(waiting) - len(failed),
@@ -146,14 +161,13 @@ def suite(
 def diagnose_all(cases: Iterable[Mapping[str, Any]], client: Any = None, *, progress: Progress = None) -> list[Diagnosis]:
     """Diagnoses on a Dask cluster: ``cases`` are the arguments of :func:`bulge.diagnose` by name, such as ``{"data": ..., "muscle": ...}``.
 
-    Measurements and muscles travel as texts, files by their names. Answers come in the order of the cases; the first error is raised.
+    Measurements and muscles travel as texts, files by their names. Answers come in the order of the cases, with their numbers and without their
+    reports (:meth:`Diagnosis.report`), which stay where they were made; the first error is raised.
     """
-    client = _client(client)
     orders = [{**case, "data": read(case["data"])} for case in cases]
-    threads = max(1, sum(client.nthreads().values()))
     found: dict[int, Diagnosis] = {}
-    with callback(progress, "diagnose") as told:
-        for (place, _), answer in _run(client, _ordered, enumerate(orders), "bulge-diagnose", threads):
+    with _connected(client) as client, callback(progress, "diagnose") as told:
+        for (place, _), answer in _run(client, _ordered, enumerate(orders), "bulge-diagnose"):
             found[place] = answer
             if told is not None:
                 told(len(found) / len(orders), "diagnoses")
@@ -166,24 +180,16 @@ class _Case:
     def __init__(self, options: Mapping[str, Any]) -> None:
         self.options = dict(options)
 
-    def __call__(self, folder: str) -> dict[str, str]:
-        _one_thread()
-        try:
-            found = diagnose(os.path.join(folder, "data.csv"), Muscle.from_toml(os.path.join(folder, "muscle.toml")), **self.options)
-        except _bulge.BulgeError as error:
-            return {"error": str(error)}
-        return {"document": found.to_json() + "\n"}
+    def __call__(self, folder: str) -> str:
+        muscle = Muscle.from_toml(os.path.join(folder, "muscle.toml"))
+        # A task is one thread's work: the cluster has as many tasks as threads.
+        found = diagnose(os.path.join(folder, "data.csv"), muscle, **{"threads": 1, **self.options})
+        return found.to_json() + "\n"
 
 
 def _ordered(order: tuple[int, dict[str, Any]]) -> Diagnosis:
     """One diagnosis of a list, as a task."""
-    _one_thread()
-    return diagnose(**order[1])
-
-
-def _one_thread() -> None:
-    """A task is one thread's work: the cluster has as many tasks as threads."""
-    os.environ.setdefault("RAYON_NUM_THREADS", "1")
+    return diagnose(**{"threads": 1, **order[1]})
 
 
 class _Folder:
@@ -289,7 +295,9 @@ class _StoreTask:
         for chunk in range(*chunks):
             there = self._standing(files, chunk)
             if there is None:
-                content, csv, there = self.plan._native.piece(chunk, self.csv)
+                # A CSV file that is there already must not stay as it was.
+                csv_too = self.csv or files.get(f"csv/{chunk:06}.csv") is not None
+                content, csv, there = self.plan._native.piece(chunk, csv_too)
                 files.put(f"points/{chunk:06}.parquet", content)
                 if csv is not None:
                     files.put(f"csv/{chunk:06}.csv", csv.encode())
@@ -308,7 +316,7 @@ class _StoreTask:
             promise = json.loads(text)
             key = hashlib.sha256(self.plan._native.canonical().encode()).hexdigest()
             kept = [(f"points/{chunk:06}.parquet", promise["sha256"])]
-            if self.csv:
+            if self.csv or "csv_sha256" in promise:
                 kept.append((f"csv/{chunk:06}.csv", promise["csv_sha256"]))
             if promise["plan"] != key or promise["chunk"] != chunk:
                 return None
@@ -326,11 +334,16 @@ class _Files:
 
     def __init__(self, url: str, options: dict[str, Any]) -> None:
         fsspec = need("fsspec", "a store", "distributed")
-        self.system, self.root = fsspec.core.url_to_fs(url, **options)
+        try:
+            self.system, self.root = fsspec.core.url_to_fs(url, **options)
+        except ValueError as error:
+            raise _bulge.InputError(f"{url}: {error}") from None
         protocols = self.system.protocol
         known = {protocols} if isinstance(protocols, str) else set(protocols)
         # Object stores show a file when it is whole; elsewhere it is moved into place.
         self.moves = not known & WHOLE
+        if "memory" in known:
+            raise _bulge.InputError(f"{url}: the memory of one process is no place for the work of several; take a folder or a store")
 
     def get(self, name: str) -> bytes | None:
         try:
@@ -345,50 +358,61 @@ class _Files:
         if not self.moves:
             self.system.pipe_file(path, content)
             return
-        part = posixpath.join(posixpath.dirname(path), f".unfinished-{os.getpid()}-{time.monotonic_ns()}")
-        self.system.pipe_file(part, content)
-        self.system.mv(part, path)
+        part = posixpath.join(posixpath.dirname(path), f".unfinished-{uuid.uuid4().hex}")
+        try:
+            self.system.pipe_file(part, content)
+            self.system.mv(part, path)
+        except BaseException:
+            with contextlib.suppress(Exception):
+                self.system.rm_file(part)
+            raise
 
 
-def _run(client: Any, task: Callable[[Any], Any], orders: Iterable[Any], name: str, threads: int) -> Iterator[tuple[Any, Any]]:
-    """Orders and their answers, as they come. At most IN_FLIGHT tasks per thread are with the scheduler; those whose workers die are handed out
-    again, each MOST_DEATHS times."""
+def _run(
+    client: Any, task: Callable[[Any], Any], orders: Iterable[Any], name: str, *, raises: bool = True
+) -> Iterator[tuple[Any, Any]]:
+    """Orders and their answers, as they come; without ``raises``, the exception of an order that has none. At most IN_FLIGHT tasks per thread are
+    with the scheduler; those that it gives up because workers died are handed out again, each MOST_RETURNS times."""
     distributed = need("distributed", "a distributed run", "distributed")
+    threads = max(1, sum(client.nthreads().values()))
     waiting = iter(orders)
-    #: Orders with the scheduler, each with the number of times that it was given back because workers died.
+    #: Orders with the scheduler, each with the number of times that it was given back.
     running: dict[Any, tuple[Any, int]] = {}
-    stamp = f"{name}-{time.time_ns():x}"
+    stamp = f"{name}-{uuid.uuid4().hex}"
     number = 0
 
-    def submit(order: Any, deaths: int = 0) -> Any:
+    def submit(order: Any, returns: int = 0) -> Any:
         nonlocal number
         number += 1
         future = client.submit(_call, task, order, key=f"{stamp}-{number}", pure=False)
-        running[future] = (order, deaths)
+        running[future] = (order, returns)
         return future
 
-    first = [submit(order) for _, order in zip(range(IN_FLIGHT * threads), waiting)]
-    completed = distributed.as_completed(first, raise_errors=False)
     try:
+        first = [submit(order) for _, order in zip(range(IN_FLIGHT * threads), waiting)]
+        completed = distributed.as_completed(first, loop=client.loop, raise_errors=False)
         for future in completed:
-            order, deaths = running.pop(future)
+            order, returns = running.pop(future)
+            error: Any = None
             if future.status == "finished":
                 answer = future.result()
                 future.release()
-                following = next(waiting, _END)
-                if following is not _END:
-                    completed.add(submit(following))
-                yield order, answer
-                continue
-            error = future.exception() if future.status == "error" else None
-            # A cancelled task was lost with a worker; nothing was wrong with it.
-            if error is not None and not isinstance(error, distributed.KilledWorker):
-                raise error
-            if deaths >= MOST_DEATHS:
-                raise _bulge.BulgeError(
-                    f"{order} was given up: the workers that it ran on died again and again; look at their logs, and give them more memory"
-                )
-            completed.add(submit(order, deaths + 1))
+            else:
+                # A cancelled task was lost with a worker; nothing was wrong with it.
+                error = answer = future.exception() if future.status == "error" else None
+                if error is None or isinstance(error, distributed.KilledWorker):
+                    if returns < MOST_RETURNS:
+                        completed.add(submit(order, returns + 1))
+                        continue
+                    error = answer = _bulge.BulgeError(
+                        f"{order} was given up: the workers that it ran on died again and again; look at their logs, and give them more memory"
+                    )
+                if raises:
+                    raise error
+            following = next(waiting, _END)
+            if following is not _END:
+                completed.add(submit(following))
+            yield order, answer
     finally:
         client.cancel(list(running))
 
@@ -400,14 +424,27 @@ def _call(task: Callable[[Any], Any], order: Any) -> Any:
     return task(order)
 
 
-def _client(client: Any) -> Any:
+@contextlib.contextmanager
+def _connected(client: Any) -> Iterator[Any]:
+    """A client: the one given, or the current one. Within a task the thread is given back to the worker while it waits for others."""
     distributed = need("distributed", "a distributed run", "distributed")
-    if client is not None:
-        return client
+    if client is None:
+        try:
+            client = distributed.get_client()
+        except ValueError:
+            raise _bulge.InputError("no Dask cluster is known: give a client, such as dask.distributed.Client()") from None
+    if getattr(client, "asynchronous", False):
+        raise _bulge.InputError("this client is asynchronous: give one that waits, dask.distributed.Client(..., asynchronous=False)")
     try:
-        return distributed.get_client()
+        distributed.get_worker()
     except ValueError:
-        raise _bulge.InputError("no Dask cluster is known: give a client, such as dask.distributed.Client()") from None
+        yield client
+        return
+    distributed.secede()
+    try:
+        yield client
+    finally:
+        distributed.rejoin()
 
 
 def _slug(name: str) -> str:

@@ -8,13 +8,13 @@ import os
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, Union
 
 import numpy as np
 
 from bulge import _bulge
 from bulge.results import Result
+from bulge.texts import quoted, read_text
 
 #: Variables of a force, SI: gauge pressure ``p`` [Pa], contraction ``eps``, ``length``, ``l0``, ``radius``, ``mid_radius`` [m], ``direction`` (+1
 #: shortening, -1 lengthening, 0 at rest), ``rate`` d(eps)/dt [1/s], ``time`` since the sweep began [s], ``temperature`` above that of the first row [K],
@@ -28,8 +28,9 @@ VARIABLES = (
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number of an effect, in ``unit``.
+    """A number of an effect.
 
+    Numbers are in ``unit``, **not in SI**: ``Parameter("mm", typical=5)`` is 5 mm, and so is ``typical="5 mm"``.
     ``low`` and ``high`` bound it, ``typical`` is a usual value, ``prior`` is what is known beforehand: mean and standard deviation.
     """
 
@@ -37,14 +38,18 @@ class Parameter:
     typical: float | str = 1.0
     low: float | str = 0.0
     high: float | str = 10.0
-    prior: tuple[float, float] | None = None
+    prior: tuple[float | str, float | str] | None = None
     about: str = ""
 
     def __post_init__(self) -> None:
+        def plain(name: str, value: float | str) -> float:
+            return _bulge.si(name, value, self.unit) / _bulge.unit_factor(self.unit) if isinstance(value, str) else float(value)
+
         for name in ("typical", "low", "high"):
-            value = getattr(self, name)
-            if isinstance(value, str):
-                object.__setattr__(self, name, _bulge.si(name, value, self.unit) / _bulge.unit_factor(self.unit))
+            object.__setattr__(self, name, plain(name, getattr(self, name)))
+        if self.prior is not None:
+            mean, sd = self.prior
+            object.__setattr__(self, "prior", (plain("prior", mean), plain("prior", sd)))
 
     def _toml(self) -> str:
         def text(value: float | str) -> str:
@@ -139,20 +144,31 @@ def own_text(own: OwnEffects) -> str:
 
 
 def joined(*texts: str) -> str:
-    """Texts of effect files as one; what stands in another is not repeated."""
-    kept: list[str] = []
+    """Texts of effect files as one. An effect that several of them state in the same words is one."""
+    parts: dict[tuple[str, str], str] = {}
     for text in texts:
-        if text.strip() and not any(text.strip() in other for other in kept):
-            kept = [other for other in kept if other.strip() not in text] + [text]
-    return "\n".join(kept)
+        for name, part in _parts(text):
+            parts.setdefault((name, part.strip()), part.strip() + "\n")
+    return "\n".join(parts.values())
+
+
+def _parts(text: str) -> list[tuple[str, str]]:
+    """The effects of a text with their names; tables within an effect stay with it."""
+    heads = list(re.finditer(r'^\[effects\.("[^"\n]*"|[A-Za-z0-9_-]+)(?:\.[^\n]*)?\]', text, re.MULTILINE))
+    ends = [head.start() for head in heads[1:]] + [len(text)]
+    found: list[tuple[str, str]] = []
+    for head, end in zip(heads, ends):
+        name, part = head.group(1).strip('"'), text[head.start() : end]
+        if found and found[-1][0] == name:
+            found[-1] = (name, found[-1][1] + part)
+        else:
+            found.append((name, part))
+    return found
 
 
 def read_effects(path: str | os.PathLike[str]) -> str:
     """The text of an effect file, checked."""
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise _bulge.InputError(f"{path}: {error.strerror or error}") from None
+    text = read_text(path)
     _bulge.effect_names(text)
     return text
 
@@ -238,6 +254,14 @@ class _Constant(float):
     def __neg__(self) -> _Constant:
         return _Constant(-float(self), f"(-{self.text})")
 
+    def __abs__(self) -> _Constant:
+        return _Constant(abs(float(self)), f"abs({self.text})")
+
+    def __pow__(self, other: Any, modulo: Any = None) -> Any:
+        if not isinstance(other, (int, float)):
+            return NotImplemented
+        return _Constant(float(self) ** other, f"({self.text})^{_in(other, 4)}")
+
 
 def quantity(text: str) -> float:
     """A constant with a unit for the function of an :class:`Effect`: ``bulge.quantity("50 N")`` is the float 50.0 (SI), whose unit is known."""
@@ -271,6 +295,10 @@ class _Condition:
         return _array_function(function, args, kwargs)
 
 
+#: Characters of an expression; what is used twice stands in it twice.
+_LONGEST = 16_000
+
+
 class _Symbol:
     """A variable of an expression, or what has become of it."""
 
@@ -278,6 +306,8 @@ class _Symbol:
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, text: str, strength: int = 4) -> None:
+        if len(text) > _LONGEST:
+            raise _bulge.InputError(f"the force of an effect becomes an expression of more than {_LONGEST} characters: write it with fewer repetitions")
         #: 1 sum, 2 product, 3 power, 4 a name or a call: what needs parentheses where.
         self.text, self.strength = text, strength
 
@@ -447,7 +477,7 @@ def _traced(function: Callable[..., Any], parameters: Mapping[str, Parameter]) -
 
 
 def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False)
+    return quoted(text)
 
 
 def _key(name: str) -> str:

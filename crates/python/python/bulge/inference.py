@@ -11,14 +11,15 @@ from typing import Any
 from bulge import _bulge
 from bulge.effects import OwnEffects, joined, own_text
 from bulge.measurements import Data, DataLike, read
-from bulge.muscle import Muscle, count, effect_units, write_whole
+from bulge.muscle import Muscle, effect_units
 from bulge.progress import Progress, callback
 from bulge.results import Result, number
+from bulge.texts import count, read_text, write_whole
 from bulge.units import Quantity, si, si_range
 
 
 class _Reported(Result):
-    """A result with a report."""
+    """A result with a report. Pickled, it keeps its numbers and leaves the report behind."""
 
     _file = "result.json"
 
@@ -50,6 +51,12 @@ class _Reported(Result):
             write_whole(into / f"{name}.svg", svg.encode())
         write_whole(into / "report.html", page.encode())
         return into / "report.html"
+
+    def __copy__(self) -> Any:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> Any:
+        return self
 
     def __reduce__(self) -> Any:
         return (type(self), (None, self._document))
@@ -260,15 +267,19 @@ def diagnose(
     own: OwnEffects = None,
     tolerance: Quantity | None = None,
     seed: int = 1,
+    threads: int | None = None,
     progress: Progress = None,
 ) -> Diagnosis:
     """Finds which physical effect is missing, and how sure that is: what ``bulge diagnose`` does.
 
-    ``tolerance`` is the RMS misfit [N] that doesn't matter. The same ``seed`` gives the same answer. ``own`` effects are looked for too.
+    ``tolerance`` is the RMS misfit [N] that doesn't matter. The same ``seed`` gives the same answer, on any number of
+    ``threads`` [default: all cores]. ``own`` effects are looked for too.
     """
+    if threads is not None:
+        threads = count("threads", threads, 1, 1024)
     allowed = None if tolerance is None else si(tolerance, "N", "tolerance")
     with callback(progress, "diagnose") as told:
-        return Diagnosis(_bulge.diagnose(read(data)._native, muscle._native, _names(with_), own_text(own), allowed, count("seed", seed, 0), told))
+        return Diagnosis(_bulge.diagnose(read(data)._native, muscle._native, _names(with_), own_text(own), allowed, count("seed", seed, 0), threads, told))
 
 
 def fit(data: DataLike, muscle: Muscle, with_: Iterable[str] | str, *, own: OwnEffects = None) -> Fit:
@@ -363,7 +374,4 @@ def _names(names: Iterable[str] | str) -> list[str]:
 def _protocol(protocol: str | os.PathLike[str]) -> tuple[str, str]:
     if isinstance(protocol, str) and "\n" in protocol:
         return protocol, "protocol"
-    try:
-        return Path(protocol).read_text(encoding="utf-8"), os.fspath(protocol)
-    except OSError as error:
-        raise _bulge.InputError(f"{os.fspath(protocol)}: {error.strerror or error}") from None
+    return read_text(protocol), os.fspath(protocol)

@@ -80,13 +80,21 @@ class Data:
         )
 
     def __reduce__(self) -> Any:
-        return (_data_of, self._source)
+        return (_data_again, (*self._source, self.sha256))
 
 
 def _data_of(kind: str, source: Any) -> Data:
     if kind == "files":
-        return Data(_bulge.Data.read(source), (kind, source))
+        return Data(_bulge.Data.read(source), (kind, [os.path.abspath(name) for name in source]))
     return Data(_bulge.Data.from_csv(*source), (kind, source))
+
+
+def _data_again(kind: str, source: Any, sha256: str) -> Data:
+    """Unpickled: files are read again, and must be what they were."""
+    data = _data_of(kind, source)
+    if data.sha256 != sha256:
+        raise _bulge.InputError(f"{', '.join(data.files)} changed while these measurements travelled: read them again")
+    return data
 
 
 def read(source: Any, *more: Any) -> Data:
@@ -122,6 +130,9 @@ _HEADINGS = {
 
 def _text(frame: Any) -> str:
     """A frame as a CSV file. A frame from :meth:`Data.to_pandas` comes back as it was."""
+    if any(name is not None for name in frame.index.names):
+        # A named index is a column, such as the time.
+        frame = frame.reset_index()
     frame = frame.rename(columns=_HEADINGS)
     text: str = frame.to_csv(index=False)
     return text

@@ -18,6 +18,7 @@ from bulge.effects import OwnEffects, own_text
 from bulge.optional import need
 from bulge.progress import Progress, callback
 from bulge.results import Result
+from bulge.texts import count, quoted, write_whole
 from bulge.units import FloatArray, Quantities, Quantity, si, si_array
 
 #: SI units of what a muscle file states beside the numbers of the muscle.
@@ -69,7 +70,7 @@ class Muscle:
             if value is not None:
                 lines.append(f"{key} = {_written(value, unit)}")
         if fibres is not None:
-            lines.append(f"fibres = {quoted(fibres) if isinstance(fibres, str) else _whole(fibres)}")
+            lines.append("fibres = " + (quoted(fibres) if isinstance(fibres, str) else str(count("fibres", fibres, 1))))
         if ends is not None:
             lines.append(f"ends = {quoted(ends)}")
         if fibre is not None:
@@ -143,7 +144,7 @@ class Muscle:
         """The muscle file; written to ``path``, if that is given."""
         text = self._native.to_toml()
         if path is not None:
-            write_whole(Path(path), text.encode())
+            write_whole(path, text.encode())
         return text
 
     def shape(
@@ -210,11 +211,13 @@ class Muscle:
             raise _bulge.InputError(f"pressure: give the gauge pressure for {', '.join(names)}, such as pressure=\"2 bar\"")
         known = effect_units(self._native.own)
         for name, value in {**(numbers or {}), **more}.items():
+            if name in ("contraction", "pressure"):
+                raise _bulge.InputError(f"{name} is given twice")
             varied[name] = si_array(value, _STATE_UNITS.get(name) or known.get(name, "1"), name)
         for one, other in [("radius", "slenderness"), ("fibre_stiffness", "elastic_group")]:
             if one in varied and other in varied:
                 raise _bulge.InputError(f"{one} and {other} say the same thing twice: give one of them")
-        shape = _common_shape(varied)
+        shape = common_shape(varied)
         if errors == "raise":
             _check_numbers(varied)
         base = varied.get("pressure")
@@ -254,6 +257,7 @@ class Muscle:
         """Isobaric characteristics as a pandas DataFrame: force, volume and stiffness from ``start`` to the limit at each pressure."""
         pandas = need("pandas", "a table of characteristics", "pandas")
         frames = []
+        points = count("points", points, 2)
         if np.size(si_array(pressure, "Pa", "pressure")) == 0:
             raise _bulge.InputError("pressure: no pressure is given")
         for p in np.atleast_1d(np.asarray(si_array(pressure, "Pa", "pressure"))):
@@ -364,7 +368,7 @@ def _shape_of(document: dict[str, Any], meridian: dict[str, FloatArray]) -> Shap
     return made
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """A bulging surface as arrays, x along the axis.
 
@@ -414,23 +418,7 @@ def effect_units(own: str) -> dict[str, str]:
     return dict(_bulge.units_of(own))
 
 
-def quoted(text: str) -> str:
-    """Text as TOML has it."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
-def count(name: str, value: Any, least: int) -> int:
-    """A whole number that is not too small."""
-    try:
-        whole = int(value)
-        if whole == value and least <= whole < 2**63 and not isinstance(value, (bool, str)):
-            return whole
-    except (TypeError, ValueError, OverflowError):
-        pass
-    raise _bulge.InputError(f"{name}: {value!r}: give a whole number of {least} or more")
-
-
-def _common_shape(varied: Mapping[str, float | FloatArray]) -> tuple[int, ...]:
+def common_shape(varied: Mapping[str, float | FloatArray]) -> tuple[int, ...]:
     try:
         return np.broadcast_shapes(*(np.shape(value) for value in varied.values()))
     except ValueError:
@@ -464,12 +452,6 @@ def _written(value: Quantity, unit: str) -> str:
     return json.dumps(f"{number!r} {unit}") if unit != "1" else repr(number)
 
 
-def _whole(value: Any) -> str:
-    if isinstance(value, (bool, str)) or int(value) != value:
-        raise _bulge.InputError(f"fibres: {value!r} is no whole number; write such as fibres=40")
-    return str(int(value))
-
-
 def _inline(entries: Mapping[str, str]) -> str:
     return "{ " + ", ".join(f"{quoted(key)} = {value}" for key, value in entries.items()) + " }"
 
@@ -480,25 +462,3 @@ def _flat(value: FloatArray, shape: tuple[int, ...]) -> FloatArray:
 
 def _short(value: float) -> str:
     return f"{value:.5g}"
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Writes a file so that it appears whole or not at all."""
-    import tempfile
-
-    try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".unfinished-")
-    except OSError as error:
-        raise _bulge.InputError(f"cannot write {path}: {error.strerror or error}") from None
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(name, 0o666 & ~mask)
-        os.replace(name, path)
-    except BaseException:
-        os.unlink(name)
-        raise

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from bulge import _bulge
-from bulge.muscle import count, write_whole
 from bulge.optional import need
 from bulge.progress import Progress, callback
 from bulge.results import Result
+from bulge.texts import count, read_text, write_whole
 from bulge.tables import Table
 
 
@@ -35,10 +35,7 @@ class Sweep:
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Sweep:
         """From a sweep file."""
-        try:
-            text = Path(path).read_text(encoding="utf-8")
-        except OSError as error:
-            raise _bulge.InputError(f"{os.fspath(path)}: {error.strerror or error}") from None
+        text = read_text(path)
         return cls._of(_bulge.Sweep.from_text(text, os.fspath(path), os.fspath(Path(path).parent)))
 
     @classmethod
@@ -92,8 +89,12 @@ class Sweep:
         ``resume`` goes on with what is there; ``chunks=(100, 200)`` are those only (several processes may share a folder; ``resume`` completes it).
         Ctrl-C loses the chunks in flight at most. Returns the document: points, infeasible, chunks, computed, damaged, is_complete.
         """
+        if chunks is not None:
+            if isinstance(chunks, str) or len(chunks) != 2:
+                raise _bulge.InputError(f"chunks: {chunks!r}: give the first and the one after the last, such as (100, 200)")
+            chunks = (count("chunks", chunks[0], 0), count("chunks", chunks[1], 0))
         with callback(progress, self.name) as told:
-            own = None if threads is None else count("threads", threads, 1)
+            own = None if threads is None else count("threads", threads, 1, 1024)
             text = self._native.run(os.fspath(folder), resume, chunks, csv, [], own, told)
         return Result(json.loads(text))
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from bulge import _bulge
 from bulge.results import Result, number
+from bulge.muscle import common_shape
 from bulge.units import FloatArray, Quantities, si_array
 
 
@@ -82,9 +83,9 @@ class Table(Result):
         wrong = [name for name in at if name not in names] + [name for name in names if name not in at]
         if wrong:
             raise _bulge.InputError(f"this table has the axes {', '.join(names)}: `{wrong[0]}` is {'missing' if wrong[0] in names else 'none of them'}")
-        columns = [si_array(at[axis["name"]], axis["unit"], axis["name"]) for axis in axes]
-        shape = np.broadcast_shapes(*(np.shape(column) for column in columns))
-        points = np.stack([np.broadcast_to(column, shape).reshape(-1) for column in columns], axis=-1)
+        columns = {axis["name"]: si_array(at[axis["name"]], axis["unit"], axis["name"]) for axis in axes}
+        shape = common_shape(columns)
+        points = np.stack([np.broadcast_to(column, shape).reshape(-1) for column in columns.values()], axis=-1)
         return np.ascontiguousarray(points, dtype=np.float64), shape
 
     def _sample(self, at: dict[str, Quantities]) -> tuple[FloatArray, FloatArray, tuple[int, ...]]:
