@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Quantity as _, to_toml};
 use bulge_sweep::{
-    Built, Plan, Promise, RunOptions, SWEEP_EXAMPLE, TableDescription, begin, manifest, piece, run, tabulate,
-    write_durably,
+    Built, Plan, Promise, RunOptions, SWEEP_EXAMPLE, TableDescription, begin, complete, manifest, piece, run,
+    tabulate, write_durably,
 };
 use bulge_table::Table;
 use pyo3::prelude::*;
@@ -110,6 +110,12 @@ impl Sweep {
     /// Makes a folder ready for the chunks.
     fn begin(&self, folder: PathBuf, resume: bool, csv: bool) -> PyResult<()> {
         begin(&self.plan, &folder, &RunOptions { resume, csv, ..RunOptions::default() }).or_raise()
+    }
+
+    /// Writes the manifest by the promises of the chunks; the JSON document, or none if one is missing.
+    fn complete(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Option<String>> {
+        let found = py.detach(|| complete(&self.plan, &folder)).or_raise()?;
+        found.map(|summary| serde_json::to_string(&summary).or_raise()).transpose()
     }
 
     /// Runs chunks into a folder; the JSON document of what was done.

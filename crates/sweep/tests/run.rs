@@ -298,7 +298,9 @@ fn many_begin_at_once_and_none_removes_what_another_writes() {
                 }
             };
             let workers: Vec<_> = (0..6).map(|worker| scope.spawn(work(worker))).collect();
-            workers.into_iter().for_each(|worker| worker.join().unwrap());
+            for worker in workers {
+                worker.join().unwrap();
+            }
         });
         go(&plan, folder.path(), &resume()).unwrap();
         assert!(bytes(folder.path()) == expected);

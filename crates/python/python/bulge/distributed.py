@@ -90,24 +90,19 @@ def _sweep(
     started = time.monotonic()
     store.begin(resume)
     threads = max(1, sum(client.nthreads().values()))
-    first = computed = 0
-    if chunks_per_task is None:
-        # The first chunk is timed where the sweep is started; it counts like any other.
-        seconds, computed = store.timed()
-        first = 1
-        most = max(1, plan.n_chunks // (LEAST_ROUNDS * threads))
-        chunks_per_task = max(1, min(most, math.ceil(TASK_SECONDS / max(seconds, 1e-6))))
-    ranges = [(a, min(a + chunks_per_task, plan.n_chunks)) for a in range(first, plan.n_chunks, chunks_per_task)]
+    pace = _Pace(plan.n_chunks, threads, chunks_per_task)
+    computed = finished = tasks = 0
     with callback(progress, plan.name) as told:
-        finished = first
-        for (a, b), answer in _run(client, store.task(), ranges, f"bulge-sweep-{_slug(plan.name)}"):
+        for (a, b), answer in _run(client, store.task(), pace.ranges(), f"bulge-sweep-{_slug(plan.name)}"):
+            pace.hear(b - a, answer)
             store.take(answer)
             computed += answer["computed"]
             finished += b - a
+            tasks += 1
             if told is not None:
                 told(finished / plan.n_chunks, "points")
     document = store.finish()
-    document |= {"computed": computed, "seconds": time.monotonic() - started, "tasks": len(ranges), "chunks_per_task": chunks_per_task}
+    document |= {"computed": computed, "seconds": time.monotonic() - started, "tasks": tasks, "chunks_per_task": pace.chunks}
     if plan.has_table:
         document["table"] = store.table()
     return Result({"name": plan.name, "folder": place, **document})
@@ -192,6 +187,28 @@ def _ordered(order: tuple[int, dict[str, Any]]) -> Diagnosis:
     return diagnose(**{"threads": 1, **order[1]})
 
 
+class _Pace:
+    """How many chunks make a task: one at first, then as many as take TASK_SECONDS by the times of those that are done."""
+
+    def __init__(self, n_chunks: int, threads: int, chunks: int | None) -> None:
+        self.n_chunks, self.chunks, self.fixed = n_chunks, chunks or 1, chunks is not None
+        #: Fewer chunks in a task than would leave the last ones to end apart.
+        self.most = max(1, n_chunks // (LEAST_ROUNDS * threads))
+
+    def ranges(self) -> Iterator[tuple[int, int]]:
+        """Ranges of chunks, each as long as is known to be right when it is asked for."""
+        start = 0
+        while start < self.n_chunks:
+            end = min(start + self.chunks, self.n_chunks)
+            yield start, end
+            start = end
+
+    def hear(self, chunks: int, answer: dict[str, Any]) -> None:
+        """The time of a task. One whose chunks were there took none, which says nothing of the others."""
+        if not self.fixed and answer["computed"] == chunks:
+            self.chunks = max(1, min(self.most, math.ceil(TASK_SECONDS * chunks / max(answer["seconds"], 1e-6))))
+
+
 class _Folder:
     """A sweep in a folder that all workers share."""
 
@@ -201,13 +218,6 @@ class _Folder:
     def begin(self, resume: bool) -> None:
         self.plan._native.begin(self.folder, resume, self.csv)
 
-    def timed(self) -> tuple[float, int]:
-        """Runs the first chunk: the seconds that it took, and 1 if it was not there."""
-        started = time.monotonic()
-        document = _run_folder(self.plan, self.folder, self.csv, (0, 1))
-        # One that was there took no time, which says nothing of the others.
-        return (time.monotonic() - started, 1) if document["computed"] else (TASK_SECONDS, 0)
-
     def task(self) -> Callable[[tuple[int, int]], dict[str, Any]]:
         return _FolderTask(self.plan, self.folder, self.csv)
 
@@ -215,8 +225,9 @@ class _Folder:
         pass
 
     def finish(self) -> dict[str, Any]:
-        """Every chunk is read once and its hash compared: the manifest says what is there."""
-        document: dict[str, Any] = json.loads(self.plan._native.run(self.folder, True, None, self.csv, [], None, None))
+        """The manifest. Each chunk was written, or read and its hash compared, by a task of this run."""
+        text = self.plan._native.complete(self.folder)
+        document: dict[str, Any] = json.loads(text or self.plan._native.run(self.folder, True, None, self.csv, [], None, None))
         return document
 
     def table(self) -> dict[str, Any]:
@@ -230,12 +241,9 @@ class _FolderTask:
         self.plan, self.folder, self.csv = plan, folder, csv
 
     def __call__(self, chunks: tuple[int, int]) -> dict[str, Any]:
-        return _run_folder(self.plan, self.folder, self.csv, chunks)
-
-
-def _run_folder(plan: Sweep, folder: str, csv: bool, chunks: tuple[int, int]) -> dict[str, Any]:
-    document: dict[str, Any] = json.loads(plan._native.run(folder, True, chunks, csv, [], 1, None))
-    return document
+        started = time.monotonic()
+        document: dict[str, Any] = json.loads(self.plan._native.run(self.folder, True, chunks, self.csv, [], 1, None))
+        return {**document, "seconds": time.monotonic() - started}
 
 
 class _Store:
@@ -254,13 +262,6 @@ class _Store:
             raise _bulge.InputError(f"{self.url} holds another sweep: take another place, or undo the change")
         elif not resume:
             raise _bulge.InputError(f"{self.url} holds this sweep already: add resume=True to go on with it, or take another place")
-
-    def timed(self) -> tuple[float, int]:
-        """Runs the first chunk: the seconds that it took, and 1 if it was not there."""
-        started = time.monotonic()
-        answer = self.task()((0, 1))
-        self.take(answer)
-        return (time.monotonic() - started, 1) if answer["computed"] else (TASK_SECONDS, 0)
 
     def task(self) -> Callable[[tuple[int, int]], dict[str, Any]]:
         return _StoreTask(self.plan, self.url, self.csv, self.options)
@@ -290,6 +291,7 @@ class _StoreTask:
         self.plan, self.url, self.csv, self.options = plan, url, csv, options
 
     def __call__(self, chunks: tuple[int, int]) -> dict[str, Any]:
+        started = time.monotonic()
         files = _Files(self.url, self.options)
         promises, computed = {}, 0
         for chunk in range(*chunks):
@@ -305,7 +307,7 @@ class _StoreTask:
                 files.put(f"chunks/{chunk:06}.json", there.encode())
                 computed += 1
             promises[chunk] = there
-        return {"promises": promises, "computed": computed}
+        return {"promises": promises, "computed": computed, "seconds": time.monotonic() - started}
 
     def _standing(self, files: _Files, chunk: int) -> str | None:
         """The promise of a chunk that is there, if its files have the hashes that it says."""
