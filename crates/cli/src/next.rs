@@ -110,6 +110,12 @@ impl NextCommand {
         for sentence in &step.sentences {
             paragraph(&mut out, "  ", sentence);
         }
+        if step.next.is_some_and(|next| next.repeats == 0)
+            && self.pressure.is_none()
+            && self.contraction.is_none()
+        {
+            paragraph(&mut out, "  ", "(--pressure and --contraction state them)");
+        }
         if step.next.is_some_and(|next| next.repeats > 0) {
             let _ = writeln!(
                 out,
