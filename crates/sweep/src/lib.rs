@@ -3,6 +3,7 @@
 mod certified;
 mod chunk;
 mod design;
+mod difference;
 pub mod export;
 mod family;
 mod family_error;

@@ -13,14 +13,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::chunk::Computer;
 use crate::design::Layout;
+use crate::difference::difference;
 use crate::family_error::FamilyError;
 use crate::folder::{Folder, Promise, Standing, hash, write_durably};
 use crate::plan::Plan;
 
 /// Format of the folder.
 const SCHEMA: &str = "bulge.sweep/1";
-/// Most lines of a difference that are shown.
-const MOST_SHOWN: usize = 12;
 
 /// How a sweep is run.
 #[derive(Debug, Clone, Default)]
@@ -484,22 +483,4 @@ fn merge(
         }
     }
     Ok(())
-}
-
-/// Lines of two texts that differ, with their keys in sight.
-fn difference(before: &str, now: &str) -> String {
-    let (old, new): (Vec<&str>, Vec<&str>) = (before.lines().collect(), now.lines().collect());
-    let same = old.iter().zip(&new).take_while(|(a, b)| a == b).count();
-    let rest = old.len().min(new.len()) - same;
-    let tail = old.iter().rev().zip(new.iter().rev()).take(rest).take_while(|(a, b)| a == b).count();
-    let part = |lines: &[&str], sign: char| {
-        let lines = &lines[same..lines.len() - tail];
-        let mut shown: Vec<String> =
-            lines.iter().take(MOST_SHOWN).map(|line| format!("  {sign} {}", line.trim())).collect();
-        if lines.len() > MOST_SHOWN {
-            shown.push(format!("  {sign} ... and {} lines more", lines.len() - MOST_SHOWN));
-        }
-        shown
-    };
-    [part(&old, '-'), part(&new, '+')].concat().join("\n")
 }
