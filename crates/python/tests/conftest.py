@@ -28,6 +28,19 @@ force = "0.1 N"
 """
 
 
+#: A table that is built in a moment.
+SMALL_TABLE = """
+muscle = "ppam-2-r16"
+outputs = ["volume_v"]
+[axes.contraction]
+range = "1 %..20 %"
+[table]
+tolerance = 1e-3
+gradient = 1e-1
+max_size = "8 KiB"
+checks = 100000
+"""
+
 @pytest.fixture(scope="session")
 def ppam():
     """The second-generation pleated muscle; its fibres don't stretch."""
@@ -166,3 +179,9 @@ def _solved(misses, start):
     found = root(misses, start, method="hybr", tol=1e-13)
     assert np.max(np.abs(misses(found.x))) < 1e-11, found.message
     return found.x
+
+
+@pytest.fixture(scope="session")
+def small_table():
+    """The text of a sweep that wishes a small table."""
+    return SMALL_TABLE

@@ -129,19 +129,8 @@ def test_effect_cards(document):
         assert bulge.effects(name).to_dict() == document("effects", name)["effect"]
 
 
-def test_table(document, tmp_path):
-    text = """
-muscle = "ppam-2-r16"
-outputs = ["volume_v"]
-[axes.contraction]
-range = "1 %..20 %"
-[table]
-tolerance = 1e-3
-gradient = 1e-1
-max_size = "8 KiB"
-checks = 100000
-"""
-    table = bulge.Sweep(text).table()
+def test_table(document, small_table, tmp_path):
+    table = bulge.Sweep(small_table).table()
     (tmp_path / "table.bulge").write_bytes(table.to_bytes())
     assert table.to_dict() == document("table", "info", tmp_path / "table.bulge")
 

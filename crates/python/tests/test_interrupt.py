@@ -167,19 +167,8 @@ def test_progress_rises_to_one(braid, rubbed, tmp_path):
         assert all(isinstance(what, str) and what for _, what in told)
 
 
-def test_progress_of_a_table_rises_to_one():
-    text = """
-muscle = "ppam-2-r16"
-outputs = ["volume_v"]
-[axes.contraction]
-range = "1 %..20 %"
-[table]
-tolerance = 1e-3
-gradient = 1e-1
-max_size = "8 KiB"
-checks = 100000
-"""
-    _, told = steps_of(lambda told: bulge.Sweep(text).table(progress=told))
+def test_progress_of_a_table_rises_to_one(small_table):
+    _, told = steps_of(lambda told: bulge.Sweep(small_table).table(progress=told))
     assert told and told[-1][0] == 1.0
 
 

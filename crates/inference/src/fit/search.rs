@@ -351,22 +351,18 @@ fn warnings(fit: &Fit) -> Vec<String> {
     }
     for p in &fit.parameters {
         let value = format!("{} {}", significant(p.value, 3), p.unit);
-        if !p.plausible && p.nuisance {
-            warnings.push(format!(
-                "{} is fitted as {value}, far beyond its data sheet ({} to {} {}): it makes up for something that the model lacks",
-                label(p),
-                significant(p.plausible_range[0], 3),
-                significant(p.plausible_range[1], 3),
-                p.unit
-            ));
-        } else if !p.plausible {
-            warnings.push(format!(
-                "implausible: {} = {value}, outside {} to {} {}: a wrong cure, even if the error falls",
-                label(p),
-                significant(p.plausible_range[0], 3),
-                significant(p.plausible_range[1], 3),
-                p.unit
-            ));
+        if !p.plausible {
+            let [low, high] = p.plausible_range.map(|end| significant(end, 3));
+            let (label, unit) = (label(p), &p.unit);
+            warnings.push(if p.nuisance {
+                format!(
+                    "{label} is fitted as {value}, far beyond its data sheet ({low} to {high} {unit}): it makes up for something that the model lacks"
+                )
+            } else {
+                format!(
+                    "implausible: {label} = {value}, outside {low} to {high} {unit}: a wrong cure, even if the error falls"
+                )
+            });
         }
         if let Some(side) = p.at_bound {
             warnings.push(format!("{} lies on the {side} bound of the search, {value}", label(p)));
