@@ -79,6 +79,27 @@ def test_a_cluster_writes_the_same_bytes(client, alone, tmp_path, chunks_per_tas
     assert found.infeasible == json.loads((tmp_path / "sweep" / "manifest.json").read_text())["infeasible"] > 0
 
 
+@pytest.mark.parametrize("chunks", [None, 5])
+@pytest.mark.parametrize("n_chunks, threads", [(1, 1), (7, 3), (1000, 4), (1000, 5000)])
+def test_tasks_are_of_the_time_asked_for_and_end_together(n_chunks, threads, chunks):
+    pace = bulge.distributed._Pace(n_chunks, threads, chunks)
+    ranges = []
+    for a, b in pace.ranges():
+        ranges.append((a, b))
+        pace.hear(b - a, {"computed": b - a, "seconds": 0.05 * (b - a)})
+    starts, ends = zip(*ranges)
+    assert starts == (0, *ends[:-1]) and ends[-1] == n_chunks
+    lengths = [b - a for a, b in ranges]
+    if chunks:
+        assert set(lengths[:-1]) <= {chunks}
+        return
+    most = round(bulge.distributed.TASK_SECONDS / 0.05)
+    assert max(lengths) <= most and lengths[0] == lengths[-1] == 1
+    # Nobody gets more than half of its share of what is left.
+    assert all(2 * threads * (length - 1) < n_chunks - start for start, length in zip(starts, lengths))
+    assert n_chunks < 10 * most * threads or max(lengths) == most
+
+
 def test_a_store_gets_the_same_bytes(client, alone, tmp_path):
     url = f"file://{tmp_path}/store"
     found = bulge.distributed.sweep(_plan(), url, client)

@@ -9,6 +9,9 @@ that is written after a chunk's file, with its hash.
     import bulge.distributed
 
     bulge.distributed.sweep("sweep.toml", "result", Client())           # the same bytes as `bulge sweep sweep.toml --out result`
+
+Where workers have all cores of a machine, Dask's own watch over them costs some per cent, and can be set to rest before the cluster starts:
+``dask.config.set({"distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "500ms"})``.
 """
 
 from __future__ import annotations
@@ -37,8 +40,6 @@ from bulge.texts import count, write_whole
 
 #: Seconds that a task should take: what a scheduler costs, some milliseconds per task, is then about a hundredth.
 TASK_SECONDS = 0.5
-#: Tasks per thread of the cluster, at least, so that the last ones end together.
-LEAST_ROUNDS = 16
 #: How often a task is handed out again that Dask has given up, each time after the deaths of 4 workers (its setting ``allowed-failures``, and 1).
 MOST_RETURNS = 4
 #: Stores in which a file that is put appears whole or not at all.
@@ -188,25 +189,28 @@ def _ordered(order: tuple[int, dict[str, Any]]) -> Diagnosis:
 
 
 class _Pace:
-    """How many chunks make a task: one at first, then as many as take TASK_SECONDS by the times of those that are done."""
+    """How many chunks make a task: one at first, then as many as take TASK_SECONDS by the times of those that are done, and fewer and fewer
+    towards the end, so that all threads end together."""
 
     def __init__(self, n_chunks: int, threads: int, chunks: int | None) -> None:
-        self.n_chunks, self.chunks, self.fixed = n_chunks, chunks or 1, chunks is not None
-        #: Fewer chunks in a task than would leave the last ones to end apart.
-        self.most = max(1, n_chunks // (LEAST_ROUNDS * threads))
+        self.n_chunks, self.threads = n_chunks, threads
+        self.chunks, self.fixed = chunks or 1, chunks is not None
 
     def ranges(self) -> Iterator[tuple[int, int]]:
         """Ranges of chunks, each as long as is known to be right when it is asked for."""
         start = 0
         while start < self.n_chunks:
-            end = min(start + self.chunks, self.n_chunks)
+            left = self.n_chunks - start
+            # Half of what would be each thread's share of the rest.
+            share = left if self.fixed else math.ceil(left / (2 * self.threads))
+            end = start + min(self.chunks, share, left)
             yield start, end
             start = end
 
     def hear(self, chunks: int, answer: dict[str, Any]) -> None:
         """The time of a task. One whose chunks were there took none, which says nothing of the others."""
         if not self.fixed and answer["computed"] == chunks:
-            self.chunks = max(1, min(self.most, math.ceil(TASK_SECONDS * chunks / max(answer["seconds"], 1e-6))))
+            self.chunks = math.ceil(TASK_SECONDS * chunks / max(answer["seconds"], 1e-6))
 
 
 class _Folder:
