@@ -20,6 +20,7 @@ const NEEDED: &[&str] = &[
     "matplotlib",
     "meshio",
     "distributed",
+    "dask-jobqueue",
     "fsspec",
     "tqdm",
     "pytest",

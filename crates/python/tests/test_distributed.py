@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import signal
+import sys
 import threading
 import time
 
@@ -110,6 +111,54 @@ def test_a_store_gets_the_same_bytes(client, alone, tmp_path):
     (tmp_path / "store" / "chunks" / "000007.json").write_text("{}")
     again = bulge.distributed.sweep(_plan(), url, client, resume=True)
     assert _hashes(tmp_path / "store") == alone and again.computed == 2
+
+
+def test_an_object_store_gets_the_same_bytes(client, alone, monkeypatch):
+    """S3 as moto plays it."""
+    server_of = pytest.importorskip("moto.server")
+    s3fs = pytest.importorskip("s3fs")
+    for name in ["AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY"]:
+        monkeypatch.setenv(name, "test")
+    server = server_of.ThreadedMotoServer(port=0)
+    server.start()
+    try:
+        options = {"endpoint_url": f"http://127.0.0.1:{server._server.port}", "key": "test", "secret": "test"}
+        system = s3fs.S3FileSystem(**options)
+        system.mkdir("bucket")
+        bulge.distributed.sweep(_plan(), "s3://bucket/run", client, storage_options=options)
+        with pytest.raises(bulge.InputError, match="resume=True"):
+            bulge.distributed.sweep(_plan(), "s3://bucket/run", client, storage_options=options)
+        system.pipe("bucket/run/points/000003.parquet", b"damaged")
+        system.rm("bucket/run/chunks/000005.json")
+        again = bulge.distributed.sweep(_plan(), "s3://bucket/run", client, storage_options=options, resume=True)
+        assert again.computed == 2
+        there = {path.removeprefix("bucket/run/"): hashlib.sha256(system.cat(path)).hexdigest() for path in system.find("bucket/run")}
+        assert there == alone
+    finally:
+        server.stop()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="setsid and the name of the loopback are Linux's")
+def test_jobs_of_slurm_write_the_same_bytes(alone, tmp_path, monkeypatch):
+    """dask-jobqueue as on Slurm; what stands in for `sbatch` runs the script that it is given."""
+    jobqueue = pytest.importorskip("dask_jobqueue")
+    submit, cancel = tmp_path / "bin" / "sbatch", tmp_path / "bin" / "scancel"
+    submit.parent.mkdir()
+    submit.write_text(f'#!/bin/sh\nsetsid sh "$1" > {tmp_path}/job-$$.log 2>&1 &\necho "Submitted batch job $!"\n')
+    cancel.write_text("#!/bin/sh\nkill -- -$1\n")
+    for script in [submit, cancel]:
+        script.chmod(0o755)
+    monkeypatch.setenv("PATH", str(submit.parent), prepend=os.pathsep)
+    with (
+        jobqueue.SLURMCluster(
+            cores=1, memory="1GB", interface="lo", log_directory=str(tmp_path), scheduler_options={"dashboard_address": None}
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        cluster.scale(jobs=2)
+        client.wait_for_workers(2, timeout=60)
+        bulge.distributed.sweep(_plan(), tmp_path / "sweep", client)
+    assert _hashes(tmp_path / "sweep") == alone
 
 
 def test_what_is_there_is_not_made_again_and_another_sweep_is_refused(client, alone, tmp_path):
