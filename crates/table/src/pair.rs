@@ -129,6 +129,13 @@ impl Factors {
         }
     }
 
+    /// Those of one of both outputs, twice.
+    #[inline]
+    pub(crate) fn only(&self, o: usize) -> Self {
+        let both = |two: Pair| Pair::both(two.0[o]);
+        Self { constant: both(self.constant), linear: both(self.linear), inverse: both(self.inverse) }
+    }
+
     /// At u and 1/u: the factors, and by how much they fall with u.
     #[inline]
     pub(crate) fn at(&self, u: Pair, over: Pair) -> [Pair; 2] {

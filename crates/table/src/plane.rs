@@ -1,7 +1,11 @@
-//! The lookup of splines over two axes: the general path with everything known beforehand and no loop left, two outputs at a time, and for many
-//! points the places of two at a time.
+//! The lookup of splines over two axes: the general path with everything known beforehand and no loop left, two outputs at a time; for many points
+//! two points at a time in what doesn't depend on the output.
 //!
-//! What doesn't depend on the output is computed twice, from numbers that are stored twice: so it needn't be spread before it meets the outputs.
+//! A single point is two that are the same: so what it has in common needn't be spread before it meets the outputs.
+//!
+//! Many points go through in blocks and stages. A processor sees some three hundred instructions ahead; a lookup is a chain longer than that, a
+//! stage is not, so that the waits of one point are filled with the work of the next. Each stage that has one is a function of its own, since pairs
+//! that are returned in memory stay pairs.
 
 use core::array;
 
@@ -10,7 +14,7 @@ use crate::lookup::{Lookup, Sample};
 use crate::pair::{Factors, Pair, Weights};
 use crate::spline::{Double, Number};
 
-/// Points whose places are found before any is looked up, so that the steps of several points overlap. An even number.
+/// Points that go through the stages together. An even number.
 const BLOCK: usize = 8;
 /// Most pairs of outputs.
 const PAIRS: usize = crate::format::MOST_OUTPUTS / 2;
@@ -42,6 +46,15 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
+    /// The factors and the chain rule: an output's value and derivatives by its axes from those of its spline.
+    #[inline]
+    fn chain(&self, place: &Chain, factors: &Factors, [g, g_u, g_v]: [Pair; 3]) -> [Pair; 3] {
+        let [factor, fall] = factors.at(place.u, place.over);
+        let by_u = g_u * (factor * self.across_by) - g * fall;
+        let by_v = g_v * (factor * place.own_v) + by_u * place.shift;
+        [g * factor, by_u * place.own_u, by_v]
+    }
+
     /// The numbers of a lookup whose others are known.
     pub(crate) fn new<const A: usize, const O: usize>(lookup: &Lookup<'_, A, O>) -> Self {
         if A != 2 {
@@ -124,18 +137,20 @@ fn sample<const A: usize>(found: &[Pair; 3], o: usize) -> Sample<A> {
 }
 
 /// How far two points are along their axes, which a single point is twice.
+#[derive(Debug, Clone, Copy, Default)]
 struct Start {
-    distance: Pair,
     /// The distance or its root, and its derivative.
     s: [Pair; 2],
     /// The second coordinate, but for its scale, and its derivative.
     q: Pair,
     own_v: Pair,
+    /// Whether they are within the ends of the axes that are numbers.
+    is_inside: [bool; 2],
 }
 
 impl Start {
     #[inline]
-    fn at(plane: &Plane, is_root: bool, x: Pair, y: Pair) -> Self {
+    fn at(plane: &Plane, is_root: bool, least: f64, x: Pair, y: Pair) -> Self {
         let distance = x - plane.low[0];
         let (mut q, mut own_v) = (y - plane.low[1], plane.own);
         if !plane.is_linear {
@@ -148,7 +163,40 @@ impl Start {
             let r = distance.reciprocal_root();
             s = [distance * r, r * Pair::both(0.5)];
         }
-        Self { distance, s, q, own_v }
+        let is_inside = array::from_fn(|k| {
+            let is_along = y.0[k] >= plane.low[1].0[k] && y.0[k] <= plane.high[1];
+            is_along && distance.0[k] >= least && x.0[k] <= plane.high[0]
+        });
+        Self { s, q, own_v, is_inside }
+    }
+}
+
+/// 1/Q and c of the edge at two points, each with its derivative by the second coordinate; without an edge, the coordinate's own.
+#[derive(Debug, Clone, Copy, Default)]
+struct Edge {
+    scale: [Pair; 2],
+    pole: [Pair; 2],
+}
+
+/// What two points' values and derivatives need besides the spline.
+#[derive(Debug, Clone, Copy, Default)]
+struct Chain {
+    /// The first coordinate and its inverse.
+    u: Pair,
+    over: Pair,
+    /// Its derivative by its own axis and by the second coordinate, and the derivative of that one.
+    own_u: Pair,
+    shift: Pair,
+    own_v: Pair,
+}
+
+impl Chain {
+    /// One of both, twice.
+    #[inline]
+    fn only(&self, point: usize) -> Self {
+        let both = |two: Pair| Pair::both(two.0[point]);
+        let Self { u, over, own_u, shift, own_v } = *self;
+        Self { u: both(u), over: both(over), own_u: both(own_u), shift: both(shift), own_v: both(own_v) }
     }
 }
 
@@ -160,13 +208,7 @@ struct Places {
     /// Places in their cells.
     t: Pair,
     w: Pair,
-    /// The first coordinate and its inverse.
-    u: Pair,
-    over: Pair,
-    /// Its derivative by its own axis and by the second coordinate, and the derivative of that one.
-    own_u: Pair,
-    shift: Pair,
-    own_v: Pair,
+    chain: Chain,
     is_inside: [bool; 2],
 }
 
@@ -177,15 +219,12 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         all(|i| self.two_in_plane::<N>(point[0], point[1], i))
     }
 
-    /// Values and derivatives of a pair of outputs. A function of its own, since pairs that are returned in memory stay pairs.
+    /// Values and derivatives of a pair of outputs.
     #[inline(never)]
     fn two_in_plane<N: Number>(&self, x: f64, y: f64, i: usize) -> Option<[Pair; 3]> {
         let plane = &self.plane;
-        if !(y >= plane.low[1].0[0] && y <= plane.high[1]) {
-            return None;
-        }
-        let start = Start::at(plane, self.is_root, Pair::both(x), Pair::both(y));
-        if !(start.distance.0[0] >= self.least && x <= plane.high[0]) {
+        let start = Start::at(plane, self.is_root, self.least, Pair::both(x), Pair::both(y));
+        if !start.is_inside[0] {
             return None;
         }
         // 1/Q and c of the edge go together.
@@ -198,47 +237,45 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
             (edge, edge_by) = (weights.mean(ends), (ends[1] - ends[0]) * plane.edge_by);
         }
         let twice = |i: usize| [Pair::both(edge.0[i]), Pair::both(edge_by.0[i])];
-        let places = self.both_places(&start, twice(0), twice(1));
+        let places = self.both_places(&start, &Edge { scale: twice(0), pole: twice(1) });
         if !places.is_inside[0] {
             return None;
         }
-        self.samples_at::<N>(&places, 0, i)
+        let i = if O > 2 { i } else { 0 };
+        let found = self.spline_at::<N>(&places, 0, i)?;
+        Some(plane.chain(&places.chain.only(0), &plane.factors[i], found))
     }
 
-    /// Two points on the table, but for whether they are inside.
+    /// Two points on the table. Of points outside it may be anywhere.
     #[inline]
-    fn both_places(&self, start: &Start, [scale, scale_by]: [Pair; 2], [pole, pole_by]: [Pair; 2]) -> Places {
+    fn both_places(&self, start: &Start, edge: &Edge) -> Places {
         let (plane, [s, s_by]) = (&self.plane, start.s);
+        let ([scale, scale_by], [pole, pole_by]) = (edge.scale, edge.pole);
         let below = (s * plane.factor + pole).reciprocal();
         let part = scale * below;
         let u = part * s;
-        let is_inside = u.0.map(|u| u <= 1.0 + 4.0 * f64::EPSILON && u >= self.least_u);
+        let is_inside = array::from_fn(|k| {
+            start.is_inside[k] && u.0[k] <= 1.0 + 4.0 * f64::EPSILON && u.0[k] >= self.least_u
+        });
         let (row, t) = plane.across.at(u);
         let u = u.at_most(1.0);
         let (column, w) = plane.along.at(start.q);
-        Places {
-            row,
-            column,
-            t,
-            w,
+        let chain = Chain {
             u,
             over: if self.least_u > 0.0 { u.reciprocal() } else { Pair::both(1.0) },
             own_u: part * (pole * below) * s_by,
             shift: (s * below) * (scale_by - part * pole_by) * start.own_v,
             own_v: plane.along_by * start.own_v,
-            is_inside,
-        }
+        };
+        Places { row, column, t, w, chain, is_inside }
     }
 
-    /// Values and derivatives of a pair of outputs at one of two points.
+    /// 36 times the splines of a pair of outputs at one of two points, and 12 times their derivatives by the places in the cell.
     #[inline]
-    fn samples_at<N: Number>(&self, place: &Places, point: usize, i: usize) -> Option<[Pair; 3]> {
-        let plane = &self.plane;
-        let i = if O > 2 { i } else { 0 };
-        let only = |two: &Pair| Pair::both(two.0[point]);
+    fn spline_at<N: Number>(&self, place: &Places, point: usize, i: usize) -> Option<[Pair; 3]> {
         let [across, along] = Weights::of_each(Pair([place.t.0[point], place.w.0[point]]));
         let each = O * N::BYTES;
-        let stride = each * plane.nodes as usize;
+        let stride = each * self.plane.nodes as usize;
         let start = place.row[point] as usize * stride + place.column[point] as usize * each;
         let patch = self.data.get(start..start + (3 * stride + 4 * each))?;
         let rows = [0, 1, 2, 3].map(|k| patch.get(k * stride..k * stride + 4 * each));
@@ -250,62 +287,96 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let low = across.ends(&[l0, l1, l2, l3]);
         let high = across.ends(&[h0, h1, h2, h3]);
         let ends = [along.mean([low[0], high[0]]), along.mean([low[1], high[1]])];
-        let g = across.mean(ends);
-        let g_u = ends[1] - ends[0];
-        let g_v = across.mean([high[0] - low[0], high[1] - low[1]]);
-        // The factors, and the chain rule.
-        let (own_u, own_v) = (only(&place.own_u), only(&place.own_v));
-        let [factor, fall] = plane.factors[i].at(only(&place.u), only(&place.over));
-        let by_u = g_u * (factor * plane.across_by) - g * fall;
-        let by_v = g_v * (factor * own_v) + by_u * only(&place.shift);
-        Some([g * factor, by_u * own_u, by_v])
+        let by_v = across.mean([high[0] - low[0], high[1] - low[1]]);
+        Some([across.mean(ends), ends[1] - ends[0], by_v])
     }
 
     /// [`Lookup::at_each`] of splines where A is 2.
     pub(crate) fn each_in_plane<N: Number>(&self, points: &[[f64; A]], found: &mut [Option<[Sample<A>; O]>]) {
-        let mut places = [Places::default(); BLOCK / 2];
-        for (points, found) in points.chunks(BLOCK).zip(found.chunks_mut(BLOCK)) {
-            for (two, place) in points.chunks(2).zip(&mut places) {
-                let last = two[two.len() - 1];
-                self.two_places(Pair([two[0][0], last[0]]), Pair([two[0][1], last[1]]), place);
-            }
-            for (k, found) in found.iter_mut().enumerate().take(points.len()) {
-                *found = all(|i| self.one_of_two::<N>(&places[k / 2], k % 2, i));
-            }
-        }
-    }
-
-    /// Where two points are, each step for both. Of points outside it may be anywhere.
-    #[inline(never)]
-    fn two_places(&self, x: Pair, y: Pair, to: &mut Places) {
         let plane = &self.plane;
-        let start = Start::at(plane, self.is_root, x, y);
-        let [mut scale, mut pole] = plane.first.0.map(|number| [Pair::both(number), Pair::default()]);
-        if self.is_fitted {
-            let (cells, t) = plane.edge.at(start.q);
-            let edge: &[[u8; 16]] = self.edge.as_chunks().0;
-            let knots = |cell: u32| edge.get(cell as usize..).and_then(<[_]>::first_chunk::<4>);
-            let Some(none) = edge.first_chunk() else { return };
-            let [a, b] = [knots(cells[0]).unwrap_or(none), knots(cells[1]).unwrap_or(none)];
-            let weights = Weights::at(t);
-            let number = |k: &[u8; 16], at: usize| Double::read(&k[8 * at..]);
-            [scale, pole] = [0, 1].map(|at| {
-                let ends = weights.ends(&array::from_fn(|k| Pair([number(&a[k], at), number(&b[k], at)])));
-                [weights.mean(ends), (ends[1] - ends[0]) * plane.edge_by]
-            });
+        let factors: [Factors; O] = array::from_fn(|o| plane.factors[o / 2].only(o % 2));
+        let [scale, pole] = plane.first.0.map(|number| [Pair::both(number), Pair::default()]);
+        let mut edges = [Edge { scale, pole }; BLOCK / 2];
+        let mut starts = [Start::default(); BLOCK / 2];
+        let mut places = [Places::default(); BLOCK / 2];
+        let mut inside = [false; BLOCK];
+        let mut splines = [[Pair::default(); 3]; BLOCK];
+        for (points, found) in points.chunks(BLOCK).zip(found.chunks_mut(BLOCK)) {
+            let count = points.len().min(found.len());
+            for (two, start) in points.chunks(2).zip(&mut starts) {
+                let last = two[two.len() - 1];
+                self.two_starts(Pair([two[0][0], last[0]]), Pair([two[0][1], last[1]]), start);
+            }
+            if self.is_fitted {
+                for (start, edge) in starts.iter().zip(&mut edges) {
+                    self.two_edges(start, edge);
+                }
+            }
+            for ((start, edge), places) in starts.iter().zip(&edges).zip(&mut places) {
+                self.two_places(start, edge, places);
+            }
+            for i in 0..O.div_ceil(2) {
+                for (k, spline) in splines.iter_mut().enumerate().take(count) {
+                    inside[k] = self.spline_of_two::<N>(&places[k / 2], k % 2, i, spline);
+                }
+                for (k, two) in found[..count].chunks_mut(2).enumerate().take(count.div_ceil(2)) {
+                    let (places, of) = (&places[k], [splines[2 * k], splines[2 * k + 1]]);
+                    let done: [[Pair; 3]; 2] = array::from_fn(|o| {
+                        let both = array::from_fn(|q| Pair([of[0][q].0[o], of[1][q].0[o]]));
+                        plane.chain(&places.chain, &factors[(2 * i + o).min(O - 1)], both)
+                    });
+                    for (point, found) in two.iter_mut().enumerate() {
+                        if i == 0 {
+                            let none = Sample { value: 0.0, gradient: [0.0; A] };
+                            *found = if inside[2 * k + point] { Some([none; O]) } else { None };
+                        }
+                        if let Some(found) = found {
+                            for (to, done) in found[2 * i..].iter_mut().zip(&done) {
+                                *to = sample(done, point);
+                            }
+                        }
+                    }
+                }
+            }
         }
-        *to = self.both_places(&start, scale, pole);
-        to.is_inside = array::from_fn(|k| {
-            let is_along = y.0[k] >= plane.low[1].0[0] && y.0[k] <= plane.high[1];
-            let is_across = start.distance.0[k] >= self.least && x.0[k] <= plane.high[0];
-            is_along && is_across && to.is_inside[k]
-        });
     }
 
     #[inline(never)]
-    fn one_of_two<N: Number>(&self, place: &Places, point: usize, i: usize) -> Option<[Pair; 3]> {
+    fn two_starts(&self, x: Pair, y: Pair, to: &mut Start) {
+        *to = Start::at(&self.plane, self.is_root, self.least, x, y);
+    }
+
+    #[inline(never)]
+    fn two_edges(&self, start: &Start, to: &mut Edge) {
+        let (cells, t) = self.plane.edge.at(start.q);
+        let edge: &[[u8; 16]] = self.edge.as_chunks().0;
+        let knots = |cell: u32| edge.get(cell as usize..).and_then(<[_]>::first_chunk::<4>);
+        let Some(none) = edge.first_chunk() else { return };
+        let [a, b] = [knots(cells[0]).unwrap_or(none), knots(cells[1]).unwrap_or(none)];
+        let weights = Weights::at(t);
+        let number = |k: &[u8; 16], at: usize| Double::read(&k[8 * at..]);
+        let [scale, pole] = [0, 1].map(|at| {
+            let ends = weights.ends(&array::from_fn(|k| Pair([number(&a[k], at), number(&b[k], at)])));
+            [weights.mean(ends), (ends[1] - ends[0]) * self.plane.edge_by]
+        });
+        *to = Edge { scale, pole };
+    }
+
+    #[inline(never)]
+    fn two_places(&self, start: &Start, edge: &Edge, to: &mut Places) {
+        *to = self.both_places(start, edge);
+    }
+
+    /// The spline at one of two points; false outside.
+    #[inline(never)]
+    fn spline_of_two<N: Number>(&self, place: &Places, point: usize, i: usize, to: &mut [Pair; 3]) -> bool {
         let point = point % 2;
-        if place.is_inside[point] { self.samples_at::<N>(place, point, i) } else { None }
+        if !place.is_inside[point] {
+            return false;
+        }
+        let Some(found) = self.spline_at::<N>(place, point, if O > 2 { i } else { 0 }) else { return false };
+        *to = found;
+        true
     }
 }
 
