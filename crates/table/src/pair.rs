@@ -27,10 +27,18 @@ impl Pair {
         Self(self.0.map(reciprocal_root))
     }
 
-    /// The smaller of each and a number, none of which is a NaN.
+    /// The smaller of each; the other number where one is a NaN, and a NaN where the other is.
     #[inline]
-    pub(crate) fn at_most(self, most: f64) -> Self {
-        Self(self.0.map(|x| if x < most { x } else { most }))
+    pub(crate) fn or_less(self, other: Self) -> Self {
+        let less = |i: usize| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] };
+        Self([less(0), less(1)])
+    }
+
+    /// The larger of each.
+    #[inline]
+    pub(crate) fn or_more(self, other: Self) -> Self {
+        let more = |i: usize| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] };
+        Self([more(0), more(1)])
     }
 }
 

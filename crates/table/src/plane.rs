@@ -15,7 +15,7 @@ use crate::pair::{Factors, Pair, Weights};
 use crate::spline::{Double, Number};
 
 /// Points that go through the stages together. An even number.
-const BLOCK: usize = 8;
+const BLOCK: usize = 16;
 /// Most pairs of outputs.
 const PAIRS: usize = crate::format::MOST_OUTPUTS / 2;
 
@@ -24,7 +24,10 @@ const PAIRS: usize = crate::format::MOST_OUTPUTS / 2;
 pub(crate) struct Plane {
     low: [Pair; 2],
     /// Upper ends; where the edge is one, a number before those whose multiples are infinite.
-    high: [f64; 2],
+    high: [Pair; 2],
+    /// Smallest distance from the lower end of the first axis, and smallest coordinate of it.
+    least: Pair,
+    least_u: Pair,
     /// Of the first coordinate scale s/(factor s + pole) without fitted edge: scale and pole.
     first: Pair,
     factor: Pair,
@@ -75,7 +78,9 @@ impl Plane {
         let both = Pair::both;
         Self {
             low: [both(first.low), both(second.low)],
-            high: [if is_fitted { first.low + f64::MAX / 8.0 } else { first.high }, second.high],
+            high: [if is_fitted { first.low + f64::MAX / 8.0 } else { first.high }, second.high].map(both),
+            least: both(lookup.least),
+            least_u: both(lookup.least_u),
             first: Pair([scale, pole]),
             factor: both(factor),
             pole: both(second_pole),
@@ -144,15 +149,24 @@ struct Start {
     /// The second coordinate, but for its scale, and its derivative.
     q: Pair,
     own_v: Pair,
-    /// Whether they are within the ends of the axes that are numbers.
-    is_inside: [bool; 2],
+    /// How far they are within the ends of the axes that are numbers, at least; negative or a NaN outside.
+    within: Pair,
+}
+
+/// Whether a distance from the ends is one of a point inside: false for a NaN.
+#[inline]
+fn is_within(distance: f64) -> bool {
+    distance >= 0.0
 }
 
 impl Start {
     #[inline]
-    fn at(plane: &Plane, is_root: bool, least: f64, x: Pair, y: Pair) -> Self {
+    fn at(plane: &Plane, is_root: bool, x: Pair, y: Pair) -> Self {
         let distance = x - plane.low[0];
         let (mut q, mut own_v) = (y - plane.low[1], plane.own);
+        // A NaN stays where it comes last.
+        let last = (plane.high[0] - x) + Pair::both(0.0) * q;
+        let within = (distance - plane.least).or_less(q).or_less(plane.high[1] - y).or_less(last);
         if !plane.is_linear {
             let below = (q + plane.pole).reciprocal();
             q = q * below;
@@ -163,11 +177,7 @@ impl Start {
             let r = distance.reciprocal_root();
             s = [distance * r, r * Pair::both(0.5)];
         }
-        let is_inside = array::from_fn(|k| {
-            let is_along = y.0[k] >= plane.low[1].0[k] && y.0[k] <= plane.high[1];
-            is_along && distance.0[k] >= least && x.0[k] <= plane.high[0]
-        });
-        Self { s, q, own_v, is_inside }
+        Self { s, q, own_v, within }
     }
 }
 
@@ -209,7 +219,8 @@ struct Places {
     t: Pair,
     w: Pair,
     chain: Chain,
-    is_inside: [bool; 2],
+    /// How far they are within the ends, at least, in whatever units; negative or a NaN outside.
+    within: Pair,
 }
 
 impl<const A: usize, const O: usize> Lookup<'_, A, O> {
@@ -223,10 +234,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     #[inline(never)]
     fn two_in_plane<N: Number>(&self, x: f64, y: f64, i: usize) -> Option<[Pair; 3]> {
         let plane = &self.plane;
-        let start = Start::at(plane, self.is_root, self.least, Pair::both(x), Pair::both(y));
-        if !start.is_inside[0] {
-            return None;
-        }
+        let start = Start::at(plane, self.is_root, Pair::both(x), Pair::both(y));
         // 1/Q and c of the edge go together.
         let (mut edge, mut edge_by) = (plane.first, Pair::default());
         if self.is_fitted {
@@ -238,9 +246,6 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         }
         let twice = |i: usize| [Pair::both(edge.0[i]), Pair::both(edge_by.0[i])];
         let places = self.both_places(&start, &Edge { scale: twice(0), pole: twice(1) });
-        if !places.is_inside[0] {
-            return None;
-        }
         let i = if O > 2 { i } else { 0 };
         let found = self.spline_at::<N>(&places, 0, i)?;
         Some(plane.chain(&places.chain.only(0), &plane.factors[i], found))
@@ -254,25 +259,28 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let below = (s * plane.factor + pole).reciprocal();
         let part = scale * below;
         let u = part * s;
-        let is_inside = array::from_fn(|k| {
-            start.is_inside[k] && u.0[k] <= 1.0 + 4.0 * f64::EPSILON && u.0[k] >= self.least_u
-        });
+        let within = (Pair::both(1.0 + 4.0 * f64::EPSILON) - u).or_less(u - plane.least_u);
+        let within = within.or_less(start.within);
         let (row, t) = plane.across.at(u);
-        let u = u.at_most(1.0);
+        let u = u.or_less(Pair::both(1.0));
         let (column, w) = plane.along.at(start.q);
         let chain = Chain {
             u,
-            over: if self.least_u > 0.0 { u.reciprocal() } else { Pair::both(1.0) },
+            // No output needs it that is finite where u is 0.
+            over: u.or_more(Pair::both(f64::MIN_POSITIVE)).reciprocal(),
             own_u: part * (pole * below) * s_by,
             shift: (s * below) * (scale_by - part * pole_by) * start.own_v,
             own_v: plane.along_by * start.own_v,
         };
-        Places { row, column, t, w, chain, is_inside }
+        Places { row, column, t, w, chain, within }
     }
 
-    /// 36 times the splines of a pair of outputs at one of two points, and 12 times their derivatives by the places in the cell.
+    /// 36 times the splines of a pair of outputs at one of two points, and 12 times their derivatives by the places in the cell; `None` outside.
     #[inline]
     fn spline_at<N: Number>(&self, place: &Places, point: usize, i: usize) -> Option<[Pair; 3]> {
+        if !is_within(place.within.0[point]) {
+            return None;
+        }
         let [across, along] = Weights::of_each(Pair([place.t.0[point], place.w.0[point]]));
         let each = O * N::BYTES;
         let stride = each * self.plane.nodes as usize;
@@ -304,8 +312,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         for (points, found) in points.chunks(BLOCK).zip(found.chunks_mut(BLOCK)) {
             let count = points.len().min(found.len());
             for (two, start) in points.chunks(2).zip(&mut starts) {
-                let last = two[two.len() - 1];
-                self.two_starts(Pair([two[0][0], last[0]]), Pair([two[0][1], last[1]]), start);
+                self.two_starts(two, start);
             }
             if self.is_fitted {
                 for (start, edge) in starts.iter().zip(&mut edges) {
@@ -342,8 +349,10 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     }
 
     #[inline(never)]
-    fn two_starts(&self, x: Pair, y: Pair, to: &mut Start) {
-        *to = Start::at(&self.plane, self.is_root, self.least, x, y);
+    fn two_starts(&self, two: &[[f64; A]], to: &mut Start) {
+        let [Some(first), Some(last)] = [two.first(), two.last()] else { return };
+        let [x, y] = [0, 1].map(|axis| Pair([first[axis], last[axis]]));
+        *to = Start::at(&self.plane, self.is_root, x, y);
     }
 
     #[inline(never)]
@@ -371,9 +380,6 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     #[inline(never)]
     fn spline_of_two<N: Number>(&self, place: &Places, point: usize, i: usize, to: &mut [Pair; 3]) -> bool {
         let point = point % 2;
-        if !place.is_inside[point] {
-            return false;
-        }
         let Some(found) = self.spline_at::<N>(place, point, if O > 2 { i } else { 0 }) else { return false };
         *to = found;
         true
