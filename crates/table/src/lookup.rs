@@ -66,7 +66,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     }
 
     /// [`Lookup::at`] of many points, bit for bit, into as many places; of the longer slice the rest is left alone. For splines over two axes it
-    /// takes three fifths of the time, since the steps of several points overlap.
+    /// takes half the time, since the steps of several points overlap.
     ///
     /// ```
     /// # fn run(table: &bulge_table::Table<'_>) -> Option<()> {
