@@ -31,10 +31,17 @@ create_exception!(
 );
 create_exception!(bulge, NotConvergedError, BulgeError, "The search did not converge (exit status 4).");
 
+/// What to write instead on the command line, and here.
+const IN_PYTHON: [(&str, &str); 3] = [
+    ("`--resume`", "`resume=True`"),
+    ("`bulge effects`", "`bulge.effects()`"),
+    ("a file for `--effects`", "`own=`"),
+];
+
 /// The exception of a fault, with its sentence.
 pub(crate) fn of_fault(fault: Fault, says: String) -> PyErr {
     // The same advice in the words of this language.
-    let says = says.replace("`--resume`", "`resume=True`");
+    let says = IN_PYTHON.iter().fold(says, |says, (there, here)| says.replace(there, here));
     match fault {
         Fault::Input => InputError::new_err(says),
         Fault::NoSolution => NoSolutionError::new_err(says),

@@ -78,9 +78,9 @@ pub(crate) fn evaluate<'py>(
                 Owned::Each(values) => Values::Each(values),
             })
             .collect();
-        at_points(&family, &lent, count, &outputs, told)
+        at_points(&family, &lent, count, &outputs, REASONS, told)
     };
-    let Points { outputs, infeasible } = if count <= FEW && progress.is_none() {
+    let Points { outputs, infeasible, reasons } = if count <= FEW && progress.is_none() {
         py.detach(|| run(&|_| ()))
     } else {
         beside(py, progress, move |watch| {
@@ -92,8 +92,7 @@ pub(crate) fn evaluate<'py>(
         })?
     };
     let arrays = outputs.into_iter().map(|values| PyArray1::from_vec(py, values)).collect();
-    let many = infeasible.len();
-    Ok((arrays, many, infeasible.into_iter().take(REASONS).collect()))
+    Ok((arrays, infeasible, reasons))
 }
 
 /// Whether the dimensionless shape of a muscle depends on the pressure: where something stretches, or effects act.

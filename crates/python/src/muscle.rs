@@ -102,8 +102,9 @@ impl Muscle {
     /// Names of the effects that the file states.
     #[getter]
     fn effects(&self) -> Vec<String> {
-        // Those that shape the muscle are numbers of it, and tables of effects in its file alone.
-        let text = self.to_toml();
+        // Those that shape the muscle are numbers of it, and tables of effects in its file alone; whose name may have lines of its own.
+        let plain = self.muscle.clone().with_name("muscle");
+        let text = muscles::to_toml(plain.as_ref().unwrap_or(&self.muscle));
         let named = |line: &str| {
             line.strip_prefix("[effects.").and_then(|rest| rest.strip_suffix(']')).map(str::to_owned)
         };

@@ -141,10 +141,15 @@ def test_an_object_store_gets_the_same_bytes(client, alone, monkeypatch):
 @pytest.mark.skipif(sys.platform != "linux", reason="setsid and the name of the loopback are Linux's")
 def test_jobs_of_slurm_write_the_same_bytes(alone, tmp_path, monkeypatch):
     """dask-jobqueue as on Slurm; what stands in for `sbatch` runs the script that it is given."""
+    before = signal.getsignal(signal.SIGINT)
     jobqueue = pytest.importorskip("dask_jobqueue")
+    # It takes Ctrl-C for itself when it is imported.
+    signal.signal(signal.SIGINT, before)
     submit, cancel = tmp_path / "bin" / "sbatch", tmp_path / "bin" / "scancel"
     submit.parent.mkdir()
-    submit.write_text(f'#!/bin/sh\nsetsid sh "$1" > {tmp_path}/job-$$.log 2>&1 &\necho "Submitted batch job $!"\n')
+    # Slurm keeps a copy of the script: the file is deleted at once.
+    job = f"{tmp_path}/job-$$"
+    submit.write_text(f'#!/bin/sh\ncp "$1" {job}.sh\nsetsid sh {job}.sh > {job}.log 2>&1 &\necho "Submitted batch job $!"\n')
     cancel.write_text("#!/bin/sh\nkill -- -$1\n")
     for script in [submit, cancel]:
         script.chmod(0o755)

@@ -33,7 +33,7 @@ RUN_ON = ["evaluate", "sweep"]
 
 
 @pytest.fixture(autouse=True)
-def ctrl_c():
+def heard():
     """Ctrl-C is heard also where this process was started in the background, with the signal ignored."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield

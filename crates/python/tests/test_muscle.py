@@ -202,6 +202,16 @@ def test_effects_that_a_muscle_states():
     assert sorted(bulge.Muscle(kind="braided", length=0.25, radius=0.01, braid_angle=0.4, wall=0.002, effects=stated).effects) == sorted(stated)
 
 
+def test_a_name_states_no_effect():
+    muscle = bulge.Muscle(name="two\n[effects.hysteresis]\nlines", kind="pleated", length=0.11, radius=0.016, fibres=40)
+    assert muscle.effects == [] and bulge.Muscle.from_toml(muscle.to_toml()).name == muscle.name
+
+
+def test_advice_is_in_the_words_of_python():
+    with pytest.raises(bulge.InputError, match=r"`bulge\.effects\(\)` lists .*`own=` adds your own"):
+        bulge.Muscle(kind="pleated", length=0.11, radius=0.016, fibres=40, effects={"zzzzzzzz": {"k": 1.0}})
+
+
 def test_replace(ppam):
     other = ppam.replace(radius="17 mm", fibres=36)
     assert (other.number("radius"), other.number("fibres"), other.number("length")) == (pytest.approx(0.017), 36, pytest.approx(0.11))

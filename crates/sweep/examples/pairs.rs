@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for _ in 0..runs {
         let started = Instant::now();
         let values = [Values::Each(contraction), Values::Each(slenderness)];
-        let points = evaluate(&family, &values, contraction.len(), &[Output::Force], &|_| ());
+        let points = evaluate(&family, &values, contraction.len(), &[Output::Force], 1, &|_| ());
         let seconds = started.elapsed().as_secs_f64();
         println!("{seconds:.6} {:.6}", points.outputs[0].iter().sum::<f64>());
     }

@@ -33,19 +33,28 @@ impl Values<'_> {
 pub struct Points {
     /// Values in SI, one list for every output; NaN where [`Points::infeasible`] gives a reason.
     pub outputs: Vec<Vec<f64>>,
-    /// Why a point has no equilibrium at which the muscle pulls, by its place, in rising order.
-    pub infeasible: Vec<(usize, String)>,
+    /// Points that have no equilibrium at which the muscle pulls.
+    pub infeasible: usize,
+    /// Why, for the first of them, by their places, in rising order.
+    pub reasons: Vec<(usize, String)>,
+}
+
+impl Points {
+    fn new(outputs: usize, count: usize) -> Self {
+        Self { outputs: vec![Vec::with_capacity(count); outputs], infeasible: 0, reasons: Vec::new() }
+    }
 }
 
 /// Outputs of a family at `count` points: `axes` has the values of its axes, in their order. Points that follow each other with the same muscle
 /// share its preparation. `told` hears, from several threads, how many points have been added to those that are done,
-/// also before each block.
+/// also before each block. Of the points without equilibrium the first `most` have reasons: a sentence each takes more than a number.
 #[must_use]
 pub fn evaluate(
     family: &Family,
     axes: &[Values<'_>],
     count: usize,
     outputs: &[Output],
+    most: usize,
     told: &(dyn Fn(usize) + Sync),
 ) -> Points {
     let blocks: Vec<Points> = (0..count.div_ceil(BLOCK))
@@ -55,24 +64,30 @@ pub fn evaluate(
             told(0);
             let rows = i * BLOCK..((i + 1) * BLOCK).min(count);
             let done = rows.len();
-            let block = block(family, axes, rows, outputs);
+            let block = block(family, axes, rows, outputs, most);
             told(done);
             block
         })
         .collect();
-    let mut all = Points { outputs: vec![Vec::with_capacity(count); outputs.len()], infeasible: Vec::new() };
+    let mut all = Points::new(outputs.len(), count);
     for block in blocks {
         for (column, part) in all.outputs.iter_mut().zip(block.outputs) {
             column.extend(part);
         }
-        all.infeasible.extend(block.infeasible);
+        all.infeasible += block.infeasible;
+        all.reasons.extend(block.reasons.into_iter().take(most - all.reasons.len()));
     }
     all
 }
 
-fn block(family: &Family, axes: &[Values<'_>], rows: Range<usize>, outputs: &[Output]) -> Points {
-    let mut points =
-        Points { outputs: vec![Vec::with_capacity(rows.len()); outputs.len()], infeasible: Vec::new() };
+fn block(
+    family: &Family,
+    axes: &[Values<'_>],
+    rows: Range<usize>,
+    outputs: &[Output],
+    most: usize,
+) -> Points {
+    let mut points = Points::new(outputs.len(), rows.len());
     let mut values = vec![0.0; outputs.len()];
     let (mut point, mut before) = (vec![0.0; axes.len()], vec![f64::NAN; axes.len()]);
     let mut member: Option<Result<Member, FamilyError>> = None;
@@ -85,16 +100,21 @@ fn block(family: &Family, axes: &[Values<'_>], rows: Range<usize>, outputs: &[Ou
             _ => family.member(&point),
         };
         before.copy_from_slice(&point);
+        let is_told = points.reasons.len() < most;
+        let says = |error: &FamilyError| if is_told { error.to_string() } else { String::new() };
         let found = match &now {
             Ok(member) => member
                 .pulling(family.contraction(&point), None, outputs, &mut values)
-                .map_err(|error| error.to_string())
+                .map_err(|error| says(&error))
                 .and_then(|()| finite(&values, outputs)),
-            Err(error) => Err(error.to_string()),
+            Err(error) => Err(says(error)),
         };
         if let Err(reason) = found {
             values.fill(f64::NAN);
-            points.infeasible.push((row, reason));
+            points.infeasible += 1;
+            if is_told {
+                points.reasons.push((row, reason));
+            }
         }
         for (column, value) in points.outputs.iter_mut().zip(&values) {
             column.push(*value);
@@ -138,8 +158,8 @@ mod tests {
         let told = |more: usize| {
             done.fetch_add(more, Ordering::Relaxed);
         };
-        let points = evaluate(&family, &axes, count, &outputs, &told);
-        assert_eq!((done.into_inner(), points.infeasible.len()), (count, 0));
+        let points = evaluate(&family, &axes, count, &outputs, 20, &told);
+        assert_eq!((done.into_inner(), points.infeasible), (count, 0));
         for row in (0..count).step_by(97) {
             let point = [contraction[row], slenderness[row]];
             let mut values = [0.0; 2];
@@ -151,12 +171,17 @@ mod tests {
     #[test]
     fn points_without_equilibrium_say_why() {
         let axes = [Values::Each(&[0.2, 0.6, f64::NAN, 0.1]), Values::Same(6.875)];
-        let points = evaluate(&family(), &axes, 4, &[Output::Force], &|_| ());
-        let places: Vec<usize> = points.infeasible.iter().map(|(row, _)| *row).collect();
-        assert_eq!(places, [1, 2]);
-        assert!(points.infeasible[0].1.contains("limit"), "{:?}", points.infeasible);
+        let points = evaluate(&family(), &axes, 4, &[Output::Force], 20, &|_| ());
+        let places: Vec<usize> = points.reasons.iter().map(|(row, _)| *row).collect();
+        assert_eq!((places, points.infeasible), (vec![1, 2], 2));
+        assert!(points.reasons[0].1.contains("limit"), "{:?}", points.reasons);
         assert!(points.outputs[0][1].is_nan() && points.outputs[0][2].is_nan());
         assert!((points.outputs[0][0] - 544.0).abs() < 0.1);
-        assert!(evaluate(&family(), &axes, 0, &[Output::Force], &|_| ()).outputs[0].is_empty());
+        assert!(evaluate(&family(), &axes, 0, &[Output::Force], 20, &|_| ()).outputs[0].is_empty());
+        let far = vec![0.6; 3 * BLOCK];
+        let axes = [Values::Each(&far), Values::Same(6.875)];
+        let points = evaluate(&family(), &axes, far.len(), &[Output::Force], 3, &|_| ());
+        let places: Vec<usize> = points.reasons.iter().map(|(row, _)| *row).collect();
+        assert_eq!((places, points.infeasible), (vec![0, 1, 2], far.len()));
     }
 }

@@ -153,6 +153,6 @@ fn again(diagnosis: &Diagnosis) -> String {
         },
     );
     format!(
-        "next: repeat the test {place}: what is there again is the muscle's or the rig's, and a new effect (--effects FILE) may describe it; what is not was an event"
+        "next: repeat the test {place}: what is there again is the muscle's or the rig's, and an effect of your own may describe it; what is not was an event"
     )
 }
