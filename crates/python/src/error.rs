@@ -32,9 +32,10 @@ create_exception!(
 create_exception!(bulge, NotConvergedError, BulgeError, "The search did not converge (exit status 4).");
 
 /// What to write instead on the command line, and here.
-const IN_PYTHON: [(&str, &str); 3] = [
+const IN_PYTHON: [(&str, &str); 4] = [
     ("`--resume`", "`resume=True`"),
     ("`bulge effects`", "`bulge.effects()`"),
+    ("`bulge effects --laws` lists them", "the cards of `bulge.effects()` name those that effects have"),
     ("a file for `--effects`", "`own=`"),
 ];
 

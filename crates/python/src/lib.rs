@@ -19,8 +19,8 @@ mod task;
 use mimalloc::MiMalloc;
 use pyo3::{pyfunction, pymodule};
 
-/// Dask starts its workers so that the C library gives every freed block back to the system (`MALLOC_TRIM_THRESHOLD_`), which costs a sweep a
-/// tenth of its time in page faults. An allocator of our own does not hear that.
+/// Dask starts its workers with `MALLOC_TRIM_THRESHOLD_`, with which glibc gives large blocks, and the top of its heap, back to the system as soon
+/// as they are free: page faults then take a tenth of a sweep. An allocator of our own does not hear that.
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
 

@@ -82,8 +82,8 @@ def test_a_cluster_writes_the_same_bytes(client, alone, tmp_path, chunks_per_tas
 
 @pytest.mark.parametrize("chunks", [None, 5])
 @pytest.mark.parametrize("n_chunks, threads", [(1, 1), (7, 3), (1000, 4), (1000, 5000)])
-def test_tasks_are_of_the_time_asked_for_and_end_together(n_chunks, threads, chunks):
-    pace = bulge.distributed._Pace(n_chunks, threads, chunks)
+def test_tasks_are_of_the_time_asked_for_and_short_at_the_end(n_chunks, threads, chunks):
+    pace = bulge.distributed._Pace(n_chunks, lambda: threads, chunks)
     ranges = []
     for a, b in pace.ranges():
         ranges.append((a, b))
@@ -91,6 +91,7 @@ def test_tasks_are_of_the_time_asked_for_and_end_together(n_chunks, threads, chu
     starts, ends = zip(*ranges)
     assert starts == (0, *ends[:-1]) and ends[-1] == n_chunks
     lengths = [b - a for a, b in ranges]
+    assert pace.longest == max(lengths)
     if chunks:
         assert set(lengths[:-1]) <= {chunks}
         return
@@ -113,16 +114,15 @@ def test_a_store_gets_the_same_bytes(client, alone, tmp_path):
     assert _hashes(tmp_path / "store") == alone and again.computed == 2
 
 
-def test_an_object_store_gets_the_same_bytes(client, alone, monkeypatch):
+def test_an_object_store_gets_the_same_bytes(client, alone):
     """S3 as moto plays it."""
     server_of = pytest.importorskip("moto.server")
     s3fs = pytest.importorskip("s3fs")
-    for name in ["AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY"]:
-        monkeypatch.setenv(name, "test")
-    server = server_of.ThreadedMotoServer(port=0)
+    server = server_of.ThreadedMotoServer(ip_address="127.0.0.1", port=0)
     server.start()
     try:
-        options = {"endpoint_url": f"http://127.0.0.1:{server._server.port}", "key": "test", "secret": "test"}
+        host, port = server.get_host_and_port()
+        options = {"endpoint_url": f"http://{host}:{port}", "key": "test", "secret": "test"}
         system = s3fs.S3FileSystem(**options)
         system.mkdir("bucket")
         bulge.distributed.sweep(_plan(), "s3://bucket/run", client, storage_options=options)
@@ -138,6 +138,27 @@ def test_an_object_store_gets_the_same_bytes(client, alone, monkeypatch):
         server.stop()
 
 
+def test_workers_that_come_later_get_work(alone, tmp_path, monkeypatch):
+    monkeypatch.setattr(bulge.distributed, "COUNT_SECONDS", 0.0)
+    with (
+        distributed.LocalCluster(n_workers=0, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        flying = []
+        submit = client.submit
+
+        def counted(*arguments, **options):
+            flying.append(len(client.futures))
+            return submit(*arguments, **options)
+
+        monkeypatch.setattr(client, "submit", counted)
+        cluster.scale(2)
+        bulge.distributed.sweep(_plan(), tmp_path / "sweep", client, chunks_per_task=1)
+    assert _hashes(tmp_path / "sweep") == alone
+    # Four for the one thread that was counted at first, more for two.
+    assert max(flying) > bulge.distributed.IN_FLIGHT
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="setsid and the name of the loopback are Linux's")
 def test_jobs_of_slurm_write_the_same_bytes(alone, tmp_path, monkeypatch):
     """dask-jobqueue as on Slurm; what stands in for `sbatch` runs the script that it is given."""
@@ -149,7 +170,7 @@ def test_jobs_of_slurm_write_the_same_bytes(alone, tmp_path, monkeypatch):
     submit.parent.mkdir()
     # Slurm keeps a copy of the script: the file is deleted at once.
     job = f"{tmp_path}/job-$$"
-    submit.write_text(f'#!/bin/sh\ncp "$1" {job}.sh\nsetsid sh {job}.sh > {job}.log 2>&1 &\necho "Submitted batch job $!"\n')
+    submit.write_text(f'#!/bin/sh\ncp "$1" "{job}.sh"\nsetsid sh "{job}.sh" > "{job}.log" 2>&1 &\necho "Submitted batch job $!"\n')
     cancel.write_text("#!/bin/sh\nkill -- -$1\n")
     for script in [submit, cancel]:
         script.chmod(0o755)

@@ -47,7 +47,7 @@ impl Points {
 
 /// Outputs of a family at `count` points: `axes` has the values of its axes, in their order. Points that follow each other with the same muscle
 /// share its preparation. `told` hears, from several threads, how many points have been added to those that are done,
-/// also before each block. Of the points without equilibrium the first `most` have reasons: a sentence each takes more than a number.
+/// also before each block. Of the points without equilibrium the first `most` have reasons: sentences take more time and memory than numbers.
 #[must_use]
 pub fn evaluate(
     family: &Family,

@@ -27,14 +27,14 @@ impl Pair {
         Self(self.0.map(reciprocal_root))
     }
 
-    /// The smaller of each; the other number where one is a NaN, and a NaN where the other is.
+    /// `self` where it is less than `other`, else `other`: a NaN of `self` is dropped, one of `other` stays.
     #[inline]
     pub(crate) fn or_less(self, other: Self) -> Self {
         let less = |i: usize| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] };
         Self([less(0), less(1)])
     }
 
-    /// The larger of each.
+    /// `self` where it is more than `other`, else `other`.
     #[inline]
     pub(crate) fn or_more(self, other: Self) -> Self {
         let more = |i: usize| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] };

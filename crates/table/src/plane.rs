@@ -4,8 +4,8 @@
 //! A single point is two that are the same: so what it has in common needn't be spread before it meets the outputs.
 //!
 //! Many points go through in blocks and stages. A processor sees some three hundred instructions ahead; a lookup is a chain longer than that, a
-//! stage is not, so that the waits of one point are filled with the work of the next. Each stage that has one is a function of its own, since pairs
-//! that are returned in memory stay pairs.
+//! stage is not, so that the waits of one point are filled with the work of the next. The stages are functions of their own, not inlined, that write
+//! to memory: only so do pairs stay pairs.
 
 use core::array;
 
@@ -181,7 +181,7 @@ impl Start {
     }
 }
 
-/// 1/Q and c of the edge at two points, each with its derivative by the second coordinate; without an edge, the coordinate's own.
+/// 1/Q and c of the edge (six times) at two points, each with its derivative by the second coordinate; without an edge, the coordinate's own.
 #[derive(Debug, Clone, Copy, Default)]
 struct Edge {
     scale: [Pair; 2],
@@ -230,7 +230,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         all(|i| self.two_in_plane::<N>(point[0], point[1], i))
     }
 
-    /// Values and derivatives of a pair of outputs.
+    /// Values and derivatives of a pair of outputs, in memory, as in the stages.
     #[inline(never)]
     fn two_in_plane<N: Number>(&self, x: f64, y: f64, i: usize) -> Option<[Pair; 3]> {
         let plane = &self.plane;
@@ -259,14 +259,16 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let below = (s * plane.factor + pole).reciprocal();
         let part = scale * below;
         let u = part * s;
+        // A NaN stays where it comes last, that of the start as well as one of u.
+        let last = start.within + Pair::both(0.0) * u;
         let within = (Pair::both(1.0 + 4.0 * f64::EPSILON) - u).or_less(u - plane.least_u);
-        let within = within.or_less(start.within);
+        let within = within.or_less(last);
         let (row, t) = plane.across.at(u);
         let u = u.or_less(Pair::both(1.0));
         let (column, w) = plane.along.at(start.q);
         let chain = Chain {
             u,
-            // No output needs it that is finite where u is 0.
+            // Outputs that aren't singular multiply it by 0, so that it must be finite where u is 0.
             over: u.or_more(Pair::both(f64::MIN_POSITIVE)).reciprocal(),
             own_u: part * (pole * below) * s_by,
             shift: (s * below) * (scale_by - part * pole_by) * start.own_v,
@@ -311,15 +313,16 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let mut splines = [[Pair::default(); 3]; BLOCK];
         for (points, found) in points.chunks(BLOCK).zip(found.chunks_mut(BLOCK)) {
             let count = points.len().min(found.len());
-            for (two, start) in points.chunks(2).zip(&mut starts) {
+            let pairs = count.div_ceil(2);
+            for (two, start) in points[..count].chunks(2).zip(&mut starts) {
                 self.two_starts(two, start);
             }
             if self.is_fitted {
-                for (start, edge) in starts.iter().zip(&mut edges) {
+                for (start, edge) in starts.iter().zip(&mut edges).take(pairs) {
                     self.two_edges(start, edge);
                 }
             }
-            for ((start, edge), places) in starts.iter().zip(&edges).zip(&mut places) {
+            for ((start, edge), places) in starts.iter().zip(&edges).zip(&mut places).take(pairs) {
                 self.two_places(start, edge, places);
             }
             for i in 0..O.div_ceil(2) {

@@ -6,7 +6,7 @@ mod writer;
 
 use std::ops::Range;
 
-use bulge_table::{Table, TableError};
+use bulge_table::{Sample, Table, TableError};
 use proptest::prelude::*;
 use writer::{Kind, RECORDS, Random, sealed};
 
@@ -210,6 +210,29 @@ fn lengths_and_places_that_cross() {
     }
     for odd in [0, 1, u32::MAX] {
         assert_eq!(error(&rewritten(&bytes, 48, &odd.to_le_bytes())), malformed("header"));
+    }
+}
+
+/// Tables whose numbers are all in range, and whose coordinate is none: 0/0, or beyond all numbers.
+#[test]
+fn a_coordinate_that_is_no_number_is_outside() {
+    let kind = Kind { is_root: false, is_fitted: false, has_factors: false, ..KIND };
+    let mut tiny = kind.table(&mut Random(16)).draft;
+    (tiny.axes[0].low, tiny.axes[0].high, tiny.axes[0].pole) = (0.0, 1.0, 1e-310);
+    let mut flat = Kind { is_fitted: true, ..kind }.table(&mut Random(17)).draft;
+    flat.edge.iter_mut().skip(1).step_by(2).for_each(|c| *c = 0.0);
+    let mut huge = flat.clone();
+    huge.edge.iter_mut().step_by(2).for_each(|scale| *scale = 1e308);
+    for (name, draft) in [("a tiny pole", tiny), ("an edge without pole", flat), ("a huge edge", huge)] {
+        let bytes = draft.bytes();
+        let table = Table::from_bytes(&bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let lookup = table.lookup::<2, 2>().unwrap();
+        let second = 0.5 * (draft.axes[1].low + draft.axes[1].high);
+        let point = [draft.axes[0].low, second];
+        let mut found = [Some([Sample { value: 7.0, gradient: [7.0; 2] }; 2]); 3];
+        lookup.at_each(&[point; 3], &mut found);
+        assert_eq!((lookup.at(point), found), (None, [None; 3]), "{name}");
+        assert!(lookup.curve::<16>(point).is_none_or(|curve| curve.at(point[0]).is_none()), "{name}");
     }
 }
 

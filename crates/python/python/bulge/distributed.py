@@ -10,7 +10,7 @@ that is written after a chunk's file, with its hash.
 
     bulge.distributed.sweep("sweep.toml", "result", Client())           # the same bytes as `bulge sweep sweep.toml --out result`
 
-Where workers have all cores of a machine, Dask's own watch over them costs some per cent, and can be set to rest before the cluster starts:
+Where workers have all cores of a machine, Dask's own watch over them costs some per cent. It can be set to rest before a LocalCluster starts:
 ``dask.config.set({"distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "500ms"})``.
 """
 
@@ -44,6 +44,8 @@ TASK_SECONDS = 0.5
 MOST_RETURNS = 4
 #: Stores in which a file that is put appears whole or not at all.
 WHOLE = {"s3", "s3a", "gs", "gcs", "az", "abfs", "adl", "oss"}
+#: How often the threads of the cluster are counted.
+COUNT_SECONDS = 1.0
 #: Tasks in flight per thread of the cluster: enough that no worker waits, few enough that a scheduler holds 10^9 points easily.
 IN_FLIGHT = 4
 
@@ -90,11 +92,11 @@ def _sweep(
 ) -> Result:
     started = time.monotonic()
     store.begin(resume)
-    threads = max(1, sum(client.nthreads().values()))
+    threads = _Threads(client)
     pace = _Pace(plan.n_chunks, threads, chunks_per_task)
     computed = finished = tasks = 0
     with callback(progress, plan.name) as told:
-        for (a, b), answer in _run(client, store.task(), pace.ranges(), f"bulge-sweep-{_slug(plan.name)}"):
+        for (a, b), answer in _run(client, store.task(), pace.ranges(), f"bulge-sweep-{_slug(plan.name)}", threads):
             pace.hear(b - a, answer)
             store.take(answer)
             computed += answer["computed"]
@@ -103,7 +105,7 @@ def _sweep(
             if told is not None:
                 told(finished / plan.n_chunks, "points")
     document = store.finish()
-    document |= {"computed": computed, "seconds": time.monotonic() - started, "tasks": tasks, "chunks_per_task": pace.chunks}
+    document |= {"computed": computed, "seconds": time.monotonic() - started, "tasks": tasks, "chunks_per_task": pace.longest}
     if plan.has_table:
         document["table"] = store.table()
     return Result({"name": plan.name, "folder": place, **document})
@@ -188,13 +190,28 @@ def _ordered(order: tuple[int, dict[str, Any]]) -> Diagnosis:
     return diagnose(**{"threads": 1, **order[1]})
 
 
+class _Threads:
+    """Threads of a cluster: it may grow, and shrink, while it works."""
+
+    def __init__(self, client: Any) -> None:
+        self.client, self.asked, self.number = client, -math.inf, 1
+
+    def __call__(self) -> int:
+        now = time.monotonic()
+        if now - self.asked > COUNT_SECONDS:
+            self.number, self.asked = max(1, sum(self.client.nthreads().values())), now
+        return self.number
+
+
 class _Pace:
     """How many chunks make a task: one at first, then as many as take TASK_SECONDS by the times of those that are done, and fewer and fewer
     towards the end, so that all threads end together."""
 
-    def __init__(self, n_chunks: int, threads: int, chunks: int | None) -> None:
+    def __init__(self, n_chunks: int, threads: Callable[[], int], chunks: int | None) -> None:
         self.n_chunks, self.threads = n_chunks, threads
         self.chunks, self.fixed = chunks or 1, chunks is not None
+        #: Most chunks that a task had.
+        self.longest = 0
 
     def ranges(self) -> Iterator[tuple[int, int]]:
         """Ranges of chunks, each as long as is known to be right when it is asked for."""
@@ -202,8 +219,9 @@ class _Pace:
         while start < self.n_chunks:
             left = self.n_chunks - start
             # Half of what would be each thread's share of the rest.
-            share = left if self.fixed else math.ceil(left / (2 * self.threads))
+            share = left if self.fixed else math.ceil(left / (2 * self.threads()))
             end = start + min(self.chunks, share, left)
+            self.longest = max(self.longest, end - start)
             yield start, end
             start = end
 
@@ -375,12 +393,18 @@ class _Files:
 
 
 def _run(
-    client: Any, task: Callable[[Any], Any], orders: Iterable[Any], name: str, *, raises: bool = True
+    client: Any,
+    task: Callable[[Any], Any],
+    orders: Iterable[Any],
+    name: str,
+    threads: Callable[[], int] | None = None,
+    *,
+    raises: bool = True,
 ) -> Iterator[tuple[Any, Any]]:
     """Orders and their answers, as they come; without ``raises``, the exception of an order that has none. At most IN_FLIGHT tasks per thread are
     with the scheduler; those that it gives up because workers died are handed out again, each MOST_RETURNS times."""
     distributed = need("distributed", "a distributed run", "distributed")
-    threads = max(1, sum(client.nthreads().values()))
+    threads = threads or _Threads(client)
     waiting = iter(orders)
     #: Orders with the scheduler, each with the number of times that it was given back.
     running: dict[Any, tuple[Any, int]] = {}
@@ -395,7 +419,7 @@ def _run(
         return future
 
     try:
-        first = [submit(order) for _, order in zip(range(IN_FLIGHT * threads), waiting)]
+        first = [submit(order) for _, order in zip(range(IN_FLIGHT * threads()), waiting)]
         completed = distributed.as_completed(first, loop=client.loop, raise_errors=False)
         for future in completed:
             order, returns = running.pop(future)
@@ -415,8 +439,7 @@ def _run(
                     )
                 if raises:
                     raise error
-            following = next(waiting, _END)
-            if following is not _END:
+            while len(running) < IN_FLIGHT * threads() and (following := next(waiting, _END)) is not _END:
                 completed.add(submit(following))
             yield order, answer
     finally:
