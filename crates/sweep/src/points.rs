@@ -31,7 +31,7 @@ impl Values<'_> {
 /// Outputs at points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
-    /// Values in SI, one list for every output; NaN where [`Points::infeasible`] gives a reason.
+    /// Values in SI, one list for every output; NaN where a point has none.
     pub outputs: Vec<Vec<f64>>,
     /// Points that have no equilibrium at which the muscle pulls.
     pub infeasible: usize,

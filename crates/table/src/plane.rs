@@ -3,9 +3,9 @@
 //!
 //! A single point is two that are the same: so what it has in common needn't be spread before it meets the outputs.
 //!
-//! Many points go through in blocks and stages. A processor sees some three hundred instructions ahead; a lookup is a chain longer than that, a
-//! stage is not, so that the waits of one point are filled with the work of the next. The stages are functions of their own, not inlined, that write
-//! to memory: only so do pairs stay pairs.
+//! Many points go through in blocks and stages. A processor sees some three hundred instructions ahead, and holds fewer results; a lookup is a chain
+//! longer than that, a stage is not, so that the waits of one point are filled with the work of the next. The stages are functions of their own, not
+//! inlined, that write to memory: only so do pairs stay pairs. Pairs are two points in all stages but that of the rows, where they are two outputs.
 
 use core::array;
 
@@ -31,7 +31,7 @@ pub(crate) struct Plane {
     /// Of the first coordinate scale s/(factor s + pole) without fitted edge: scale and pole.
     first: Pair,
     factor: Pair,
-    /// Pole of the second coordinate, and its scale by the pole.
+    /// Pole of the second coordinate, and its scale by the pole and by what makes derivatives of the spline's H - L.
     pole: Pair,
     own: Pair,
     is_linear: bool,
@@ -39,9 +39,9 @@ pub(crate) struct Plane {
     across: Cells,
     along: Cells,
     edge: Cells,
-    /// From H - L to derivatives by the coordinates.
+    /// From H - L to a derivative by the first coordinate.
     across_by: Pair,
-    along_by: Pair,
+    /// Of the edge, in units of the same by the second coordinate.
     edge_by: Pair,
     /// Coefficients along the second axis.
     nodes: u32,
@@ -84,14 +84,13 @@ impl Plane {
             first: Pair([scale, pole]),
             factor: both(factor),
             pole: both(second_pole),
-            own: both(second_scale * second_pole),
+            own: both(second_scale * second_pole * (3.0 * along)),
             is_linear: second.pole == f64::INFINITY,
             across: Cells::new(1.0, across),
             along: Cells::new(scale_v, along),
             edge: Cells::new(scale_v, lookup.edge_cells[1]),
             across_by: both(3.0 * across),
-            along_by: both(3.0 * along),
-            edge_by: both(3.0 * lookup.edge_cells[1]),
+            edge_by: both(lookup.edge_cells[1] / along),
             nodes: u32::try_from(lookup.nodes[1]).unwrap_or(0),
             factors: array::from_fn(|i| {
                 let of =
@@ -141,12 +140,25 @@ fn sample<const A: usize>(found: &[Pair; 3], o: usize) -> Sample<A> {
     Sample { value: found[0].0[o], gradient }
 }
 
+/// [`Weights::ends`] of the four rows of coefficients about a point, of a pair of outputs.
+type Rows = [[Pair; 2]; 4];
+
+/// 36 times the splines, and 12 times their derivatives by the places in the cell, from the rows, whose second axis is at `along` of the cell.
+#[inline]
+fn crossed(across: &Weights, along: Pair, [[l0, h0], [l1, h1], [l2, h2], [l3, h3]]: &Rows) -> [Pair; 3] {
+    let low = across.ends(&[*l0, *l1, *l2, *l3]);
+    let high = across.ends(&[*h0, *h1, *h2, *h3]);
+    let by_v = [high[0] - low[0], high[1] - low[1]];
+    let ends = [low[0] + along * by_v[0], low[1] + along * by_v[1]];
+    [across.mean(ends), ends[1] - ends[0], across.mean(by_v)]
+}
+
 /// How far two points are along their axes, which a single point is twice.
 #[derive(Debug, Clone, Copy, Default)]
 struct Start {
     /// The distance or its root, and its derivative.
     s: [Pair; 2],
-    /// The second coordinate, but for its scale, and its derivative.
+    /// The second coordinate, but for its scale; its derivative, by which H - L of the spline along it is multiplied.
     q: Pair,
     own_v: Pair,
     /// How far they are within the ends of the axes that are numbers, at least; negative or a NaN outside.
@@ -181,7 +193,7 @@ impl Start {
     }
 }
 
-/// 1/Q and c of the edge (six times) at two points, each with its derivative by the second coordinate; without an edge, the coordinate's own.
+/// 1/Q and c of the edge (six times) at two points, each with H - L of its spline; without an edge, the coordinate's own.
 #[derive(Debug, Clone, Copy, Default)]
 struct Edge {
     scale: [Pair; 2],
@@ -194,7 +206,7 @@ struct Chain {
     /// The first coordinate and its inverse.
     u: Pair,
     over: Pair,
-    /// Its derivative by its own axis and by the second coordinate, and the derivative of that one.
+    /// Its derivative by its own axis and by the second axis, and that of the second coordinate as in [`Start`].
     own_u: Pair,
     shift: Pair,
     own_v: Pair,
@@ -242,13 +254,13 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
             let knots: &[[u8; 16]; 4] = self.edge.as_chunks().0.get(cell[0] as usize..)?.first_chunk()?;
             let weights = Weights::at(t);
             let ends = weights.ends(&knots.map(|k| Pair([Double::read(&k[..8]), Double::read(&k[8..])])));
-            (edge, edge_by) = (weights.mean(ends), (ends[1] - ends[0]) * plane.edge_by);
+            (edge, edge_by) = (weights.mean(ends), ends[1] - ends[0]);
         }
         let twice = |i: usize| [Pair::both(edge.0[i]), Pair::both(edge_by.0[i])];
         let places = self.both_places(&start, &Edge { scale: twice(0), pole: twice(1) });
-        let i = if O > 2 { i } else { 0 };
-        let found = self.spline_at::<N>(&places, 0, i)?;
-        Some(plane.chain(&places.chain.only(0), &plane.factors[i], found))
+        let [across, along] = Weights::of_each(Pair([places.t.0[0], places.w.0[0]]));
+        let found = crossed(&across, along.place(), &self.rows_at::<N>(&places, 0, i, &along)?);
+        Some(plane.chain(&places.chain.only(0), &plane.factors[if O > 2 { i } else { 0 }], found))
     }
 
     /// Two points on the table. Of points outside it may be anywhere.
@@ -271,34 +283,26 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
             // Outputs that aren't singular multiply it by 0, so that it must be finite where u is 0.
             over: u.or_more(Pair::both(f64::MIN_POSITIVE)).reciprocal(),
             own_u: part * (pole * below) * s_by,
-            shift: (s * below) * (scale_by - part * pole_by) * start.own_v,
-            own_v: plane.along_by * start.own_v,
+            shift: (s * below) * (scale_by - part * pole_by) * (plane.edge_by * start.own_v),
+            own_v: start.own_v,
         };
         Places { row, column, t, w, chain, within }
     }
 
-    /// 36 times the splines of a pair of outputs at one of two points, and 12 times their derivatives by the places in the cell; `None` outside.
+    /// The rows of a pair of outputs about one of two points, with its weights along them; `None` outside.
     #[inline]
-    fn spline_at<N: Number>(&self, place: &Places, point: usize, i: usize) -> Option<[Pair; 3]> {
+    fn rows_at<N: Number>(&self, place: &Places, point: usize, i: usize, along: &Weights) -> Option<Rows> {
         if !is_within(place.within.0[point]) {
             return None;
         }
-        let [across, along] = Weights::of_each(Pair([place.t.0[point], place.w.0[point]]));
+        let i = if O > 2 { i } else { 0 };
         let each = O * N::BYTES;
         let stride = each * self.plane.nodes as usize;
         let start = place.row[point] as usize * stride + place.column[point] as usize * each;
         let patch = self.data.get(start..start + (3 * stride + 4 * each))?;
         let rows = [0, 1, 2, 3].map(|k| patch.get(k * stride..k * stride + 4 * each));
         let (fourth, third, second, first) = (rows[3]?, rows[2]?, rows[1]?, rows[0]?);
-        let [l0, h0] = along.ends(&four::<N, O>(first, i));
-        let [l1, h1] = along.ends(&four::<N, O>(second, i));
-        let [l2, h2] = along.ends(&four::<N, O>(third, i));
-        let [l3, h3] = along.ends(&four::<N, O>(fourth, i));
-        let low = across.ends(&[l0, l1, l2, l3]);
-        let high = across.ends(&[h0, h1, h2, h3]);
-        let ends = [along.mean([low[0], high[0]]), along.mean([low[1], high[1]])];
-        let by_v = across.mean([high[0] - low[0], high[1] - low[1]]);
-        Some([across.mean(ends), ends[1] - ends[0], by_v])
+        Some([first, second, third, fourth].map(|row| along.ends(&four::<N, O>(row, i))))
     }
 
     /// [`Lookup::at_each`] of splines where A is 2.
@@ -310,40 +314,38 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let mut starts = [Start::default(); BLOCK / 2];
         let mut places = [Places::default(); BLOCK / 2];
         let mut inside = [false; BLOCK];
-        let mut splines = [[Pair::default(); 3]; BLOCK];
+        let mut rows = [Rows::default(); BLOCK];
+        let mut splines = [[[Pair::default(); 3]; 2]; BLOCK / 2];
         for (points, found) in points.chunks(BLOCK).zip(found.chunks_mut(BLOCK)) {
             let count = points.len().min(found.len());
-            let pairs = count.div_ceil(2);
             for (two, start) in points[..count].chunks(2).zip(&mut starts) {
                 self.two_starts(two, start);
             }
+            // Of a block that isn't full the rest is what was there before.
             if self.is_fitted {
-                for (start, edge) in starts.iter().zip(&mut edges).take(pairs) {
+                for (start, edge) in starts.iter().zip(&mut edges) {
                     self.two_edges(start, edge);
                 }
             }
-            for ((start, edge), places) in starts.iter().zip(&edges).zip(&mut places).take(pairs) {
+            for ((start, edge), places) in starts.iter().zip(&edges).zip(&mut places) {
                 self.two_places(start, edge, places);
             }
             for i in 0..O.div_ceil(2) {
-                for (k, spline) in splines.iter_mut().enumerate().take(count) {
-                    inside[k] = self.spline_of_two::<N>(&places[k / 2], k % 2, i, spline);
+                for (k, rows) in rows.iter_mut().enumerate().take(count) {
+                    inside[k] = self.rows_of_two::<N>(&places[k / 2], k % 2, i, rows);
                 }
-                for (k, two) in found[..count].chunks_mut(2).enumerate().take(count.div_ceil(2)) {
-                    let (places, of) = (&places[k], [splines[2 * k], splines[2 * k + 1]]);
-                    let done: [[Pair; 3]; 2] = array::from_fn(|o| {
-                        let both = array::from_fn(|q| Pair([of[0][q].0[o], of[1][q].0[o]]));
-                        plane.chain(&places.chain, &factors[(2 * i + o).min(O - 1)], both)
-                    });
+                for ((rows, places), splines) in rows.chunks(2).zip(&places).zip(&mut splines) {
+                    two_crossed(places, rows, splines);
+                }
+                let factors = [2 * i, (2 * i + 1).min(O - 1)].map(|o| factors[o]);
+                for (k, two) in found[..count].chunks_mut(2).enumerate() {
+                    let done: [[Pair; 3]; 2] =
+                        array::from_fn(|o| plane.chain(&places[k].chain, &factors[o], splines[k][o]));
                     for (point, found) in two.iter_mut().enumerate() {
-                        if i == 0 {
-                            let none = Sample { value: 0.0, gradient: [0.0; A] };
-                            *found = if inside[2 * k + point] { Some([none; O]) } else { None };
-                        }
-                        if let Some(found) = found {
-                            for (to, done) in found[2 * i..].iter_mut().zip(&done) {
-                                *to = sample(done, point);
-                            }
+                        if inside[2 * k + point] {
+                            give(found, i, &done, point);
+                        } else {
+                            *found = None;
                         }
                     }
                 }
@@ -362,14 +364,17 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
     fn two_edges(&self, start: &Start, to: &mut Edge) {
         let (cells, t) = self.plane.edge.at(start.q);
         let edge: &[[u8; 16]] = self.edge.as_chunks().0;
-        let knots = |cell: u32| edge.get(cell as usize..).and_then(<[_]>::first_chunk::<4>);
+        let knots = |cell: u32| {
+            let cell = cell as usize;
+            edge.get(cell..cell.saturating_add(4)).and_then(<[_]>::first_chunk::<4>)
+        };
         let Some(none) = edge.first_chunk() else { return };
         let [a, b] = [knots(cells[0]).unwrap_or(none), knots(cells[1]).unwrap_or(none)];
         let weights = Weights::at(t);
         let number = |k: &[u8; 16], at: usize| Double::read(&k[8 * at..]);
         let [scale, pole] = [0, 1].map(|at| {
             let ends = weights.ends(&array::from_fn(|k| Pair([number(&a[k], at), number(&b[k], at)])));
-            [weights.mean(ends), (ends[1] - ends[0]) * self.plane.edge_by]
+            [weights.mean(ends), ends[1] - ends[0]]
         });
         *to = Edge { scale, pole };
     }
@@ -379,13 +384,47 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         *to = self.both_places(start, edge);
     }
 
-    /// The spline at one of two points; false outside.
+    /// The rows about one of two points; false outside.
     #[inline(never)]
-    fn spline_of_two<N: Number>(&self, place: &Places, point: usize, i: usize, to: &mut [Pair; 3]) -> bool {
+    fn rows_of_two<N: Number>(&self, place: &Places, point: usize, i: usize, to: &mut Rows) -> bool {
         let point = point % 2;
-        let Some(found) = self.spline_at::<N>(place, point, if O > 2 { i } else { 0 }) else { return false };
-        *to = found;
+        let Some(rows) = self.rows_at::<N>(place, point, i, &Weights::at(Pair::both(place.w.0[point])))
+        else {
+            return false;
+        };
+        *to = rows;
         true
+    }
+}
+
+/// Of both outputs, at two points. Their rows are a slice so that the compiler doesn't know that it may read a number together with the next: the two
+/// were written apart, and a processor waits for both to reach memory.
+#[inline(never)]
+fn two_crossed(places: &Places, rows: &[Rows], to: &mut [[Pair; 3]; 2]) {
+    let [first, last] = rows else { return };
+    let across = Weights::at(places.t);
+    for (o, to) in to.iter_mut().enumerate() {
+        let both = array::from_fn(|k| array::from_fn(|end| Pair([first[k][end].0[o], last[k][end].0[o]])));
+        *to = crossed(&across, places.w, &both);
+    }
+}
+
+/// Outputs `2 i` and `2 i + 1` of a point inside.
+#[inline]
+fn give<const A: usize, const O: usize>(
+    found: &mut Option<[Sample<A>; O]>,
+    i: usize,
+    done: &[[Pair; 3]; 2],
+    point: usize,
+) {
+    if O <= 2 {
+        *found = Some(array::from_fn(|o| sample(&done[o % 2], point)));
+        return;
+    }
+    let none = Sample { value: 0.0, gradient: [0.0; A] };
+    let all = if i == 0 { found.insert([none; O]) } else { found.get_or_insert([none; O]) };
+    for (to, done) in all[2 * i..].iter_mut().zip(done) {
+        *to = sample(done, point);
     }
 }
 

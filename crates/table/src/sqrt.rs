@@ -12,9 +12,9 @@
 pub(crate) fn reciprocal_root(x: f64) -> f64 {
     let y = f64::from_bits(0x5FE6_EB50_C7B5_37A9_u64.wrapping_sub(x.to_bits() >> 1));
     let z = x * y * y;
-    let y = y * (2.189_332_75 + z * (-2.191_720_62 + z * (1.315_441_19 - 0.313_054_06 * z)));
+    let y = y * ((2.189_332_75 - 2.191_720_62 * z) + z * z * (1.315_441_19 - 0.313_054_06 * z));
     let e = 1.0 - x * y * y;
-    y + y * (e * (0.5 + 0.375 * e))
+    y + (y * e) * (0.5 + 0.375 * e)
 }
 
 #[cfg(test)]
