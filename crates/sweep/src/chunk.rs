@@ -7,6 +7,7 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{ColumnPath, Type};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write;
 use std::ops::Range;
@@ -17,6 +18,9 @@ use crate::family::{Family, Member};
 use crate::family_error::FamilyError;
 use crate::plan::Plan;
 use crate::points::finite;
+
+/// Points of a part of a chunk: so many that the muscle which two parts have in common costs little, so few that every thread finds some.
+const PART: u64 = 2048;
 
 /// The points of a chunk, column by column.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,6 +117,30 @@ impl<'a> Computer<'a> {
             }
         }
         chunk
+    }
+
+    /// The same, in parts that other threads may take over: those that have no chunk left at the end of a sweep, or never had one.
+    #[must_use]
+    pub fn shared_chunk(&self, points: Range<u64>) -> Chunk {
+        let parts = points.end.saturating_sub(points.start).div_ceil(PART);
+        let parts: Vec<Chunk> = (0..parts)
+            .into_par_iter()
+            .map(|i| {
+                let start = points.start + i * PART;
+                self.chunk(start..points.end.min(start + PART))
+            })
+            .collect();
+        let mut all = self.chunk(points.start..points.start);
+        for part in parts {
+            let rows = all.rows();
+            for (columns, more) in [(&mut all.axes, part.axes), (&mut all.outputs, part.outputs)] {
+                for (column, more) in columns.iter_mut().zip(more) {
+                    column.extend(more);
+                }
+            }
+            all.infeasible.extend(part.infeasible.into_iter().map(|(row, reason)| (rows + row, reason)));
+        }
+        all
     }
 
     fn member(&self, point: &[f64], follows: bool) -> Result<(Member, Option<f64>), String> {

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::chunk::Computer;
+use crate::chunk::{Chunk, Computer};
 use crate::design::Layout;
 use crate::difference::difference;
 use crate::family_error::FamilyError;
@@ -262,7 +262,8 @@ impl Run<'_> {
         }
         // A CSV file that was damaged, or isn't asked for this time, must not stay as it was.
         let csv = self.csv || self.folder.csv(number).exists();
-        let Piece { parquet, csv, promise } = make(self.plan, &self.computer, &self.key, number, csv)?;
+        let chunk = self.computer.shared_chunk(points_of_chunk(self.plan, number));
+        let Piece { parquet, csv, promise } = make(&self.computer, &chunk, &self.key, number, csv)?;
         write(&self.folder.parquet(number), &parquet)?;
         if let Some(text) = csv {
             write(&self.folder.csv(number), text.as_bytes())?;
@@ -295,25 +296,26 @@ pub fn piece(plan: &Plan, number: u64, csv: bool) -> Result<Piece, SweepError> {
         return Err(SweepError::NoSuchChunks { asked: number..number + 1, all });
     }
     let key = hash(plan.canonical()?.as_bytes());
-    make(plan, &Computer::new(plan, &layout)?, &key, number, csv)
+    let computer = Computer::new(plan, &layout)?;
+    // On one thread: whoever asks for pieces shares them out itself.
+    let chunk = computer.chunk(points_of_chunk(plan, number));
+    make(&computer, &chunk, &key, number, csv)
 }
 
 fn make(
-    plan: &Plan,
     computer: &Computer<'_>,
+    chunk: &Chunk,
     key: &str,
     number: u64,
     csv: bool,
 ) -> Result<Piece, SweepError> {
-    let points = points_of_chunk(plan, number);
-    let chunk = computer.chunk(points.clone());
-    let about = json!({ "plan": key, "chunk": number, "first": points.start });
-    let parquet = computer.parquet(&chunk, &about.to_string())?;
-    let csv = csv.then(|| computer.csv(&chunk));
+    let about = json!({ "plan": key, "chunk": number, "first": chunk.first });
+    let parquet = computer.parquet(chunk, &about.to_string())?;
+    let csv = csv.then(|| computer.csv(chunk));
     let promise = Promise {
         chunk: number,
-        first: points.start,
-        points: points.end - points.start,
+        first: chunk.first,
+        points: chunk.rows() as u64,
         infeasible: chunk.infeasible.len() as u64,
         sha256: hash(&parquet),
         csv_sha256: csv.as_ref().map(|text| hash(text.as_bytes())),

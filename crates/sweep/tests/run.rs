@@ -127,6 +127,28 @@ fn the_same_bytes_on_any_number_of_threads() {
     }
 }
 
+/// A run shares a chunk among threads, in parts; whoever asks for a piece has it computed in one go.
+#[test]
+fn chunks_in_parts_are_the_chunks_in_one_piece() {
+    let plan = plan(
+        "muscle = \"ppam-2-r16\"\nchunk = 5000\noutputs = [\"force_f\", \"volume_v\"]\n\
+         [axes.slenderness]\nrange = \"2..12\"\npoints = 9\n\
+         [axes.contraction]\nrange = \"1 %..40 %\"\npoints = 1000\n",
+    );
+    let folder = whole(&plan, true);
+    let found = bytes(folder.path());
+    let mut infeasible = 0;
+    for number in 0..plan.chunks() {
+        let piece = bulge_sweep::piece(&plan, number, true).unwrap();
+        assert!(found[Path::new(&format!("points/{number:06}.parquet"))] == piece.parquet, "{number}");
+        assert!(found[Path::new(&format!("csv/{number:06}.csv"))] == piece.csv.unwrap().into_bytes());
+        let promise = serde_json::to_string(&piece.promise).unwrap() + "\n";
+        assert!(found[Path::new(&format!("chunks/{number:06}.json"))] == promise.into_bytes());
+        infeasible += piece.promise.infeasible;
+    }
+    assert!(infeasible > 500, "{infeasible}");
+}
+
 #[test]
 fn stopped_and_resumed_is_as_if_never_stopped() {
     for text in [CLOSED, BRAID, HYPERCUBE] {
