@@ -19,8 +19,9 @@ use crate::family_error::FamilyError;
 use crate::plan::Plan;
 use crate::points::finite;
 
-/// Points of a part of a chunk: so many that the muscle which two parts have in common costs little, so few that every thread finds some.
-const PART: u64 = 2048;
+/// Points of a part of a chunk: so many that the muscle which two parts have in common costs little, so few that a chunk of muscles that take an
+/// integration each has some for every thread.
+const PART: u64 = 256;
 
 /// The points of a chunk, column by column.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,18 +120,22 @@ impl<'a> Computer<'a> {
         chunk
     }
 
-    /// The same, in parts that other threads may take over: those that have no chunk left at the end of a sweep, or never had one.
+    /// The same in parts that other threads may take over; outputs where there is no equilibrium, which mean nothing, may differ.
     #[must_use]
-    pub fn shared_chunk(&self, points: Range<u64>) -> Chunk {
+    pub(crate) fn shared_chunk(&self, points: Range<u64>) -> Chunk {
         let parts = points.end.saturating_sub(points.start).div_ceil(PART);
         let parts: Vec<Chunk> = (0..parts)
             .into_par_iter()
             .map(|i| {
                 let start = points.start + i * PART;
-                self.chunk(start..points.end.min(start + PART))
+                self.chunk(start..points.end.min(start.saturating_add(PART)))
             })
             .collect();
         let mut all = self.chunk(points.start..points.start);
+        let count = parts.iter().map(Chunk::rows).sum();
+        for column in all.axes.iter_mut().chain(&mut all.outputs) {
+            column.reserve_exact(count);
+        }
         for part in parts {
             let rows = all.rows();
             for (columns, more) in [(&mut all.axes, part.axes), (&mut all.outputs, part.outputs)] {

@@ -189,6 +189,7 @@ pub fn run(
         folder,
         key,
         csv: options.csv,
+        waiting: AtomicU64::new(chunks.end - chunks.start),
         done: AtomicU64::new(0),
         there: AtomicU64::new(0),
         all: points_of(plan, &chunks),
@@ -227,6 +228,8 @@ struct Run<'a> {
     folder: Folder,
     key: String,
     csv: bool,
+    /// Chunks that have not begun.
+    waiting: AtomicU64,
     done: AtomicU64,
     there: AtomicU64,
     all: u64,
@@ -247,6 +250,7 @@ impl Run<'_> {
     fn chunk(&self, number: u64) -> Result<(Promise, bool), SweepError> {
         // A caller that has given up unwinds from here, and the chunks that have not begun are left.
         self.tell(0, 0);
+        let waiting = self.waiting.fetch_sub(1, Ordering::Relaxed).saturating_sub(1);
         let path = self.folder.promise(number);
         match self.folder.standing(number, &self.key, self.csv).map_err(at(&path))? {
             Standing::Done(promise) => {
@@ -262,7 +266,14 @@ impl Run<'_> {
         }
         // A CSV file that was damaged, or isn't asked for this time, must not stay as it was.
         let csv = self.csv || self.folder.csv(number).exists();
-        let chunk = self.computer.shared_chunk(points_of_chunk(self.plan, number));
+        let points = points_of_chunk(self.plan, number);
+        // Only the last chunks, which leave threads idle, are shared: a thread that waits for others begins another chunk, and holds both.
+        let threads = rayon::current_num_threads() as u64;
+        let chunk = if waiting < threads && threads > 1 {
+            self.computer.shared_chunk(points)
+        } else {
+            self.computer.chunk(points)
+        };
         let Piece { parquet, csv, promise } = make(&self.computer, &chunk, &self.key, number, csv)?;
         write(&self.folder.parquet(number), &parquet)?;
         if let Some(text) = csv {

@@ -1,5 +1,6 @@
 //! The layout of the bytes: places of the fields, and the records of axes and outputs. See the crate's documentation for the whole.
 
+use core::ops::RangeInclusive;
 use core::str;
 
 use crate::TableError;
@@ -160,9 +161,15 @@ pub(crate) fn axis_at(bytes: &[u8], at: usize) -> Result<Axis<'_>, TableError> {
     if u64_at(bytes, at + 88) != Some(0) {
         return Err(TableError::Malformed { field: "reserved bytes" });
     }
-    let is_right = axis.low.is_finite() && axis.high.is_finite() && axis.low < axis.high && axis.pole > 0.0;
+    let is_measure = |x: f64| MEASURES.contains(&x);
+    let is_right = axis.low.is_finite()
+        && is_measure(axis.high - axis.low)
+        && (axis.pole == f64::INFINITY || is_measure(axis.pole));
     if is_right { Ok(axis) } else { Err(TableError::Malformed { field: "range of an axis" }) }
 }
+
+/// Widths and poles of axes: whatever the unit, their products and quotients are numbers.
+const MEASURES: RangeInclusive<f64> = 1e-90..=1e90;
 
 pub(crate) fn output_at(bytes: &[u8], at: usize) -> Result<Output<'_>, TableError> {
     let number = |i: usize| f64_at(bytes, at + 56 + 8 * i).unwrap_or(f64::NAN);

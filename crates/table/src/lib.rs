@@ -19,7 +19,7 @@
 //! # Coordinates
 //!
 //! ```text
-//! axis i >= 1:   v_i = q/Q,  q = s/(s + c),  s = x - low,  Q = q(high)          (c infinite: linear)
+//! axis i >= 1:   v_i = q/Q,  q = s/(s + c),  s = x - low,  Q = q(high)          (c infinite: linear; else c and the widths of axes 1e-90 to 1e90)
 //! axis 0:        the same, s = x - low or sqrt(x - low); with a fitted upper end (the contraction limit, say) Q(v) and c(v) of the others
 //! output:        y = g(u, v) (1 - u)^j / u^k                                    j = 1: vanishes at the edge, k = 1: singular at low
 //! ```

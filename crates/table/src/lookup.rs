@@ -65,8 +65,8 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         self.in_space(point)
     }
 
-    /// [`Lookup::at`] of many points, bit for bit, into as many places; of the longer slice the rest is left alone. For splines over two axes it
-    /// takes half the time, since the steps of several points overlap.
+    /// [`Lookup::at`] of many points, bit for bit, into as many places; of the longer slice the rest is left alone. For splines over two axes
+    /// sixteen or more take half the time, since the steps of several points overlap.
     ///
     /// ```
     /// # fn run(table: &bulge_table::Table<'_>) -> Option<()> {

@@ -110,12 +110,6 @@ impl Weights {
         [sum(&self.low, 0), sum(&self.high, 1)]
     }
 
-    /// Where it is in the cell.
-    #[inline]
-    pub(crate) fn place(&self) -> Pair {
-        self.t
-    }
-
     /// The mean of two ends.
     #[inline]
     pub(crate) fn mean(&self, [low, high]: [Pair; 2]) -> Pair {

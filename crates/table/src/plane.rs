@@ -16,6 +16,8 @@ use crate::spline::{Double, Number};
 
 /// Points that go through the stages together. An even number.
 const BLOCK: usize = 16;
+/// Fewer points go one by one: what a block needs at hand costs more than it saves.
+const FEW: usize = 4;
 /// Most pairs of outputs.
 const PAIRS: usize = crate::format::MOST_OUTPUTS / 2;
 
@@ -259,7 +261,7 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let twice = |i: usize| [Pair::both(edge.0[i]), Pair::both(edge_by.0[i])];
         let places = self.both_places(&start, &Edge { scale: twice(0), pole: twice(1) });
         let [across, along] = Weights::of_each(Pair([places.t.0[0], places.w.0[0]]));
-        let found = crossed(&across, along.place(), &self.rows_at::<N>(&places, 0, i, &along)?);
+        let found = crossed(&across, places.w, &self.rows_at::<N>(&places, 0, i, &along)?);
         Some(plane.chain(&places.chain.only(0), &plane.factors[if O > 2 { i } else { 0 }], found))
     }
 
@@ -307,6 +309,12 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
 
     /// [`Lookup::at_each`] of splines where A is 2.
     pub(crate) fn each_in_plane<N: Number>(&self, points: &[[f64; A]], found: &mut [Option<[Sample<A>; O]>]) {
+        if points.len().min(found.len()) < FEW {
+            for (point, found) in points.iter().zip(found) {
+                *found = self.in_plane::<N>(*point);
+            }
+            return;
+        }
         let plane = &self.plane;
         let factors: [Factors; O] = array::from_fn(|o| plane.factors[o / 2].only(o % 2));
         let [scale, pole] = plane.first.0.map(|number| [Pair::both(number), Pair::default()]);
@@ -318,23 +326,23 @@ impl<const A: usize, const O: usize> Lookup<'_, A, O> {
         let mut splines = [[[Pair::default(); 3]; 2]; BLOCK / 2];
         for (points, found) in points.chunks(BLOCK).zip(found.chunks_mut(BLOCK)) {
             let count = points.len().min(found.len());
+            let pairs = count.div_ceil(2);
             for (two, start) in points[..count].chunks(2).zip(&mut starts) {
                 self.two_starts(two, start);
             }
-            // Of a block that isn't full the rest is what was there before.
             if self.is_fitted {
-                for (start, edge) in starts.iter().zip(&mut edges) {
+                for (start, edge) in starts.iter().zip(&mut edges).take(pairs) {
                     self.two_edges(start, edge);
                 }
             }
-            for ((start, edge), places) in starts.iter().zip(&edges).zip(&mut places) {
+            for ((start, edge), places) in starts.iter().zip(&edges).zip(&mut places).take(pairs) {
                 self.two_places(start, edge, places);
             }
             for i in 0..O.div_ceil(2) {
                 for (k, rows) in rows.iter_mut().enumerate().take(count) {
                     inside[k] = self.rows_of_two::<N>(&places[k / 2], k % 2, i, rows);
                 }
-                for ((rows, places), splines) in rows.chunks(2).zip(&places).zip(&mut splines) {
+                for ((rows, places), splines) in rows.chunks(2).zip(&places).zip(&mut splines).take(pairs) {
                     two_crossed(places, rows, splines);
                 }
                 let factors = [2 * i, (2 * i + 1).min(O - 1)].map(|o| factors[o]);
@@ -421,10 +429,13 @@ fn give<const A: usize, const O: usize>(
         *found = Some(array::from_fn(|o| sample(&done[o % 2], point)));
         return;
     }
-    let none = Sample { value: 0.0, gradient: [0.0; A] };
-    let all = if i == 0 { found.insert([none; O]) } else { found.get_or_insert([none; O]) };
-    for (to, done) in all[2 * i..].iter_mut().zip(done) {
-        *to = sample(done, point);
+    if i == 0 {
+        *found = Some([Sample { value: 0.0, gradient: [0.0; A] }; O]);
+    }
+    if let Some(all) = found {
+        for (to, done) in all[2 * i..].iter_mut().zip(done) {
+            *to = sample(done, point);
+        }
     }
 }
 

@@ -217,21 +217,19 @@ fn lengths_and_places_that_cross() {
 #[test]
 fn a_coordinate_that_is_no_number_is_outside() {
     let kind = Kind { is_root: false, is_fitted: false, has_factors: false, ..KIND };
-    let mut tiny = kind.table(&mut Random(16)).draft;
-    (tiny.axes[0].low, tiny.axes[0].high, tiny.axes[0].pole) = (0.0, 1.0, 1e-310);
     let mut flat = Kind { is_fitted: true, ..kind }.table(&mut Random(17)).draft;
     flat.edge.iter_mut().skip(1).step_by(2).for_each(|c| *c = 0.0);
     let mut huge = flat.clone();
     huge.edge.iter_mut().step_by(2).for_each(|scale| *scale = 1e308);
-    for (name, draft) in [("a tiny pole", tiny), ("an edge without pole", flat), ("a huge edge", huge)] {
+    for (name, draft) in [("an edge without pole", flat), ("a huge edge", huge)] {
         let bytes = draft.bytes();
         let table = Table::from_bytes(&bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
         let lookup = table.lookup::<2, 2>().unwrap();
         let second = 0.5 * (draft.axes[1].low + draft.axes[1].high);
         let point = [draft.axes[0].low, second];
-        let mut found = [Some([Sample { value: 7.0, gradient: [7.0; 2] }; 2]); 3];
-        lookup.at_each(&[point; 3], &mut found);
-        assert_eq!((lookup.at(point), found), (None, [None; 3]), "{name}");
+        let mut found = [Some([Sample { value: 7.0, gradient: [7.0; 2] }; 2]); 5];
+        lookup.at_each(&[point; 5], &mut found);
+        assert_eq!((lookup.at(point), found), (None, [None; 5]), "{name}");
         assert!(lookup.curve::<16>(point).is_none_or(|curve| curve.at(point[0]).is_none()), "{name}");
     }
 }
@@ -254,7 +252,9 @@ fn odd_numbers_in_the_records() {
         }
         check(axis(i, 48), 1e9, "range of an axis");
         check(axis(i, 56), -1e9, "range of an axis");
-        for odd in [0.0, -0.0, -1.0, f64::NEG_INFINITY] {
+        check(axis(i, 56), 1e91, "range of an axis");
+        // The last four are numbers, but not all that is computed with them.
+        for odd in [0.0, -0.0, -1.0, f64::NEG_INFINITY, 5e-324, 1e-91, 1e91, f64::MAX] {
             check(axis(i, 64), odd, "range of an axis");
         }
         for odd in [0.0, -1.0, f64::INFINITY] {

@@ -102,7 +102,9 @@ pub fn papers_polynomial(
         (["contraction"], None) => Ok(vec![k]),
         (["contraction", "slenderness"], Some(slenderness)) => Ok(vec![k, slenderness]),
         (["contraction"], Some(_)) => Err(lacks("it has no axis `slenderness`, so none can be chosen")),
-        (["contraction", "slenderness"], None) => Err(lacks("it needs a slenderness l0/R, such as 6.875")),
+        (["contraction", "slenderness"], None) => {
+            Err(lacks("it needs a slenderness l0/R, such as `--slenderness 6.875`"))
+        }
         _ => Err(lacks("its axes must be `contraction` and, perhaps, `slenderness`")),
     };
     let outputs = outputs(table);
