@@ -135,7 +135,9 @@ fn chunks_in_parts_are_the_chunks_in_one_piece() {
          [axes.slenderness]\nrange = \"2..12\"\npoints = 9\n\
          [axes.contraction]\nrange = \"1 %..40 %\"\npoints = 1000\n",
     );
-    let folder = whole(&plan, true);
+    // More threads than chunks: all of them are shared, also where there is one processor.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    let folder = pool.install(|| whole(&plan, true));
     let found = bytes(folder.path());
     let mut infeasible = 0;
     for number in 0..plan.chunks() {
