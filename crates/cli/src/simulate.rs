@@ -175,6 +175,16 @@ fn ended_text(out: &mut String, truth: &Truth, is_path: bool) {
             (false, 1) => "row",
             (false, _) => "rows",
         };
+        if let Some(reached) = ended.pressure_reached_pa {
+            let [low, high] = reached.map(|p| significant(p / 1e5, 4));
+            let _ = writeln!(
+                out,
+                "  at {} % only {low} to {high} bar were done ({} {what}): at lower pressures the muscle would push or has no equilibrium",
+                significant(100.0 * ended.planned[0], 4),
+                ended.count
+            );
+            continue;
+        }
         let _ = match (ended.reached, is_path) {
             (Some(reached), true) => writeln!(
                 out,

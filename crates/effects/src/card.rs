@@ -153,6 +153,10 @@ pub enum Needs {
     Nothing,
     /// A path: rows in the order of measurement, shortening and lengthening.
     Path,
+    /// A path on which the length or the pressure goes to and fro.
+    Motion,
+    /// A path with time on which the pressure rises and falls.
+    PressurePath,
     /// A path with time.
     Time,
     /// Time or cycles.
@@ -169,7 +173,9 @@ impl Needs {
     pub const fn says(self) -> &'static str {
         match self {
             Self::Nothing => "any force map",
-            Self::Path => "a path: rows in the order of measurement, both directions",
+            Self::Path => "a path: rows in the order of measurement, the length in both directions",
+            Self::Motion => "a path: rows in the order of measurement, length or pressure in both directions",
+            Self::PressurePath => "a path with a column `time` on which the pressure rises and falls",
             Self::Time => "a path with a column `time`",
             Self::Cycles => "several cycles of the same path",
             Self::Temperature => "a column `temperature` that changes",

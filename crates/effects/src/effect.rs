@@ -19,8 +19,10 @@ pub struct Moment {
     pub pressure: f64,
     /// Contraction, as read \[-\].
     pub contraction: f64,
-    /// +1 while shortening, -1 while lengthening, 0 at rest or in a static map.
+    /// +1 while shortening, -1 while lengthening, 0 at rest, at held length or in a static map: what friction outside the muscle follows.
     pub direction: f64,
+    /// +1 while the pressure rises, -1 while it falls, 0 where it is held.
+    pub pressure_direction: f64,
     /// d(contraction)/dt \[1/s\]; 0 without time.
     pub rate: f64,
     /// d(pressure)/dt \[Pa/s\]; 0 without time.
@@ -33,6 +35,8 @@ pub struct Moment {
     pub since: f64,
     /// Change of the contraction since the row before; 0 for the first of a sweep.
     pub step: f64,
+    /// Change of the pressure since the row before \[Pa\]; 0 for the first of a sweep and where the pressure is held.
+    pub pressure_step: f64,
     /// Temperature above that of the first row \[K\]; 0 without the column.
     pub temperature: f64,
     /// Number of the cycle, from 0.
@@ -53,18 +57,26 @@ impl Moment {
             pressure,
             contraction,
             direction: 0.0,
+            pressure_direction: 0.0,
             rate: 0.0,
             pressure_rate: 0.0,
             time: 0.0,
             clock: 0.0,
             since: 0.0,
             step: 0.0,
+            pressure_step: 0.0,
             temperature: 0.0,
             cycle: 0.0,
             largest: contraction,
             begins: true,
             specimen: 0,
         }
+    }
+
+    /// The branch of a loop: the direction of the length, or that of the pressure where the length is held.
+    #[must_use]
+    pub fn branch(&self) -> f64 {
+        if self.direction == 0.0 { self.pressure_direction } else { self.direction }
     }
 }
 
@@ -158,6 +170,11 @@ pub struct Balance {
     pub volume: Jet,
     /// dF/d(contraction) of the equilibrium \[N\], without derivatives.
     pub slope: f64,
+    /// How far the strands turned at mid-length since the row before, as the contraction that turns them as much \[-\].
+    ///
+    /// Where the pressure is held it is the change of the contraction. At held length the strands turn because fibres stretch and the bladder
+    /// bears a smaller part of a higher pressure; a net of rigid fibres without bladder doesn't turn at all.
+    pub turn: Jet,
 }
 
 /// The place in the chain at which an effect is called, with what it may read and change there.

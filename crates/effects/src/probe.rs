@@ -15,7 +15,7 @@ pub(crate) const SETTING: Setting = Setting {
     has_bladder: false,
 };
 
-/// An equilibrium of round numbers: 2 bar, 10 %, 500 N with 800 N along the meridians.
+/// An equilibrium of round numbers: 2 bar, 10 %, 500 N with 800 N along the meridians; the strands stand still.
 pub(crate) fn balance(contraction: f64) -> Balance {
     let jet = Jet::from;
     Balance {
@@ -26,6 +26,7 @@ pub(crate) fn balance(contraction: f64) -> Balance {
         mid_radius: jet(0.015),
         volume: jet(1e-4),
         slope: -3000.0,
+        turn: jet(0.0),
     }
 }
 
@@ -40,27 +41,41 @@ pub(crate) fn load(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&mut 
     force.value()
 }
 
-/// The forces that an effect adds along a path of contractions, one second from row to row.
+/// The forces that an effect adds along a path of contractions at 2 bar, one second from row to row.
 pub(crate) fn path(effect: &dyn Effect, theta: &[f64], contractions: &[f64]) -> Vec<f64> {
+    let rows: Vec<[f64; 2]> = contractions.iter().map(|contraction| [2e5, *contraction]).collect();
+    driven(effect, theta, &rows)
+}
+
+/// The forces that an effect adds along a path of pressures \[Pa\] and contractions, one second from row to row; pressure alone turns no strand.
+pub(crate) fn driven(effect: &dyn Effect, theta: &[f64], rows: &[[f64; 2]]) -> Vec<f64> {
+    let sign = |step: f64| if step == 0.0 { 0.0 } else { step.signum() };
     let theta: Vec<Jet> = theta.iter().map(|v| Jet::from(*v)).collect();
     let mut memory = vec![Jet::from(0.0); effect.memory()];
-    let mut last = contractions[0];
+    let mut last = rows[0];
     let mut forces = Vec::new();
-    for (i, &contraction) in contractions.iter().enumerate() {
-        let step = contraction - last;
-        let mut moment = Moment::at_rest(2e5, contraction);
-        moment.begins = i == 0;
-        moment.step = step;
-        moment.rate = step;
-        moment.direction = if step == 0.0 { 0.0 } else { step.signum() };
-        moment.since = if i == 0 { 0.0 } else { 1.0 };
-        moment.time = i as f64;
-        moment.clock = moment.time;
-        moment.largest = contractions[..=i].iter().copied().fold(f64::MIN, f64::max);
+    for (i, &[pressure, contraction]) in rows.iter().enumerate() {
+        let (pressure_step, step) = (pressure - last[0], contraction - last[1]);
+        let moment = Moment {
+            begins: i == 0,
+            step,
+            rate: step,
+            direction: sign(step),
+            pressure_step,
+            pressure_rate: pressure_step,
+            pressure_direction: sign(pressure_step),
+            since: if i == 0 { 0.0 } else { 1.0 },
+            time: i as f64,
+            clock: i as f64,
+            largest: rows[..=i].iter().map(|row| row[1]).fold(f64::MIN, f64::max),
+            ..Moment::at_rest(pressure, contraction)
+        };
+        let balance =
+            Balance { pressure: Jet::from(pressure), turn: Jet::from(step), ..balance(contraction) };
         let mut force = Jet::from(0.0);
-        effect.act(&moment, &SETTING, &theta, &mut memory, Place::Load(&balance(contraction), &mut force));
+        effect.act(&moment, &SETTING, &theta, &mut memory, Place::Load(&balance, &mut force));
         forces.push(force.value());
-        last = contraction;
+        last = [pressure, contraction];
     }
     forces
 }

@@ -110,7 +110,9 @@ impl Random {
                 moment.time = last.time + moment.since;
                 moment.step = contraction - last.contraction;
                 moment.rate = moment.step / moment.since;
-                moment.pressure_rate = (pressure - last.pressure) / moment.since;
+                moment.pressure_step = pressure - last.pressure;
+                moment.pressure_rate = moment.pressure_step / moment.since;
+                moment.pressure_direction = moment.pressure_step.signum();
                 moment.direction = sense;
                 moment.largest = last.largest.max(contraction);
             }
@@ -126,7 +128,7 @@ impl Random {
 }
 
 /// An equilibrium of made-up laws that depend on pressure and contraction.
-fn balance(pressure: Jet, contraction: Jet) -> Balance {
+fn balance(moment: &Moment, pressure: Jet, contraction: Jet) -> Balance {
     let force = pressure * (-contraction * 2.5 + 1.0) * 2.5e-3;
     let mid_radius = contraction * 0.06 + 0.011;
     Balance {
@@ -137,6 +139,7 @@ fn balance(pressure: Jet, contraction: Jet) -> Balance {
         mid_radius,
         volume: mid_radius.squared() * (-contraction + 1.0) * 0.7,
         slope: -6.25e-3 * pressure.value(),
+        turn: Jet::from(moment.step + 1e-8 * moment.pressure_step),
     }
 }
 
@@ -158,7 +161,7 @@ fn run(
         input.give_force = Jet::from(1e-7);
         input.give_tension = Jet::from(2e-7);
         input.wall = Jet::from(1.1);
-        let balance = balance(pressure, contraction);
+        let balance = balance(moment, pressure, contraction);
         let (mut load, mut reading) = (Jet::from(37.0), balance.force);
         effect.act(moment, setting, theta, &mut memory, Place::Input(&mut input));
         effect.act(moment, setting, theta, &mut memory, Place::Load(&balance, &mut load));

@@ -55,8 +55,12 @@ pub struct Data {
 /// What follows from columns and sweeps.
 #[derive(Debug, Clone)]
 pub(crate) struct Structure {
-    /// The monotone stretches of each sweep; none in a static map.
+    /// The monotone stretches of the length in each sweep, one rest where the length is held; none in a static map.
     pub(crate) stretches: Vec<Vec<Stretch>>,
+    /// Those of the pressure; none in sweeps in which it is held.
+    pub(crate) pressure_stretches: Vec<Vec<Stretch>>,
+    /// How large a change of the pressure is no noise.
+    pub(crate) pressure_band: DeadBand,
     /// Of the motion.
     pub(crate) resolution: Resolution,
     pub(crate) band: DeadBand,
@@ -109,6 +113,8 @@ impl Data {
             sweeps: Vec::new(),
             structure: Structure {
                 stretches: Vec::new(),
+                pressure_stretches: Vec::new(),
+                pressure_band: DeadBand::new(&Resolution::default(), 0, 1.0),
                 resolution: Resolution::default(),
                 band: DeadBand::new(&Resolution::default(), 0, 1.0),
                 scale: 1.0,
@@ -159,21 +165,31 @@ impl Data {
             Trace::Contraction(_) => 1.0,
             Trace::Length(lengths) => bounds(lengths).1,
         };
-        let band = DeadBand::new(&resolution, rows.iter().map(Range::len).max().unwrap_or(0), scale);
-        let mut stretches = Vec::new();
+        let longest = rows.iter().map(Range::len).max().unwrap_or(0);
+        let band = DeadBand::new(&resolution, longest, scale);
+        let largest = self.columns.pressure_pa.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+        let pressure_resolution = Resolution::of(&self.columns.pressure_pa, &rows);
+        let pressure_band = DeadBand::new(&pressure_resolution, longest, largest);
+        let (mut stretches, mut pressure_stretches) = (Vec::new(), Vec::new());
         if self.is_path() {
             let shortening = self.shortening();
-            let largest = self.columns.pressure_pa.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
             let time = self.columns.time_s.as_deref();
             for sweep in &mut self.sweeps {
                 let found = stretch::find(&shortening, time, &sweep.rows, band);
                 let (pressure, motion) =
                     (&self.columns.pressure_pa[sweep.rows.clone()], &shortening[sweep.rows.clone()]);
                 sweep.kind = sweep::kind(&found, pressure, motion, scale, largest);
-                stretches.push(found);
+                pressure_stretches.push(if sweep::is_held(pressure, largest) {
+                    Vec::new()
+                } else {
+                    stretch::find(&self.columns.pressure_pa, time, &sweep.rows, pressure_band)
+                });
+                // The rig gives way a little, and the length reading scatters: that is no motion of the muscle.
+                let rest = || vec![Stretch { rows: sweep.rows.clone(), direction: 0 }];
+                stretches.push(if sweep.kind == SweepKind::Isometric { rest() } else { found });
             }
         }
-        self.structure = Structure { stretches, resolution, band, scale };
+        self.structure = Structure { stretches, pressure_stretches, pressure_band, resolution, band, scale };
         self
     }
 
@@ -365,7 +381,12 @@ impl Data {
         self.sweeps.partition_point(|sweep| sweep.rows.end <= row)
     }
 
-    /// Whether the kind of a sweep means that its rows follow each other.
+    /// The stretches of the pressure in the sweeps of [`Data::paths`].
+    pub(crate) fn pressure_paths(&self) -> impl Iterator<Item = &[Stretch]> {
+        self.structure.pressure_stretches.iter().map(Vec::as_slice)
+    }
+
+    /// The sweeps whose rows follow each other, with the stretches of their length.
     pub(crate) fn paths(&self) -> impl Iterator<Item = (&Sweep, &[Stretch])> {
         let stretches = self.structure.stretches.iter().map(Vec::as_slice);
         self.sweeps.iter().filter(|sweep| sweep.kind != SweepKind::Static).zip(stretches)

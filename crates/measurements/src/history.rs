@@ -4,7 +4,7 @@ use crate::columns::picked;
 use crate::data::Data;
 use crate::rate;
 use crate::stretch::Stretch;
-use crate::sweep::Sweep;
+use crate::sweep::{Sweep, SweepKind};
 use serde::Serialize;
 
 /// How the muscle moved, one value per row.
@@ -15,13 +15,16 @@ use serde::Serialize;
 /// stretch that it ends, so that a row's direction is that of the motion that led to it; the first row of a sweep takes that of the second.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct History {
-    /// +1 shortening, -1 lengthening, 0 at rest. In a static map: as stated, else 0.
+    /// +1 shortening, -1 lengthening, 0 at rest and in isometric sweeps. In a static map: as stated, else 0.
     pub direction: Vec<f64>,
-    /// Direction of the last motion, also at rest: the branch of a hysteresis loop on which the row lies; 0 before any motion.
+    /// +1 while the pressure rises, -1 while it falls, 0 at rest, in sweeps that keep their pressure and in a static map.
+    pub pressure_direction: Vec<f64>,
+    /// Direction of the last motion, also at rest: the branch of a hysteresis loop on which the row lies; 0 before any motion. In isometric
+    /// sweeps that of the pressure.
     pub approach: Vec<f64>,
     /// Rate of contraction \[1/s\], positive when shortening; 0 at rest, without time and in a static map.
     pub rate: Vec<f64>,
-    /// Contraction since the last reversal, or since the start of the sweep, >= 0.
+    /// Contraction since the last reversal, or since the start of the sweep, >= 0; in isometric sweeps since that of the pressure.
     pub since_reversal: Vec<f64>,
     /// Time since the last reversal, or since the start of the sweep \[s\]; 0 without time.
     pub time_since_reversal: Vec<f64>,
@@ -44,6 +47,7 @@ impl History {
             keep.iter().enumerate().filter(|(_, kept)| **kept).map(|(row, _)| row).collect();
         Self {
             direction: picked(&self.direction, &rows),
+            pressure_direction: picked(&self.pressure_direction, &rows),
             approach: picked(&self.approach, &rows),
             rate: picked(&self.rate, &rows),
             since_reversal: picked(&self.since_reversal, &rows),
@@ -63,6 +67,7 @@ impl Data {
         let rows = self.len();
         let mut history = History {
             direction: vec![0.0; rows],
+            pressure_direction: vec![0.0; rows],
             approach: vec![0.0; rows],
             rate: vec![0.0; rows],
             since_reversal: vec![0.0; rows],
@@ -75,10 +80,25 @@ impl Data {
         if history.is_path {
             let shortening = self.shortening();
             let mut loops: Vec<Loops> = vec![Loops::default(); self.specimens().len()];
-            for (sweep, stretches) in self.paths() {
-                self.follow(sweep, stretches, &shortening, self.contraction_per_shortening(l0), &mut history);
+            let per_shortening = self.contraction_per_shortening(l0);
+            for ((sweep, stretches), filling) in self.paths().zip(self.pressure_paths()) {
+                let is_isometric = sweep.kind == SweepKind::Isometric;
+                // What goes to and fro: the length, or the pressure where the length is held.
+                let (driven, values, band) = if is_isometric {
+                    (filling, self.pressure(), self.structure.pressure_band)
+                } else {
+                    (stretches, &shortening[..], self.structure.band)
+                };
+                self.follow(sweep, driven, &shortening, per_shortening, &mut history);
+                if is_isometric {
+                    history.direction[sweep.rows.clone()].fill(0.0);
+                    history.rate[sweep.rows.clone()].fill(0.0);
+                }
+                for stretch in filling {
+                    history.pressure_direction[stretch.rows.clone()].fill(f64::from(stretch.direction));
+                }
                 if let Some(loops) = loops.get_mut(sweep.specimen as usize) {
-                    loops.count(sweep, stretches, &shortening, self.structure.band.width, &mut history.cycle);
+                    loops.count(sweep, driven, values, band.width, &mut history.cycle);
                 }
             }
         } else if let Some(stated) = self.stated_direction() {

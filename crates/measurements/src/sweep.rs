@@ -141,6 +141,12 @@ impl<'a> Jumps<'a> {
     }
 }
 
+/// Whether a sweep keeps its pressure; `largest` is the largest pressure in the data.
+pub(crate) fn is_held(pressure: &[f64], largest: f64) -> bool {
+    let (low, high) = bounds(pressure);
+    high - low <= PRESSURE_CHANGE * largest
+}
+
 /// What a path does. `scale` is 1 for contractions and the longest length for lengths, `largest` the largest pressure in the data.
 pub(crate) fn kind(
     stretches: &[Stretch],
@@ -149,12 +155,9 @@ pub(crate) fn kind(
     scale: f64,
     largest: f64,
 ) -> SweepKind {
-    let change = |values| {
-        let (low, high) = bounds(values);
-        high - low
-    };
+    let (low, high) = bounds(motion);
     let does = |direction| stretches.iter().any(|stretch| stretch.direction == direction);
-    if change(motion) <= ISOMETRIC_TRAVEL * scale && change(pressure) > PRESSURE_CHANGE * largest {
+    if high - low <= ISOMETRIC_TRAVEL * scale && !is_held(pressure, largest) {
         return SweepKind::Isometric;
     }
     match (does(1), does(-1)) {

@@ -9,6 +9,7 @@
 
 use bulge_measurements::{Columns, Data, Labels, SweepKind, Trace};
 use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
 
 /// Data of one specimen at constant pressure, 10 ms per row.
 fn timed(contraction: Vec<f64>) -> Data {
@@ -284,4 +285,28 @@ fn subsets_keep_the_structure() {
     close(&part.rate, whole.subset(&keep).rate, 1e-9);
     assert!(data.subset(&[]).is_empty());
     assert!(data.subset(&[]).history(1.0).direction.is_empty());
+}
+
+/// Filling and venting at one length: the pressure goes to and fro, the rig gives way by 0.1 mm, and nothing shortens.
+#[test]
+fn at_held_length_the_pressure_says_where_the_loop_turns() {
+    let mut text = String::from("time [s], pressure [bar], length [mm], force [N]\n");
+    for i in 0..=400 {
+        let phase = f64::from(i % 200) / 100.0;
+        let pressure = 1.0 + 5.0 * if phase < 1.0 { phase } else { 2.0 - phase };
+        let length = 240.0 + 0.02 * pressure;
+        let _ = writeln!(text, "{:.2},{pressure:.4},{length:.4},{:.1}", 0.1 * f64::from(i), 100.0 * pressure);
+    }
+    let data = Data::from_csv(&text, "iso.csv").unwrap();
+    assert_eq!(data.sweeps().iter().map(|sweep| sweep.kind).collect::<Vec<_>>(), [SweepKind::Isometric]);
+    let history = data.history(0.25);
+    assert!(history.direction.iter().chain(&history.rate).all(|value| *value == 0.0));
+    let at = |row: usize| [history.pressure_direction[row], history.approach[row], history.cycle[row]];
+    assert_eq!(
+        [at(50), at(150), at(250), at(350)],
+        [[1.0, 1.0, 0.0], [-1.0, -1.0, 0.0], [1.0, 1.0, 1.0], [-1.0, -1.0, 1.0]]
+    );
+    // A turning point belongs to the stretch that it ends.
+    assert_eq!([at(100)[0], at(101)[0]], [1.0, -1.0]);
+    assert_eq!([history.branch[100], history.branch[101], history.branch[300]], [0, 1, 2]);
 }

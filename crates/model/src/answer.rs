@@ -46,8 +46,8 @@ pub(crate) struct Carried {
     pub(crate) tension: Jet,
     pub(crate) mid_radius: Jet,
     pub(crate) volume: Jet,
-    /// dF/d(contraction) and dN/d(contraction).
-    pub(crate) slope: [f64; 2],
+    /// Derivatives of force, tension and radius by the contraction.
+    pub(crate) slope: [f64; 3],
 }
 
 impl Carried {
@@ -69,7 +69,7 @@ impl Carried {
             tension: self.tension + other.tension,
             mid_radius: self.mid_radius + other.mid_radius,
             volume: self.volume + other.volume,
-            slope: [self.slope[0] + other.slope[0], self.slope[1] + other.slope[1]],
+            slope: std::array::from_fn(|i| self.slope[i] + other.slope[i]),
         }
     }
 
@@ -78,7 +78,7 @@ impl Carried {
         Self {
             force: self.force * wall,
             tension: self.tension * wall,
-            slope: self.slope.map(|s| s * wall.value()),
+            slope: [self.slope[0] * wall.value(), self.slope[1] * wall.value(), self.slope[2]],
             ..self
         }
     }

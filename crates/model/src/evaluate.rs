@@ -15,6 +15,7 @@ use crate::lattice::{FEWEST_NODES, Lattice};
 use crate::model::{AtRest, Base, Model};
 use crate::record::Record;
 use crate::row::NORMAL;
+use crate::strands::{self, Strands};
 use crate::warm::{Held, Slots, Warm};
 
 /// What is wanted of [`Model::evaluate`] besides the force.
@@ -50,6 +51,7 @@ pub(crate) struct Run<'a> {
     pub(crate) model: &'a Model,
     pub(crate) theta: &'a [f64],
     pub(crate) setting: Setting,
+    pub(crate) strands: Strands,
     /// Parameters that change the shape, in the order of the answers' derivatives.
     shapes: Vec<usize>,
     pub(crate) equilibrium: Option<Equilibrium>,
@@ -162,6 +164,7 @@ impl Model {
             model: self,
             theta,
             setting: self.setting,
+            strands: Strands::of(self.muscle()),
             shapes: Vec::new(),
             equilibrium: None,
             lattice: None,
@@ -186,6 +189,7 @@ impl Model {
         // Lengths stay those stated: what an effect takes from them would else move without a derivative.
         let found = Setting::of(&muscle);
         run.setting = Setting { fibres: found.fibres, has_bladder: found.has_bladder, ..self.setting };
+        run.strands = Strands::of(&muscle);
         run.shapes = variables.iter().map(|(index, _)| *index).collect();
         if equilibrium.is_costly() && record.len() > FEWEST_NODES {
             let shape = |theta: &[f64]| self.reshape(theta, &[]).ok().map(|(muscle, _)| muscle);
@@ -305,8 +309,10 @@ impl Run<'_> {
         (0..record.len()).step_by(chunk).map(|start| start..(start + chunk).min(record.len())).collect()
     }
 
+    /// What is remembered along a sweep: of each effect, and of the strands.
     fn memory(&self) -> Vec<Vec<Jet>> {
-        self.model.effects.iter().map(|chosen| vec![Jet::from(0.0); chosen.effect.memory()]).collect()
+        let sizes = self.model.effects.iter().map(|chosen| chosen.effect.memory());
+        sizes.chain([strands::MEMORY]).map(|size| vec![Jet::from(0.0); size]).collect()
     }
 
     /// Effects that act at a stage, with their numbers and memory. Effects of the shape may also change the input.

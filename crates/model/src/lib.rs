@@ -20,6 +20,7 @@ mod model;
 mod parameter;
 mod record;
 mod row;
+mod strands;
 mod warm;
 
 pub use equilibrium::{Equilibrium, EquilibriumDocument};

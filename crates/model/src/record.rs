@@ -52,7 +52,7 @@ impl Record {
         }
         let specimens = moments.iter().map(|m| m.specimen).max().map_or(0, |last| last + 1);
         (end == moments.len() && force.len() == end).then(|| Self {
-            is_path: moments.iter().any(|m| m.direction != 0.0),
+            is_path: moments.iter().any(|m| m.branch() != 0.0),
             has_time: moments.iter().any(|m| m.clock != 0.0),
             moments,
             sweeps,
@@ -141,19 +141,38 @@ fn append(
             pressure: pressure[row],
             contraction: contraction[row],
             direction: history.direction[row],
+            pressure_direction: history.pressure_direction[row],
             rate: history.rate[row],
             pressure_rate: if span > 0.0 { (pressure[after] - pressure[before]) / span } else { 0.0 },
             time: time.map_or(0.0, |t| t[row] - start),
             clock: time.map_or(0.0, |t| t[row] - origin),
-            since: time.map_or(0.0, |t| t[row] - t[before]),
-            // In a static map the order of the rows means nothing.
-            step: if begins || !history.is_path { 0.0 } else { contraction[row] - contraction[before] },
+            since: 0.0,
+            step: 0.0,
+            pressure_step: 0.0,
             temperature: temperature.map_or(0.0, |t| t[row] - reference),
             cycle: history.cycle[row],
             largest,
             begins,
             specimen: data.specimen()[row],
         });
+    }
+    if let Some(sweep) = moments.get_mut(rows) {
+        step(sweep, history.is_path);
+    }
+}
+
+/// Sets what changed since the row before in all moments of one sweep. In a static map the order of the rows means nothing, and a pressure that is held
+/// only scatters.
+fn step(sweep: &mut [Moment], is_path: bool) {
+    let is_driven = sweep.iter().any(|m| m.pressure_direction != 0.0);
+    let mut before: Option<Moment> = None;
+    for moment in sweep {
+        let last = before.unwrap_or(*moment);
+        moment.begins = before.is_none();
+        moment.since = moment.clock - last.clock;
+        moment.step = if is_path { moment.contraction - last.contraction } else { 0.0 };
+        moment.pressure_step = if is_path && is_driven { moment.pressure - last.pressure } else { 0.0 };
+        before = Some(*moment);
     }
 }
 
@@ -176,13 +195,8 @@ impl Record {
             sweeps.push(start..kept.len());
         }
         let mut moments: Vec<Moment> = kept.iter().map(|row| self.moments[*row]).collect();
-        for i in 1..moments.len() {
-            if !moments[i].begins {
-                moments[i].since = moments[i].clock - moments[i - 1].clock;
-                // A static map has no steps.
-                moments[i].step =
-                    if self.is_path { moments[i].contraction - moments[i - 1].contraction } else { 0.0 };
-            }
+        for sweep in &sweeps {
+            step(&mut moments[sweep.clone()], self.is_path);
         }
         let thin = Self {
             moments,
@@ -257,18 +271,7 @@ impl Record {
             moments.push(moment);
         }
         for sweep in &sweeps {
-            for i in sweep.clone() {
-                let begins = i == sweep.start;
-                let before = moments.get(i.saturating_sub(1)).copied();
-                let moment = moments.get_mut(i)?;
-                moment.begins = begins;
-                let Some(before) = before.filter(|_| !begins) else {
-                    (moment.since, moment.step) = (0.0, 0.0);
-                    continue;
-                };
-                moment.since = moment.clock - before.clock;
-                moment.step = if self.is_path { moment.contraction - before.contraction } else { 0.0 };
-            }
+            step(moments.get_mut(sweep.clone())?, self.is_path);
         }
         let sd = |all: &Vec<f64>| {
             groups.iter().map(|g| g.iter().map(|row| all[*row]).sum::<f64>() / g.len() as f64).collect()

@@ -42,6 +42,7 @@ impl Run<'_> {
             mid_radius: found.mid_radius,
             volume: found.volume,
             slope: found.slope[0],
+            turn: self.strands.turn(moment, &found, contraction, memory.last_mut()),
         };
         let setting = &self.setting;
         let mut load = Jet::from(0.0);
@@ -141,7 +142,7 @@ impl Run<'_> {
                     tension: force + pressure * area,
                     mid_radius: radius,
                     volume: (-e + 1.0) * (area * geometry.length),
-                    slope: [slope, slope],
+                    slope: [slope, slope, 0.0],
                 })
             }
             (Base::Equilibrium, Some(equilibrium)) => {
@@ -157,7 +158,11 @@ impl Run<'_> {
                     tension: answer.tension.carry(pressure, e, lanes),
                     mid_radius: answer.mid_radius.carry(pressure, e, lanes),
                     volume: answer.volume.carry(pressure, e, lanes),
-                    slope: [answer.force.by_contraction, answer.tension.by_contraction],
+                    slope: [
+                        answer.force.by_contraction,
+                        answer.tension.by_contraction,
+                        answer.mid_radius.by_contraction,
+                    ],
                 })
             }
             (Base::Equilibrium, None) => Err(RowError::NotFinite),

@@ -53,6 +53,8 @@ fn walk(random: &mut Random) -> Vec<Moment> {
             direction: if step == 0.0 { 0.0 } else { s },
             rate: if begins { random.within(-0.01, 0.01) } else { step / since },
             pressure_rate: random.within(-2e3, 2e3),
+            pressure_step: if begins { 0.0 } else { random.within(-1e5, 1e5) },
+            pressure_direction: f64::signum(random.within(-1.0, 1.0)),
             time,
             clock: time + 500.0 * cycle,
             since,
@@ -98,6 +100,7 @@ fn run(
             mid_radius,
             volume: mid_radius.squared() * (-contraction + 1.0) * 0.7,
             slope: -2e3,
+            turn: Jet::from(moment.step) + pressure * (moment.pressure_step * 1e-13),
         };
         let (mut added, mut reading) = (Jet::from(0.0), force);
         act(Place::Load(&balance, &mut added));

@@ -45,7 +45,7 @@ impl Effect for BoucWen {
                 Twin { name: "viscous-damping", how: "0.92 at one speed" },
             ],
             separate: "inner loops away from the middle: here they drift, with maxwell-slip they close",
-            needs: Needs::Path,
+            needs: Needs::Motion,
         }
     }
 
@@ -63,11 +63,12 @@ impl Effect for BoucWen {
         1
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(_, force) = place {
-            if moment.step != 0.0 {
-                let s = moment.step.signum();
-                memory[0] = moved(memory[0] * s, Jet::from(moment.step.abs()) / theta[1]) * s;
+    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
+        if let Place::Load(balance, force) = place {
+            let turn = balance.turn;
+            if turn.value() != 0.0 {
+                let s = turn.value().signum();
+                memory[0] = moved(memory[0] * s, turn * s / theta[1]) * s;
             }
             *force = *force - theta[0] * memory[0];
         }

@@ -43,7 +43,7 @@ impl Effect for MaxwellSlip {
                 Twin { name: "coulomb-friction", how: "0.88 without inner loops" },
             ],
             separate: "loops with inner reversals (first-order reversal curves)",
-            needs: Needs::Path,
+            needs: Needs::Motion,
         }
     }
 
@@ -67,11 +67,11 @@ impl Effect for MaxwellSlip {
         SLIPS_AT.len()
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(_, force) = place {
+    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
+        if let Place::Load(balance, force) = place {
             let mut sum = Jet::from(0.0);
             for (z, part) in memory.iter_mut().zip(SLIPS_AT) {
-                let moved = *z + Jet::from(moment.step / part) / theta[1];
+                let moved = *z + balance.turn / part / theta[1];
                 *z = if moved.value().abs() > 1.0 { Jet::from(moved.value().signum()) } else { moved };
                 sum += *z;
             }

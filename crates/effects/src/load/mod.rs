@@ -3,18 +3,22 @@
 #[cfg(test)]
 mod along_paths;
 mod asymmetric_friction;
+mod bladder_hysteresis;
+mod bladder_relaxation;
 mod bouc_wen;
 mod contact_friction;
 mod coulomb_friction;
 mod creep;
 mod crossing_friction;
 mod fibre_creep;
+mod filled_bladder;
 mod force_friction;
 mod low_load_slack;
 mod maxwell_slip;
 mod presliding_hysteresis;
 mod pressure_creep;
 mod pressure_friction;
+mod pressure_presliding;
 mod pressure_threshold;
 mod pressure_viscosity;
 mod self_heating;
@@ -33,6 +37,7 @@ pub(crate) fn all() -> Vec<Arc<dyn Effect>> {
         Arc::new(coulomb_friction::CoulombFriction),
         Arc::new(asymmetric_friction::AsymmetricFriction),
         Arc::new(pressure_friction::PressureFriction),
+        Arc::new(pressure_presliding::PressurePresliding),
         Arc::new(crossing_friction::CrossingFriction),
         Arc::new(contact_friction::ContactFriction),
         Arc::new(force_friction::ForceFriction),
@@ -40,6 +45,8 @@ pub(crate) fn all() -> Vec<Arc<dyn Effect>> {
         Arc::new(presliding_hysteresis::PreslidingHysteresis),
         Arc::new(maxwell_slip::MaxwellSlip),
         Arc::new(bouc_wen::BoucWen),
+        Arc::new(bladder_hysteresis::BladderHysteresis),
+        Arc::new(bladder_relaxation::BladderRelaxation),
         Arc::new(viscous_damping::ViscousDamping),
         Arc::new(pressure_viscosity::PressureViscosity),
         Arc::new(creep::Creep),

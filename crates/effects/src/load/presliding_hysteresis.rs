@@ -35,7 +35,7 @@ impl Effect for PreslidingHysteresis {
                 Twin { name: "coulomb-friction", how: "0.88 without inner loops" },
             ],
             separate: "loops with inner reversals (first-order reversal curves)",
-            needs: Needs::Path,
+            needs: Needs::Motion,
         }
     }
 
@@ -53,11 +53,12 @@ impl Effect for PreslidingHysteresis {
         1
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(_, force) = place {
-            if moment.step != 0.0 {
-                let s = moment.step.signum();
-                let fades = (-(Jet::from(moment.step.abs()) / theta[1])).exp();
+    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
+        if let Place::Load(balance, force) = place {
+            let turn = balance.turn;
+            if turn.value() != 0.0 {
+                let s = turn.value().signum();
+                let fades = (-(turn * s / theta[1])).exp();
                 memory[0] = (memory[0] - s) * fades + s;
             }
             *force = *force - theta[0] * memory[0];

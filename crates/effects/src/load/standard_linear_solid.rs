@@ -66,17 +66,17 @@ impl Effect for StandardLinearSolid {
     }
 
     fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(_, force) = place {
+        if let Place::Load(balance, force) = place {
             let over = Jet::from(moment.since) / theta[1];
             // Without the factor k, so that the derivative by k is there where k is 0.
-            memory[0] = memory[0] * (-over).exp() + mean_decay(over) * moment.step;
+            memory[0] = memory[0] * (-over).exp() + mean_decay(over) * balance.turn;
             *force = *force - theta[0] * memory[0];
         }
     }
 }
 
 /// The mean of exp(-x) over 0 ..= h: (1 - exp(-h))/h, 1 at h = 0.
-fn mean_decay(over: Jet) -> Jet {
+pub(super) fn mean_decay(over: Jet) -> Jet {
     let h = over.value();
     let decay = (-h).exp();
     if h < 0.01 {
@@ -92,6 +92,7 @@ fn mean_decay(over: Jet) -> Jet {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Balance;
     use crate::probe::path;
 
     #[test]
@@ -122,9 +123,10 @@ mod tests {
             let mut force = Jet::from(0.0);
             for _ in 0..n {
                 let mut moment = Moment::at_rest(2e5, 0.1);
-                (moment.since, moment.step) = (60.0 / f64::from(n), 0.05 / f64::from(n));
+                moment.since = 60.0 / f64::from(n);
                 force = Jet::from(0.0);
-                let place = Place::Load(&crate::probe::balance(0.1), &mut force);
+                let balance = Balance { turn: Jet::from(0.05 / f64::from(n)), ..crate::probe::balance(0.1) };
+                let place = Place::Load(&balance, &mut force);
                 StandardLinearSolid.act(
                     &moment,
                     &crate::probe::SETTING,

@@ -15,6 +15,8 @@ mod load_misalignment;
 pub(crate) mod lowered_pressure;
 mod pressure_droop;
 mod pressure_gain;
+mod pressure_hysteresis;
+mod pressure_lag;
 mod pressure_offset;
 mod regulator_lag;
 mod valve_hysteresis;
@@ -38,6 +40,8 @@ pub(crate) fn all() -> Vec<Arc<dyn Effect>> {
         Arc::new(pressure_droop::PressureDroop),
         Arc::new(regulator_lag::RegulatorLag),
         Arc::new(valve_hysteresis::ValveHysteresis),
+        Arc::new(pressure_hysteresis::PressureHysteresis),
+        Arc::new(pressure_lag::PressureLag),
         Arc::new(load_misalignment::LoadMisalignment),
         Arc::new(weight::Weight),
         Arc::new(force_nonlinearity::ForceNonlinearity),

@@ -5,7 +5,7 @@ use crate::effect::{Effect, Jet, Moment, Place, Setting};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
 
-/// `p = reading - s dp`, s = +1 while shortening, -1 while lengthening.
+/// `p = reading - s dp`, s = +1 while the muscle takes gas (it shortens, or is filled at held length), -1 while it gives gas back.
 #[derive(Debug)]
 pub(crate) struct ValveHysteresis;
 
@@ -17,7 +17,7 @@ impl Effect for ValveHysteresis {
             title: "Dead band of the pressure valve",
             about: "The valve acts only when the pressure has left a band. A muscle that shortens draws the pressure to the lower edge of the \
                     band, one that lengthens pushes it to the upper one, whatever the speed.",
-            equation: "p = reading - s dp,   s = +1 while shortening, -1 while lengthening, 0 at rest",
+            equation: "p = reading - s dp,   s = +1 while shortening or filled at held length, -1 while lengthening or vented, 0 at rest",
             source: "data sheets of proportional valves: 0.5 to 1 % of full scale",
             evidence: Evidence::Derived,
             group: Group::Rig,
@@ -32,7 +32,7 @@ impl Effect for ValveHysteresis {
                 Twin { name: "asymmetric-friction", how: "0.90" },
             ],
             separate: "a pressure sensor in the muscle itself",
-            needs: Needs::Path,
+            needs: Needs::Motion,
         }
     }
 
@@ -47,7 +47,7 @@ impl Effect for ValveHysteresis {
 
     fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
         if let Place::Input(input) = place {
-            input.pressure = lowered(input.pressure, theta[0] * moment.direction);
+            input.pressure = lowered(input.pressure, theta[0] * moment.branch());
         }
     }
 }

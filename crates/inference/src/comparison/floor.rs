@@ -144,7 +144,7 @@ fn saturated(record: &Record, used: &[bool], residuals: &[f64]) -> Option<(f64, 
         let m = &moments[*row];
         let [along_p, along_e] = [all(p.at(m.pressure), degrees_p), all(e.at(m.contraction), degrees_e)];
         for parity in 0..parities {
-            let sign = if parity == 0 { 1.0 } else { m.direction };
+            let sign = if parity == 0 { 1.0 } else { m.branch() };
             for x in &along_p {
                 matrix.extend(along_e.iter().map(|y| sign * x * y));
             }

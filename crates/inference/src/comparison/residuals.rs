@@ -68,9 +68,9 @@ pub(crate) fn breakdowns(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec
         let of = moments
             .iter()
             .map(|m| {
-                if m.direction > 0.0 {
+                if m.branch() > 0.0 {
                     0
-                } else if m.direction < 0.0 {
+                } else if m.branch() < 0.0 {
                     2
                 } else {
                     1
@@ -170,7 +170,7 @@ pub(crate) fn maps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Resid
     let mut maps = Vec::new();
     for (direction, sign) in [("shortening", 1.0), ("at rest", 0.0), ("lengthening", -1.0)] {
         let mut sums = vec![(0_usize, [0.0; 2]); levels * COLUMNS];
-        let rows = analysis.rows().filter(|row| moments[*row].direction.total_cmp(&sign).is_eq());
+        let rows = analysis.rows().filter(|row| moments[*row].branch().total_cmp(&sign).is_eq());
         let mut any = 0_usize;
         for row in rows {
             let cell = analysis.levels.of[row] * COLUMNS + bin(moments[row].contraction, low, high, COLUMNS);
@@ -229,7 +229,7 @@ pub(crate) fn curves(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Cur
             let stride = rows.len().div_ceil(MOST_POINTS).max(1);
             let point = |row: &usize| CurvePoint {
                 contraction: moments[*row].contraction,
-                direction: moments[*row].direction,
+                direction: moments[*row].branch(),
                 measured_n: measured[*row],
                 first_n: forces[0][*row],
                 last_n: forces[1][*row],

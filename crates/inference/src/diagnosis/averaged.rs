@@ -93,7 +93,7 @@ fn runs<'r>(rows: &'r [usize], record: &'r Record, levels: &'r Levels) -> impl I
     rows.chunk_by(move |a, b| {
         let [first, second] = [a, b].map(|row| &moments[*row]);
         first.specimen == second.specimen
-            && first.direction.total_cmp(&second.direction).is_eq()
+            && first.branch().total_cmp(&second.branch()).is_eq()
             && first.cycle.floor().total_cmp(&second.cycle.floor()).is_eq()
             && (record.is_path() || levels.of[*a] == levels.of[*b])
     })

@@ -25,7 +25,7 @@ pub(crate) fn hints(record: &Record, scene: &Scene, located: &[Located]) -> Vec<
         |variable: &str| located.iter().any(|l| l.variable == variable && l.share > MUCH && l.p < CLEAR);
     if clear("direction") {
         found.push("it turns its sign with the direction, as friction and hysteresis do".to_owned());
-    } else if record.moments().iter().any(|m| m.direction != 0.0)
+    } else if record.moments().iter().any(|m| m.branch() != 0.0)
         && located.iter().all(|l| l.variable != "direction" || l.share < 0.1)
     {
         found.push(

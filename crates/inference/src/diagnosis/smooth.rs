@@ -13,10 +13,10 @@ use crate::diagnosis::as_set::as_set;
 
 /// Highest degree over the contraction.
 const CONTRACTION: usize = 12;
-/// Highest degree over the pressure.
-const PRESSURE: usize = 4;
-/// Highest degrees of what changes sign with the direction.
-const BY_DIRECTION: [usize; 2] = [5, 2];
+/// Highest degree over the pressure, where the length is driven and where the pressure is.
+const PRESSURE: [usize; 2] = [4, 8];
+/// Highest degrees over contraction and pressure of what changes sign with the direction, likewise.
+const BY_DIRECTION: [[usize; 2]; 2] = [[5, 2], [5, 5]];
 /// One degree over the pressure counts as that many over the contraction.
 const PRESSURE_WEIGHT: f64 = 1.5;
 /// Lengths after a reversal, as parts of the range of the contraction.
@@ -83,7 +83,7 @@ pub(crate) struct Smooth {
 pub(crate) fn smooth(record: &Record) -> Vec<Smooth> {
     let record = &as_set(record);
     let mut functions = map(record);
-    if record.moments().iter().any(|m| m.direction != 0.0) {
+    if record.moments().iter().any(|m| m.branch() != 0.0) {
         functions.extend(by_direction(record));
     }
     functions.extend(in_time(record));
@@ -95,7 +95,7 @@ pub(crate) fn smooth(record: &Record) -> Vec<Smooth> {
 
 fn map(record: &Record) -> Vec<Smooth> {
     let (x, y) = (scaled(record, |m| m.contraction), scaled(record, |m| m.pressure));
-    let most = PRESSURE.min(different(&y) - 1);
+    let most = PRESSURE[usize::from(drives_pressure(record))].min(different(&y) - 1);
     let mut functions = Vec::new();
     for i in 0..=CONTRACTION.min(different(&x) - 1) {
         for j in 0..=most {
@@ -115,10 +115,11 @@ fn by_direction(record: &Record) -> Vec<Smooth> {
     let (x, y) = (scaled(record, |m| m.contraction), scaled(record, |m| m.pressure));
     let moments = record.moments();
     let levels = different(&y) - 1;
+    let most = BY_DIRECTION[usize::from(drives_pressure(record))];
     let mut functions = Vec::new();
-    for i in 0..=BY_DIRECTION[0] {
-        for j in 0..=BY_DIRECTION[1].min(levels) {
-            let value = |row: usize| moments[row].direction * chebyshev(i, x[row]) * chebyshev(j, y[row]);
+    for i in 0..=most[0] {
+        for j in 0..=most[1].min(levels) {
+            let value = |row: usize| moments[row].branch() * chebyshev(i, x[row]) * chebyshev(j, y[row]);
             functions.push(Smooth {
                 variable: Variable::Direction,
                 roughness: 1.0 + i as f64 + PRESSURE_WEIGHT * j as f64,
@@ -128,7 +129,7 @@ fn by_direction(record: &Record) -> Vec<Smooth> {
     }
     let since = since_reversal(record);
     for (number, length) in REVERSALS.iter().enumerate() {
-        let value = |row: usize| moments[row].direction * (-since[row] / length).exp();
+        let value = |row: usize| moments[row].branch() * (-since[row] / length).exp();
         functions.push(Smooth {
             variable: Variable::Direction,
             roughness: 3.0 + number as f64,
@@ -138,23 +139,34 @@ fn by_direction(record: &Record) -> Vec<Smooth> {
     functions
 }
 
-/// Way since the last reversal, in parts of the range of the contraction; long at the beginning of a sweep.
+/// Whether the pressure goes to and fro within sweeps.
+fn drives_pressure(record: &Record) -> bool {
+    record.moments().iter().any(|m| m.pressure_step != 0.0)
+}
+
+/// Way since the last reversal, in parts of the range of the contraction, or of the pressure where the length is held; long at the beginning of a sweep.
 fn since_reversal(record: &Record) -> Vec<f64> {
     let moments = record.moments();
     let [low, high] = range(moments.iter().map(|m| m.contraction));
     let whole = (high - low).max(f64::MIN_POSITIVE);
+    let [low, high] = range(moments.iter().map(|m| m.pressure));
+    let whole_pressure = (high - low).max(f64::MIN_POSITIVE);
     let mut since = Vec::with_capacity(moments.len());
     let (mut way, mut direction) = (1.0, 0.0);
     for moment in moments {
         if moment.begins {
-            (way, direction) = (1.0, moment.direction);
+            (way, direction) = (1.0, moment.branch());
         }
-        way += moment.step.abs() / whole;
-        if moment.direction != 0.0 && moment.direction * direction < 0.0 {
+        way += if moment.direction == 0.0 && moment.pressure_direction != 0.0 {
+            moment.pressure_step.abs() / whole_pressure
+        } else {
+            moment.step.abs() / whole
+        };
+        if moment.branch() * direction < 0.0 {
             way = 0.0;
         }
-        if moment.direction != 0.0 {
-            direction = moment.direction;
+        if moment.branch() != 0.0 {
+            direction = moment.branch();
         }
         since.push(way);
     }

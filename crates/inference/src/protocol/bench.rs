@@ -48,16 +48,19 @@ pub struct Protocol {
     pub warming_k: f64,
 }
 
-/// The same motion at several pressures.
+/// The same motion at several pressures, or the same filling and venting at several lengths.
 ///
-/// Each specimen goes through all repeats, each repeat through all pressures; each pressure is one sweep.
+/// Each specimen goes through all repeats, each repeat through all pressures (or lengths); each is one sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Block {
-    /// Gauge pressures \[Pa\], > 0.
+    /// Gauge pressures \[Pa\], > 0. At held lengths the lowest and the highest of them are the range.
     pub pressures_pa: Vec<f64>,
-    /// Lowest and highest contraction.
+    /// Lowest and highest contraction; at held lengths those of [`Block::held`].
     pub contraction: [f64; 2],
-    /// How the muscle moves between them.
+    /// Contractions that are held one after the other while the pressure goes up and down; none where the pressures are held.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub held: Vec<f64>,
+    /// How length or pressure moves between the ends of its range.
     pub path: Path,
     /// Cycles of each sweep; without meaning in a static map.
     pub cycles: u32,
@@ -146,6 +149,7 @@ impl Block {
         Self {
             pressures_pa,
             contraction,
+            held: Vec::new(),
             path: Path::Triangle,
             cycles: 1,
             period_s,
@@ -161,6 +165,29 @@ impl Block {
         Self { path: Path::Static, rows, ..Self::loops(pressures_pa, contraction, 0.0) }
     }
 
+    /// One filling and venting of 50 rows at each of the contractions `held`, between two pressures \[Pa\], in `period_s` \[s\].
+    #[must_use]
+    pub fn isometric(pressure_pa: [f64; 2], held: Vec<f64>, period_s: f64) -> Self {
+        let ends = held
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], e| [low.min(*e), high.max(*e)]);
+        Self { held, ..Self::loops(pressure_pa.to_vec(), ends, period_s) }
+    }
+
+    /// Ranges of pressure \[Pa\] and contraction of each sweep of one repeat; the range of what is held is one number.
+    pub(crate) fn sweeps(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+        let isobaric = self.pressures_pa.iter().map(|p| ([*p; 2], self.contraction));
+        let range = self.pressure_range();
+        let isometric = self.held.iter().map(move |e| (range, [*e; 2]));
+        isobaric.take(if self.held.is_empty() { usize::MAX } else { 0 }).chain(isometric)
+    }
+
+    fn pressure_range(&self) -> [f64; 2] {
+        self.pressures_pa
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(*p), high.max(*p)])
+    }
+
     /// Rows of one sweep.
     fn rows_of_sweep(&self) -> u64 {
         u64::from(self.rows) * u64::from(if self.path == Path::Static { 1 } else { self.cycles })
@@ -169,9 +196,9 @@ impl Block {
     /// Rows of the whole block.
     #[must_use]
     pub fn len(&self) -> u64 {
-        let sweeps = (self.pressures_pa.len() as u64)
-            .saturating_mul(u64::from(self.repeats))
-            .saturating_mul(u64::from(self.specimens));
+        let levels = if self.held.is_empty() { self.pressures_pa.len() } else { self.held.len() };
+        let sweeps =
+            (levels as u64).saturating_mul(u64::from(self.repeats)).saturating_mul(u64::from(self.specimens));
         self.rows_of_sweep().saturating_mul(sweeps)
     }
 
@@ -201,8 +228,10 @@ impl Block {
             );
             return Err(Wrong { key: "pressures", what, instead: "write such as \"2 bar\"".to_owned() });
         }
+        self.check_held()?;
         let [low, high] = self.contraction;
-        if !(CONTRACTIONS.contains(&low) && CONTRACTIONS.contains(&high) && low < high) {
+        let rises = low < high || !self.held.is_empty();
+        if !(CONTRACTIONS.contains(&low) && CONTRACTIONS.contains(&high) && rises) {
             let what = format!(
                 "a contraction from {:.4} % to {:.4} % is not possible: it must rise, within -100 % and 60 %",
                 100.0 * low,
@@ -231,6 +260,27 @@ impl Block {
             });
         }
         self.check_stairs(count)
+    }
+
+    fn check_held(&self) -> Result<(), Wrong> {
+        if self.held.is_empty() {
+            return Ok(());
+        }
+        if self.held.len() > MOST_COUNT as usize || self.held.iter().any(|e| !CONTRACTIONS.contains(e)) {
+            let what = format!(
+                "{} contractions are held, and 1 to {MOST_COUNT} within -100 % and 60 % are possible",
+                self.held.len()
+            );
+            let instead = "write such as `contractions = [\"2 %\", \"10 %\"]`".to_owned();
+            return Err(Wrong { key: "contractions", what, instead });
+        }
+        let [low, high] = self.pressure_range();
+        if low >= high {
+            let what = format!("the pressure goes from {low} to {high} Pa, but must change at held length");
+            let instead = "write such as `pressure = \"1 bar..6 bar\"`".to_owned();
+            return Err(Wrong { key: "pressure", what, instead });
+        }
+        Ok(())
     }
 
     fn check_stairs(

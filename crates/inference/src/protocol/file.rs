@@ -19,7 +19,7 @@ pause = \"10 s\"                 # between sweeps
 [[block]]                      # one or more; each pressure is one sweep
 pressures = [\"2 bar\", \"3 bar\", \"4 bar\", \"5 bar\"]
 contraction = \"1 %..20 %\"
-shape = \"loops\"                # or \"stairs\" (with `steps` and `hold`), or \"static\" (a grid without time)
+shape = \"loops\"                # or \"stairs\" (with `steps` and `hold`), \"static\" (a grid without time), or \"isometric\"
 wave = \"triangle\"              # or \"sine\"
 cycles = 3
 period = \"50 s\"                # of one cycle; or a mean speed: rate = \"0.8 %/s\"
@@ -40,6 +40,12 @@ force = \"0.1 N\"
 pressure = \"10 Pa\"
 length = \"10 um\"
 # interval = \"0.5 s\"           # between rows, instead of `rows`
+
+# [[block]]                    # filling and venting at held lengths
+# shape = \"isometric\"
+# contractions = [\"2 %\", \"10 %\"]
+# pressure = \"1 bar..6 bar\"
+# period = \"20 s\"
 ";
 
 /// Keys of the tables, with an example of each.
@@ -51,9 +57,11 @@ const TOP: [(&str, &str); 6] = [
     ("noise", "noise = { force = \"2 N\" }"),
     ("sampling", "sampling = { force = \"0.1 N\" }"),
 ];
-const BLOCK: [(&str, &str); 12] = [
+const BLOCK: [(&str, &str); 14] = [
     ("pressures", "pressures = [\"2 bar\", \"3 bar\"]"),
     ("contraction", "contraction = \"1 %..20 %\""),
+    ("contractions", "contractions = [\"2 %\", \"10 %\"]"),
+    ("pressure", "pressure = \"1 bar..6 bar\""),
     ("shape", "shape = \"loops\""),
     ("wave", "wave = \"triangle\""),
     ("cycles", "cycles = 3"),
@@ -87,6 +95,7 @@ enum Shape {
     Loops,
     Stairs,
     Static,
+    Isometric,
 }
 
 impl Protocol {
@@ -145,16 +154,31 @@ fn protocol(settings: &Settings<'_>) -> Result<Protocol, FileError> {
 
 fn block(settings: &Settings<'_>, interval: Option<f64>) -> Result<Block, FileError> {
     settings.check_keys()?;
-    let shapes = [("loops", Shape::Loops), ("stairs", Shape::Stairs), ("static", Shape::Static)];
+    let shapes = [
+        ("loops", Shape::Loops),
+        ("stairs", Shape::Stairs),
+        ("static", Shape::Static),
+        ("isometric", Shape::Isometric),
+    ];
     let shape = settings.word("shape", &shapes)?.unwrap_or(Shape::Loops);
     check_shape(settings, shape)?;
-    let mut block = Block::loops(pressures(settings)?, range(settings)?, 0.0);
+    let mut block = if shape == Shape::Isometric {
+        let [low, high] = range::<Pressure>(settings, "pressure")?;
+        Block::isometric(
+            [low, high],
+            list::<Ratio>(settings, "contractions", "a list of contractions with their units")?,
+            0.0,
+        )
+    } else {
+        let pressures = list::<Pressure>(settings, "pressures", "a list of pressures with their units")?;
+        Block::loops(pressures, range::<Ratio>(settings, "contraction")?, 0.0)
+    };
     block.repeats = settings.count("repeats")?.unwrap_or(1);
     block.specimens = settings.count("specimens")?.unwrap_or(1);
     block.cycles = settings.count("cycles")?.unwrap_or(1);
     block.path = match shape {
         Shape::Static => Path::Static,
-        Shape::Loops => {
+        Shape::Loops | Shape::Isometric => {
             let waves = [("triangle", Path::Triangle), ("sine", Path::Sine)];
             settings.word("wave", &waves)?.unwrap_or(Path::Triangle)
         }
@@ -179,9 +203,10 @@ fn block(settings: &Settings<'_>, interval: Option<f64>) -> Result<Block, FileEr
 /// Refuses keys that mean nothing for the shape.
 fn check_shape(settings: &Settings<'_>, shape: Shape) -> Result<(), FileError> {
     let strange: &[&str] = match shape {
-        Shape::Loops => &["steps", "hold"],
-        Shape::Stairs => &["wave"],
-        Shape::Static => &["wave", "cycles", "period", "rate", "steps", "hold"],
+        Shape::Loops => &["steps", "hold", "contractions", "pressure"],
+        Shape::Stairs => &["wave", "contractions", "pressure"],
+        Shape::Static => &["wave", "cycles", "period", "rate", "steps", "hold", "contractions", "pressure"],
+        Shape::Isometric => &["steps", "hold", "rate", "contraction", "pressures"],
     };
     let Some(key) = strange.iter().find(|key| settings.get(key).is_some()) else { return Ok(()) };
     let what = format!("`{key}` means nothing for this shape of the motion");
@@ -207,34 +232,32 @@ fn period(settings: &Settings<'_>, block: &Block) -> Result<f64, FileError> {
     Ok(moving + 2.0 * f64::from(steps) * hold_s)
 }
 
-fn pressures(settings: &Settings<'_>) -> Result<Vec<f64>, FileError> {
-    let Some(value) = settings.get("pressures") else { return Err(settings.missing("pressures")) };
+/// A list of quantities in SI, as one text or as several.
+fn list<Q: Quantity>(settings: &Settings<'_>, key: &'static str, what: &str) -> Result<Vec<f64>, FileError> {
+    let Some(value) = settings.get(key) else { return Err(settings.missing(key)) };
     if let Some(text) = value.text() {
-        let list = units::parse_list::<Pressure>(text);
+        let list = units::parse_list::<Q>(text);
         return list
             .map(|list| list.into_iter().map(Quantity::si).collect())
-            .map_err(|error| settings.unreadable("pressures", value, error));
+            .map_err(|error| settings.unreadable(key, value, error));
     }
-    let refused =
-        |value: Setting<'_>| settings.wrong_type("pressures", value, "a list of pressures with their units");
+    let refused = |value: Setting<'_>| settings.wrong_type(key, value, what);
     let items = value.items().ok_or_else(|| refused(value))?;
     let one = |item: Setting<'_>| {
         let text = item.number().ok_or_else(|| refused(item))?;
-        let pressure = units::parse::<Pressure>(text);
-        pressure.map(Quantity::si).map_err(|error| settings.unreadable("pressures", item, error))
+        let quantity = units::parse::<Q>(text);
+        quantity.map(Quantity::si).map_err(|error| settings.unreadable(key, item, error))
     };
     items.into_iter().map(one).collect()
 }
 
-fn range(settings: &Settings<'_>) -> Result<[f64; 2], FileError> {
-    let Some(value) = settings.get("contraction") else { return Err(settings.missing("contraction")) };
+fn range<Q: Quantity>(settings: &Settings<'_>, key: &'static str) -> Result<[f64; 2], FileError> {
+    let Some(value) = settings.get(key) else { return Err(settings.missing(key)) };
     let Some(text) = value.text() else {
-        return Err(settings.wrong_type("contraction", value, "a range in quotes"));
+        return Err(settings.wrong_type(key, value, "a range in quotes"));
     };
-    let range = units::parse_range::<Ratio>(text);
-    range
-        .map(|(low, high)| [low.si(), high.si()])
-        .map_err(|error| settings.unreadable("contraction", value, error))
+    let range = units::parse_range::<Q>(text);
+    range.map(|(low, high)| [low.si(), high.si()]).map_err(|error| settings.unreadable(key, value, error))
 }
 
 fn interval(settings: &Settings<'_>) -> Result<Option<f64>, FileError> {

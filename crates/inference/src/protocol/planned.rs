@@ -10,20 +10,37 @@ use crate::protocol::bench::{Block, Path, Protocol};
 /// Temperature of the first row where the bench warms up \[K\].
 const COLD_K: f64 = 293.15;
 
-/// One sweep of a plan: a specimen at one pressure.
+/// One sweep of a plan: a specimen at one pressure or at one contraction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Run {
     pub(crate) block: usize,
     pub(crate) specimen: u32,
-    pub(crate) pressure_pa: f64,
+    /// From where to where the pressure goes \[Pa\]; twice the same where it is held.
+    pub(crate) pressure_pa: [f64; 2],
+    /// From where to where the contraction goes; twice the same where it is held.
     pub(crate) contraction: [f64; 2],
 }
 
 impl Run {
-    /// Contraction at a row of a cycle.
-    pub(crate) fn contraction_at(&self, protocol: &Protocol, row: u32) -> f64 {
-        let [low, high] = self.contraction;
-        low + (high - low) * protocol.blocks[self.block].place(row)
+    /// Pressure \[Pa\] and contraction at a row of a cycle.
+    pub(crate) fn at(&self, protocol: &Protocol, row: u32) -> [f64; 2] {
+        let place = protocol.blocks[self.block].place(row);
+        [self.pressure_pa, self.contraction].map(|[low, high]| low + (high - low) * place)
+    }
+
+    /// Whether the length is held.
+    pub(crate) fn is_isometric(&self) -> bool {
+        self.contraction[0].total_cmp(&self.contraction[1]).is_eq()
+    }
+
+    /// Whether this is a planned run, or what is left of it.
+    pub(crate) fn is_part_of(&self, planned: &Self) -> bool {
+        let same = if planned.is_isometric() {
+            Self { pressure_pa: planned.pressure_pa, ..*self }
+        } else {
+            Self { contraction: planned.contraction, ..*self }
+        };
+        same == *planned
     }
 }
 
@@ -66,11 +83,11 @@ impl Protocol {
         for (i, block) in self.blocks.iter().enumerate() {
             for specimen in 0..block.specimens {
                 for _ in 0..block.repeats {
-                    runs.extend(block.pressures_pa.iter().map(|pressure| Run {
+                    runs.extend(block.sweeps().map(|(pressure_pa, contraction)| Run {
                         block: i,
                         specimen,
-                        pressure_pa: *pressure,
-                        contraction: block.contraction,
+                        pressure_pa,
+                        contraction,
                     }));
                 }
             }
@@ -89,8 +106,9 @@ impl Protocol {
             let (label, name) = ((number + 1).to_string(), (run.specimen + 1).to_string());
             let cycles = if block.path == Path::Static { 1 } else { block.cycles };
             for row in 0..cycles * block.rows {
-                pressure.push(run.pressure_pa);
-                contraction.push(run.contraction_at(self, row));
+                let [p, e] = run.at(self, row);
+                pressure.push(p);
+                contraction.push(e);
                 time.push(clock + f64::from(row) * interval);
                 sweep.push(&label);
                 specimen.push(&name);

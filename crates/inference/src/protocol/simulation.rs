@@ -18,6 +18,8 @@ const MOST_PASSES: usize = 60;
 const FEW_ROWS: u32 = 200;
 /// A sweep over less of the contraction is none.
 const LEAST_RANGE: f64 = 2e-3;
+/// At held length, a sweep over less than this part of its highest pressure is none.
+const LEAST_PRESSURE_RANGE: f64 = 0.1;
 /// Decimals of the file: of time \[s\], pressure \[bar\], contraction \[%\], temperature \[K\] and force \[N\].
 const DECIMALS: [usize; 5] = [6, 7, 6, 4, 4];
 
@@ -202,17 +204,25 @@ fn shortened(runs: &[Run], record: &Record, bad: &[usize]) -> Vec<Run> {
     for row in bad {
         is_bad[*row] = true;
     }
-    let contraction = |row: usize| record.moments()[row].contraction;
     let one = |(run, rows): (&Run, &std::ops::Range<usize>)| {
         if !rows.clone().any(|row| is_bad[row]) {
             return Some(*run);
         }
-        let good = || rows.clone().filter(|row| !is_bad[*row]).map(contraction);
+        // A muscle pushes where it is too short, or at held length where the pressure is too low: in what follows, beyond the smallest bad value.
+        let value = |row: usize| {
+            let moment = &record.moments()[row];
+            if run.is_isometric() { -moment.pressure } else { moment.contraction }
+        };
+        let good = || rows.clone().filter(|row| !is_bad[*row]).map(value);
         let low = good().fold(f64::INFINITY, f64::min);
-        let first = rows.clone().filter(|row| is_bad[*row]).map(contraction).filter(|e| *e >= low);
+        let first = rows.clone().filter(|row| is_bad[*row]).map(value).filter(|e| *e >= low);
         let first = first.fold(f64::INFINITY, f64::min);
         let high = good().filter(|e| *e < first).fold(f64::NEG_INFINITY, f64::max);
-        (high - low >= LEAST_RANGE).then_some(Run { contraction: [low, high], ..*run })
+        if run.is_isometric() {
+            (high - low >= LEAST_PRESSURE_RANGE * -low).then_some(Run { pressure_pa: [-high, -low], ..*run })
+        } else {
+            (high - low >= LEAST_RANGE).then_some(Run { contraction: [low, high], ..*run })
+        }
     };
     runs.iter().zip(record.sweeps()).filter_map(one).collect()
 }
@@ -340,13 +350,20 @@ fn decimal(value: f64, decimals: usize) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// What of the plan is not in the data, each pressure and range once.
+/// What of the plan is not in the data, each pressure (or held length) and range once.
 fn ended(protocol: &Protocol, done: &Done) -> Vec<Ended> {
     let mut found: Vec<Ended> = Vec::new();
-    let mut add = |run: &Run, reached: Option<[f64; 2]>, count: usize| {
+    let mut add = |run: &Run, reached: Option<[[f64; 2]; 2]>, count: usize| {
         // Twelve digits hide the rounding of the grid.
-        let reached = reached.map(|range| range.map(|e| units::rounded(e, 12)));
-        let ended = Ended { pressure_pa: run.pressure_pa, planned: run.contraction, reached, count };
+        let reached = reached.map(|ranges| ranges.map(|range| range.map(|value| units::rounded(value, 12))));
+        let [pressures, contractions] = reached.map_or([None; 2], |ranges| ranges.map(Some));
+        let ended = Ended {
+            pressure_pa: run.pressure_pa[1],
+            planned: run.contraction,
+            reached: contractions,
+            pressure_reached_pa: pressures.filter(|_| run.is_isometric()),
+            count,
+        };
         match found.iter_mut().find(|other| Ended { count, ..**other } == ended) {
             Some(same) => same.count += count,
             None => found.push(ended),
@@ -358,11 +375,11 @@ fn ended(protocol: &Protocol, done: &Done) -> Vec<Ended> {
         for run in &planned {
             let rows = protocol.blocks[run.block].rows;
             let is_kept = |row: &u32| done.kept.get(first + *row as usize).copied().unwrap_or(true);
-            let kept: Vec<f64> =
-                (0..rows).filter(is_kept).map(|row| run.contraction_at(protocol, row)).collect();
+            let kept: Vec<f64> = (0..rows).filter(is_kept).map(|row| run.at(protocol, row)[1]).collect();
             first += rows as usize;
             if kept.len() < rows as usize {
-                let reached = kept.first().zip(kept.last()).map(|(low, high)| [*low, *high]);
+                let reached =
+                    kept.first().zip(kept.last()).map(|(low, high)| [run.pressure_pa, [*low, *high]]);
                 add(run, reached, rows as usize - kept.len());
             }
         }
@@ -371,9 +388,9 @@ fn ended(protocol: &Protocol, done: &Done) -> Vec<Ended> {
     let mut left = done.runs.iter().peekable();
     for run in &planned {
         // Both lists are in the same order, one without the sweeps that have nothing left.
-        match left.next_if(|other| Run { contraction: run.contraction, ..**other } == *run) {
+        match left.next_if(|other| other.is_part_of(run)) {
             Some(other) if other == run => {}
-            other => add(run, other.map(|other| other.contraction), 1),
+            other => add(run, other.map(|other| [other.pressure_pa, other.contraction]), 1),
         }
     }
     found

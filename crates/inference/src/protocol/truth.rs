@@ -73,12 +73,15 @@ pub struct RigReadings {
 /// Where the muscle doesn't pull, or has no equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Ended {
-    /// Gauge pressure \[Pa\].
+    /// Gauge pressure \[Pa\]; the highest at held length.
     pub pressure_pa: f64,
     /// Contractions that were planned.
     pub planned: [f64; 2],
     /// Contractions that are in the data; none if nothing of the sweep is.
     pub reached: Option<[f64; 2]>,
+    /// Pressures that are in the data, of a sweep at held length \[Pa\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure_reached_pa: Option<[f64; 2]>,
     /// Sweeps to which that happened, or rows of a static map that were left out.
     pub count: usize,
 }

@@ -1,0 +1,93 @@
+//! Bladder relaxation: rubber that was stretched by filling or shortening yields within a time.
+
+use bulge_muscles::Kind;
+use bulge_numerics::Real;
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::load::filled_bladder::FilledBladder;
+use crate::load::standard_linear_solid::mean_decay;
+use crate::unit::{NEWTON, SECOND};
+
+/// `dQ/dt = g db/dt - Q/tau`, `dF = -Q`, b the force of the filled bladder over its largest ([`FilledBladder`]).
+#[derive(Debug)]
+pub(crate) struct BladderRelaxation;
+
+impl Effect for BladderRelaxation {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "bladder-relaxation",
+            family: "bladder-hysteresis",
+            title: "Rubber of the bladder that relaxes",
+            about: "The bladder answers a quick stretch stiffly and yields within a time tau. After filling at held length the muscle gains force by \
+                    itself, and while it is vented it pulls more than while it was filled, most at low pressure.",
+            equation: "dQ/dt = g db/dt - Q/tau,   dF = -Q,   b = B(eps)/B_max tanh(p/1 bar), B the force of the bladder,   Q = 0 when a sweep begins",
+            source: "Zener 1948 for the rubber; exact for a stretch that runs straight between two rows",
+            evidence: Evidence::Derived,
+            group: Group::Load,
+            stage: Stage::Load,
+            kind: Some(Kind::Braided),
+            signature: Signature {
+                pressure: "0",
+                parity: Parity::Mixed,
+                shape: "as the bladder's force, forgotten within tau",
+            },
+            twins: &[
+                Twin { name: "bladder-hysteresis", how: "same family; the speed" },
+                Twin { name: "standard-linear-solid", how: "0.95 at held pressure" },
+                Twin { name: "creep", how: "similar in a hold" },
+            ],
+            separate: "the same cycle ten times slower; a hold after filling",
+            needs: Needs::Time,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        vec![
+            ParameterCard::new("force", NEWTON, (0.0, 500.0), 10.0, "force of a quick full stretch")
+                .prior(0.0, 20.0)
+                .plausible(0.0, 150.0),
+            ParameterCard::new("time", SECOND, (0.1, 1e4), 30.0, "time within which it relaxes")
+                .plausible(0.5, 1e3)
+                .off_at(30.0)
+                .logarithmic(),
+        ]
+    }
+
+    fn memory(&self) -> usize {
+        2
+    }
+
+    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
+        if let Place::Load(balance, force) = place {
+            let filled = FilledBladder::at(balance, setting);
+            let change = if moment.begins { Jet::from(0.0) } else { filled - memory[1] };
+            memory[1] = filled;
+            let over = Jet::from(moment.since) / theta[1];
+            memory[0] = memory[0] * (-over).exp() + mean_decay(over) * change;
+            *force = *force - theta[0] * memory[0];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::{balance, driven};
+
+    #[test]
+    fn a_quick_filling_is_forgotten_in_a_hold() {
+        // From 0 to 2 bar in 1 s with tau = 2 s: g b 2 (1 - exp(-1/2)); then exp(-1/2) per second.
+        let rows = [[0.0, 0.1], [2e5, 0.1], [2e5, 0.1], [2e5, 0.1]];
+        let out = driven(&BladderRelaxation, &[15.0, 2.0], &rows);
+        let first = 15.0
+            * FilledBladder::at(&balance(0.1), &crate::probe::SETTING).value()
+            * 2.0
+            * (1.0 - (-0.5_f64).exp());
+        for (found, expected) in
+            out.iter().zip([0.0, -first, -first * (-0.5_f64).exp(), -first * (-1.0_f64).exp()])
+        {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Pressure presliding: strands stick and give before they slide, and the gas presses them on (Tondu and Lopez 2000 for the limit, Dahl 1968 for the way there).
+
+use bulge_numerics::Real;
+
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
+use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::unit::{NEWTON_PER_BAR, PERCENT};
+
+/// `h -> clamp(s w + (h - s w) exp(-|dx|/delta), -w, w)`, `w = mu p`, `dF = -h`, x the turn of the strands.
+///
+/// What is remembered is the traction h itself and not its part of the limit: contacts that stick keep their traction while the pressure rises,
+/// and lose what the limit no longer bears while it falls.
+#[derive(Debug)]
+pub(crate) struct PressurePresliding;
+
+impl Effect for PressurePresliding {
+    fn card(&self) -> Card<'_> {
+        Card {
+            name: "pressure-presliding",
+            family: "pressure-friction",
+            title: "Friction in proportion to the pressure that builds up after a reversal",
+            about: "The gas presses the strands onto each other. They stick, give within a distance delta and then slide, at a friction in \
+                    proportion to the pressure. In a test at held length the strands turn only as far as fibres and bladder give: the loop is \
+                    narrower there than at held pressure, and the force is smaller while filling than while venting.",
+            equation: "h -> clamp(s w + (h - s w) exp(-|dx|/delta), -w, w),   w = mu p,   dF = -h,   dx = d eps + what the pressure turns, s = sign(dx)",
+            source: "limit in proportion to the pressure: Chou and Hannaford 1996, Tondu and Lopez 2000; way there: Dahl 1968; no source states \
+                     a law for presliding that the pressure drives",
+            evidence: Evidence::Derived,
+            group: Group::Load,
+            stage: Stage::Load,
+            kind: None,
+            signature: Signature {
+                pressure: "1",
+                parity: Parity::Odd,
+                shape: "constant far from reversals, with a transition of length delta after each",
+            },
+            twins: &[
+                Twin { name: "pressure-friction", how: "where delta is much shorter than the stroke" },
+                Twin { name: "presliding-hysteresis", how: "0.90 from 1 to 5 bar" },
+                Twin { name: "bladder-hysteresis", how: "in filling and venting from 0 bar at one length" },
+                Twin { name: "pressure-viscosity", how: "0.90 at one speed" },
+            ],
+            separate: "the same loop ten times slower against viscosity; filling and venting at three lengths, from 0 and from 2 bar, against the \
+                       bladder: its loop is gone from 2 bar on and vanishes at rest length, this one doesn't",
+            needs: Needs::Motion,
+        }
+    }
+
+    fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        vec![
+            ParameterCard::new(
+                "coefficient",
+                NEWTON_PER_BAR,
+                (0.0, 100.0),
+                1.5,
+                "friction far from a reversal, per pressure",
+            )
+            .prior(0.0, 3.0)
+            .plausible(0.0, 30.0),
+            ParameterCard::new("distance", PERCENT, (0.01, 10.0), 0.3, "contraction over which it builds up")
+                .plausible(0.02, 3.0)
+                .off_at(0.3)
+                .logarithmic(),
+        ]
+    }
+
+    fn memory(&self) -> usize {
+        1
+    }
+
+    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
+        if let Place::Load(balance, force) = place {
+            // Traction and limit per coefficient \[Pa\], so that the derivative by the coefficient is there where that is 0.
+            let limit = balance.pressure;
+            let turn = balance.turn;
+            if turn.value() != 0.0 {
+                let s = turn.value().signum();
+                let fades = (-(turn * s / theta[1])).exp();
+                memory[0] = (memory[0] - limit * s) * fades + limit * s;
+            }
+            if memory[0].value().abs() > limit.value() {
+                memory[0] = limit * memory[0].value().signum();
+            }
+            *force = *force - theta[0] * memory[0];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Balance;
+    use crate::probe::{balance, path};
+
+    #[test]
+    fn it_builds_up_to_a_limit_in_proportion_to_the_pressure() {
+        // 1.5 N/bar at 2 bar over one distance: 3 N (1 - 1/e); far away 3 N; back by two distances: 3 - 6 exp(-2)... with the other sign.
+        let out = path(&PressurePresliding, &[1.5e-5, 0.01], &[0.0, 0.01, 0.5, 0.48]);
+        let expected = [0.0, -3.0 * (1.0 - (-1.0_f64).exp()), -3.0, 3.0 - 6.0 * (-2.0_f64).exp()];
+        for (found, expected) in out.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn stuck_contacts_keep_their_traction_up_to_the_limit() {
+        // Slid at 6 bar, vented to 1 bar without a turn and filled again: the traction follows the limit down and does not come back.
+        let mut memory = [Jet::from(0.0)];
+        let mut run = |bar: f64, turn: f64| {
+            let balance = Balance { pressure: Jet::from(bar * 1e5), turn: Jet::from(turn), ..balance(0.1) };
+            let mut force = Jet::from(0.0);
+            let moment = Moment::at_rest(bar * 1e5, 0.1);
+            let theta = [1e-5, 0.001].map(Jet::from);
+            let place = Place::Load(&balance, &mut force);
+            PressurePresliding.act(&moment, &crate::probe::SETTING, &theta, &mut memory, place);
+            force.value()
+        };
+        let found = [run(6.0, 0.1), run(3.0, 0.0), run(1.0, 0.0), run(6.0, 0.0)];
+        for (found, expected) in found.into_iter().zip([-6.0, -3.0, -1.0, -1.0]) {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn many_small_steps_are_one_large_step() {
+        let fine: Vec<f64> = (0..=200).map(|i| 1e-4 * f64::from(i)).collect();
+        let fine = path(&PressurePresliding, &[1.5e-5, 0.01], &fine);
+        let coarse = path(&PressurePresliding, &[1.5e-5, 0.01], &[0.0, 0.02]);
+        assert!((coarse[1] - fine[200]).abs() < 1e-11);
+    }
+}
