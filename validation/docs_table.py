@@ -63,11 +63,18 @@ def main():
     parser.add_argument("--root", type=Path, default=ROOT, help="folder of README.md and docs")
     arguments = parser.parse_args()
     if arguments.what == "verification":
-        tables = {"verification": verification(json.load(sys.stdin)["checks"])}
+        checks = json.load(sys.stdin)["checks"]
+        if not checks:
+            parser.error("standard input holds no check: give it the output of `bulge validate --json`")
+        tables = {"verification": verification(checks)}
     else:
         if len(arguments.scores) != 2:
             parser.error("`diagnosis` needs two files: score.json of seed 1 and of seed 2")
-        seeds = [json.loads(path.read_text(encoding="utf-8"))["methods"] for path in arguments.scores]
+        scores = [json.loads(path.read_text(encoding="utf-8")) for path in arguments.scores]
+        for seed, (score, path) in enumerate(zip(scores, arguments.scores), start=1):
+            if score.get("seed") != seed or score.get("only"):
+                parser.error(f"{path} isn't the score of the whole suite of seed {seed}: write it by prove.py --seed {seed}, without --only")
+        seeds = [score["methods"] for score in scores]
         tables = {"diagnosis": diagnosis(seeds), "diagnosis-front": front(seeds)}
     texts = {}
     for name, table in tables.items():
