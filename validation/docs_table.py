@@ -1,9 +1,10 @@
 """Writes the tables of README.md and docs/ that a command prints, between their markers.
 
-    bulge validate --json | python validation/docs_table.py verification
+    bulge validate --json | python validation/docs_table.py verification [--check]
     python validation/docs_table.py diagnosis SEED-1/score.json SEED-2/score.json      # of prove.py, one for each seed
 
-A table stands between `<!-- table: NAME ... -->` and `<!-- end of table -->`; all else in the file is kept.
+A table stands between `<!-- table: NAME ... -->` and `<!-- end of table -->`; all else in the file is kept. `--check` writes nothing: its status is 1 if
+the page has other checks, cases or tolerances than the program. Errors at the level of rounding differ between machines and aren't compared.
 """
 
 import argparse
@@ -60,6 +61,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=("verification", "diagnosis"))
     parser.add_argument("scores", type=Path, nargs="*", help="score.json of seed 1 and of seed 2, for `diagnosis`")
+    parser.add_argument("--check", action="store_true", help="compare the page with the program (`verification` alone)")
     parser.add_argument("--root", type=Path, default=ROOT, help="folder of README.md and docs")
     arguments = parser.parse_args()
     if arguments.what == "verification":
@@ -76,6 +78,8 @@ def main():
                 parser.error(f"{path} isn't the score of the whole suite of seed {seed}: write it by prove.py --seed {seed}, without --only")
         seeds = [score["methods"] for score in scores]
         tables = {"diagnosis": diagnosis(seeds), "diagnosis-front": front(seeds)}
+    if arguments.check and arguments.what != "verification":
+        parser.error("`--check` is for `verification`: the scores of a suite take half an hour")
     texts = {}
     for name, table in tables.items():
         paths = [arguments.root / page for page in PAGES if f"<!-- table: {name} " in (arguments.root / page).read_text(encoding="utf-8")]
@@ -83,10 +87,32 @@ def main():
             parser.error(f"no page has the marker `<!-- table: {name} ... -->`")
         for path in paths:
             texts[path] = replaced(texts.get(path) or path.read_text(encoding="utf-8"), name, table)
+    if arguments.check:
+        return _compared(texts)
     for path, text in texts.items():
         path.write_text(text, encoding="utf-8")
         print(f"wrote {path}")
     return 0
+
+
+def _compared(texts):
+    """Status 1 and the lines that differ, errors aside, if a page is not what would be written."""
+    status = 0
+    for path, text in texts.items():
+        stands, belongs = ([_without_error(line) for line in lines.splitlines()] for lines in (path.read_text(encoding="utf-8"), text))
+        for sign, lines, others in (("-", stands, belongs), ("+", belongs, stands)):
+            for line in lines:
+                if line not in others:
+                    print(f"{path}: {sign} {line}", file=sys.stderr)
+                    status = 1
+    if status:
+        print("write it anew: bulge validate --json | python validation/docs_table.py verification", file=sys.stderr)
+    return status
+
+
+def _without_error(line):
+    """`| check | cases | error | tolerance |` without the third cell."""
+    return re.sub(r"^(\| .* \| \d+ \|) \S+ (\| \S+ \|)$", r"\1 \2", line)
 
 
 def replaced(text, name, table):
