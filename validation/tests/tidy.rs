@@ -1,6 +1,9 @@
-//! The architecture as a test: who may import whom, and what every source file keeps to. Each rule is tried on a bad sample as well.
+//! The architecture as a test: who may import whom, and what every source file and every page keeps to. Each rule is tried on a bad sample as well.
 
 #![expect(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't be set up fails")]
+
+#[path = "tidy/pages.rs"]
+mod pages;
 
 use std::fs;
 use std::path::{Path, PathBuf};

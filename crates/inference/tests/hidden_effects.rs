@@ -1,7 +1,7 @@
 //! A part of the published suite of hidden effects (`validation/hidden-effects/cases`): whoever changes the diagnosis so that it names a wrong effect hears of it here.
 //!
 //! The cases come from a simulator that shares no formula with this program, and were chosen by a rule that looks at no answer: so a few are answered wrongly, as often as the
-//! README's table of the whole suite says. They are listed by name; any other wrong name fails.
+//! table of the whole suite in `docs/diagnose.md` says. They are listed by name; any other wrong name fails.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

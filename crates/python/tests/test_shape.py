@@ -70,7 +70,7 @@ def test_the_numbers_of_the_closed_form(pleats):
 
     m, phi, ratio = pleats.m, pleats.phi_r, 0.016
     root = np.sqrt(m) * np.cos(phi)
-    # README (6): length of the fibre and distance of the ends.
+    # docs/theory.md (6): length of the fibre and distance of the ends.
     assert ellipkinc(phi, m) / root == pytest.approx(0.11 / ratio, rel=1e-12)
     assert 2 * (ellipeinc(phi, m) - ellipkinc(phi, m) / 2) / root == pytest.approx(0.088 / ratio, rel=1e-12)
     assert pleats.max_radius_m == pytest.approx(ratio / np.cos(phi), rel=1e-12)

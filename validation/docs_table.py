@@ -1,0 +1,178 @@
+"""Writes the tables of README.md and docs/ that a command prints, between their markers.
+
+    bulge validate --json | python validation/docs_table.py verification [--check]
+    python validation/docs_table.py diagnosis SEED-1/score.json SEED-2/score.json      # of prove.py, one for each seed
+
+A table stands between `<!-- table: NAME ... -->` and `<!-- end of table -->`; all else in the file is kept. `--check` writes nothing: its status is 1 if
+the page has other checks, cases or tolerances than the program. Errors at the level of rounding differ between machines and aren't compared.
+"""
+
+import argparse
+import json
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = ("README.md", "docs/diagnose.md", "docs/verification.md")
+PEERS = {"AICc": "aicc", "BIC": "bic", "largest drop": "largest-drop", "lasso": "lasso"}
+
+DIAGNOSIS = (
+    ("nothing hidden: anything claimed", "false alarms, nothing hidden", "<= 5 %"),
+    ("nothing hidden: a name claimed", "false names, nothing hidden", ""),
+    ("rig errors within the data sheets: anything claimed", "false alarms, rig errors within the data sheets", "<= 5 %"),
+    ("something is missing is said, d 2 to 4", "detected, d 2 to 4", ""),
+    ("the same, d 4 to 8", "detected, d 4 to 8", ""),
+    ("the same, d 8 to 16", "detected, d 8 to 16.5", ""),
+    ("right class, d >= 4", "class right, d >= 4", ">= 95 %"),
+    ("right class, d 8 to 16", "class right, d 8 to 16.5", ""),
+    ("of what is named: the hidden effect is in the class, d >= 4", "hidden effect in the class reported, d >= 4", ""),
+    ("right first name, d >= 8, no twin in the data", "top-1, d >= 8, no twin in the data", ">= 92 %"),
+    ("names in a class, d >= 8", "mean class size, d >= 8", "<= 1.6"),
+    ("the same by the truth", "mean class size by the truth (3.29 sigma), same cases", ""),
+    ("right class and nothing else named, d >= 4", "class right and nothing else named, d >= 4", ""),
+    ("two effects: both found", "pairs: both in the classes", ""),
+    ("two that partly cancel: both found", "maskings: both in the classes", ""),
+    ("outside the catalogue: called unknown", "outside the catalogue: called unknown", ">= 90 %"),
+    ("the same, 8 sigma beyond any two effects", "outside the catalogue, 8 sigma beyond any two effects: called unknown", ""),
+    ("outside the catalogue: explained away by a name", "outside the catalogue: adequate under a wrong name", "<= 5 %"),
+    ("outside the catalogue: not noticed", "outside the catalogue: not noticed", ""),
+    ("held-out error over the noise, right class", "held-out error / noise, after the right class", "<= 1.1"),
+    ("95 % intervals that hold the true number", "intervals that hold the true parameter", "95 %"),
+    ("confidence less rate of right first names", "calibration: mean distance of confidence and rate", "<= 0.05"),
+    ("seconds a case, one thread: median", "seconds per case, median", ""),
+    ("largest", "seconds per case, largest", ""),
+)
+"""What the page says, what score.py calls it, and the target."""
+FRONT = (
+    "false alarms, nothing hidden",
+    "detected, d 2 to 4",
+    "detected, d 4 to 8",
+    "hidden effect in the class reported, d >= 4",
+    "top-1, d >= 8, no twin in the data",
+    "pairs: both in the classes",
+    "outside the catalogue: called unknown",
+    "outside the catalogue: adequate under a wrong name",
+)
+"""Measures that the front page shows, titled as above."""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=("verification", "diagnosis"))
+    parser.add_argument("scores", type=Path, nargs="*", help="score.json of seed 1 and of seed 2, for `diagnosis`")
+    parser.add_argument("--check", action="store_true", help="compare the page with the program (`verification` alone)")
+    parser.add_argument("--root", type=Path, default=ROOT, help="folder of README.md and docs")
+    arguments = parser.parse_args()
+    if arguments.what == "verification":
+        checks = json.load(sys.stdin)["checks"]
+        if not checks:
+            parser.error("standard input holds no check: give it the output of `bulge validate --json`")
+        tables = {"verification": verification(checks)}
+    else:
+        if len(arguments.scores) != 2:
+            parser.error("`diagnosis` needs two files: score.json of seed 1 and of seed 2")
+        scores = [json.loads(path.read_text(encoding="utf-8")) for path in arguments.scores]
+        for seed, (score, path) in enumerate(zip(scores, arguments.scores), start=1):
+            if score.get("seed") != seed or score.get("only"):
+                parser.error(f"{path} isn't the score of the whole suite of seed {seed}: write it by prove.py --seed {seed}, without --only")
+        seeds = [score["methods"] for score in scores]
+        tables = {"diagnosis": diagnosis(seeds), "diagnosis-front": front(seeds)}
+    if arguments.check and arguments.what != "verification":
+        parser.error("`--check` is for `verification`: the scores of a suite take half an hour")
+    texts = {}
+    for name, table in tables.items():
+        paths = [arguments.root / page for page in PAGES if f"<!-- table: {name} " in (arguments.root / page).read_text(encoding="utf-8")]
+        if not paths:
+            parser.error(f"no page has the marker `<!-- table: {name} ... -->`")
+        for path in paths:
+            texts[path] = replaced(texts.get(path) or path.read_text(encoding="utf-8"), name, table)
+    if arguments.check:
+        return _compared(texts)
+    for path, text in texts.items():
+        path.write_text(text, encoding="utf-8")
+        print(f"wrote {path}")
+    return 0
+
+
+def _compared(texts):
+    """Status 1 and the lines that differ, errors aside, if a page is not what would be written."""
+    status = 0
+    for path, text in texts.items():
+        stands, belongs = ([_without_error(line) for line in lines.splitlines()] for lines in (path.read_text(encoding="utf-8"), text))
+        for sign, lines, others in (("-", stands, belongs), ("+", belongs, stands)):
+            for line in lines:
+                if line not in others:
+                    print(f"{path}: {sign} {line}", file=sys.stderr)
+                    status = 1
+    if status:
+        print("write it anew: bulge validate --json | python validation/docs_table.py verification", file=sys.stderr)
+    return status
+
+
+def _without_error(line):
+    """`| check | cases | error | tolerance |` without the third cell."""
+    return re.sub(r"^(\| .* \| \d+ \|) \S+ (\| \S+ \|)$", r"\1 \2", line)
+
+
+def replaced(text, name, table):
+    """The text with the table between its markers."""
+    pattern = re.compile(rf"(<!-- table: {re.escape(name)} [^\n]*-->\n)(.*?)(\n<!-- end of table -->)", re.DOTALL)
+    return pattern.sub(lambda match: f"{match[1]}\n{table}\n{match[3]}", text)
+
+
+def verification(checks):
+    lines, group = ["| check | cases | error | tolerance |", "|---|---|---|---|"], None
+    for check in checks:
+        if check["group"] != group:
+            group = check["group"]
+            lines.append(f"| **{group}** | | | |")
+        lines.append(f"| {check['name']} | {check['cases']} | {_power(check['error'], 0)} | {_power(check['tolerance'], 1)} |")
+    return "\n".join(lines)
+
+
+def _power(value, digits):
+    """1e-07, and 1.5e-01 where a digit more says something."""
+    return f"{value:.{digits}e}".replace(".0e", "e") if value else "0"
+
+
+def diagnosis(seeds):
+    columns = ["seed 1", "seed 2", "target", *PEERS]
+    lines = ["| | " + " | ".join(columns) + " |", "|---" * (len(columns) + 1) + "|"]
+    for title, measure, target in DIAGNOSIS:
+        ours = [_cell(_row(methods["diagnose"], measure), True) for methods in seeds]
+        # What a peer has no classes or confidence for stays empty.
+        peers = [_cell(_row(seeds[0].get(name, []), measure), False) for name in PEERS.values()]
+        if "seconds" in measure:
+            peers = [""] * len(peers)
+        lines.append(f"| {title} | " + " | ".join([*ours, target, *peers]) + " |")
+    return "\n".join(lines)
+
+
+def front(seeds):
+    lines = ["| | seed 1 | seed 2 | BIC, seed 1 |", "|---|---|---|---|"]
+    for title, measure, _ in DIAGNOSIS:
+        if measure not in FRONT:
+            continue
+        ours = [_cell(_row(methods["diagnose"], measure), True) for methods in seeds]
+        lines.append(f"| {title} | " + " | ".join([*ours, _cell(_row(seeds[0][PEERS["BIC"]], measure), False)]) + " |")
+    return "\n".join(lines)
+
+
+def _row(rows, measure):
+    return next((row for row in rows if row["measure"] == measure), None)
+
+
+def _cell(row, with_interval):
+    if row is None or row["value"] is None:
+        return ""
+    if row.get("rate"):
+        interval = f" ({100 * row['low']:.0f} to {100 * row['high']:.0f})" if with_interval else ""
+        return f"{100 * row['value']:.0f} %{interval}"
+    if "low" in row:
+        return f"{row['value']:.2f}" + (f" ({row['low']:.2f} to {row['high']:.2f})" if with_interval else "")
+    return f"{row['value']:.3g}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
