@@ -5,10 +5,10 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
-use crate::load::filled_bladder::FilledBladder;
+use crate::load::filled_bladder::filled;
 use crate::unit::{NEWTON, PERCENT};
 
-/// `z -> s + (z - s) exp(-|db|/delta)`, `dF = -w b z`, b the force of the filled bladder over its largest ([`FilledBladder`]).
+/// `z -> s + (z - s) exp(-|db|/delta)`, `dF = -w b z`, b the force of the filled bladder over its largest ([`filled`]).
 #[derive(Debug)]
 pub(crate) struct BladderHysteresis;
 
@@ -72,15 +72,15 @@ impl Effect for BladderHysteresis {
 
     fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
         if let Place::Load(balance, force) = place {
-            let filled = FilledBladder::at(balance, setting);
-            let change = if moment.begins { Jet::from(0.0) } else { filled - memory[1] };
-            memory[1] = filled;
+            let now = filled(balance, setting);
+            let change = if moment.begins { Jet::from(0.0) } else { now - memory[1] };
+            memory[1] = now;
             if change.value() != 0.0 {
                 let s = change.value().signum();
                 let fades = (-(change * s / theta[1])).exp();
                 memory[0] = (memory[0] - s) * fades + s;
             }
-            *force = *force - theta[0] * filled * memory[0];
+            *force = *force - theta[0] * now * memory[0];
         }
     }
 }
@@ -96,7 +96,7 @@ mod tests {
         let bars = [0.0, 1.0, 2.0, 4.0, 6.0, 4.0, 2.0, 1.0, 0.0];
         let rows: Vec<[f64; 2]> = bars.iter().map(|bar| [1e5 * bar, 0.1]).collect();
         let out = driven(&BladderHysteresis, &[10.0, 0.1], &rows);
-        let full = FilledBladder::at(&balance(0.1), &crate::probe::SETTING).value() / 2.0_f64.tanh();
+        let full = filled(&balance(0.1), &crate::probe::SETTING).value() / 2.0_f64.tanh();
         let fills = |bar: f64| full * bar.tanh();
         for (i, bar) in bars.iter().enumerate().take(5) {
             let b = fills(*bar);

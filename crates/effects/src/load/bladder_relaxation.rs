@@ -5,11 +5,11 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
-use crate::load::filled_bladder::FilledBladder;
+use crate::load::filled_bladder::filled;
 use crate::load::standard_linear_solid::mean_decay;
 use crate::unit::{NEWTON, SECOND};
 
-/// `dQ/dt = g db/dt - Q/tau`, `dF = -Q`, b the force of the filled bladder over its largest ([`FilledBladder`]).
+/// `dQ/dt = g db/dt - Q/tau`, `dF = -Q`, b the force of the filled bladder over its largest ([`filled`]).
 #[derive(Debug)]
 pub(crate) struct BladderRelaxation;
 
@@ -60,9 +60,9 @@ impl Effect for BladderRelaxation {
 
     fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
         if let Place::Load(balance, force) = place {
-            let filled = FilledBladder::at(balance, setting);
-            let change = if moment.begins { Jet::from(0.0) } else { filled - memory[1] };
-            memory[1] = filled;
+            let now = filled(balance, setting);
+            let change = if moment.begins { Jet::from(0.0) } else { now - memory[1] };
+            memory[1] = now;
             let over = Jet::from(moment.since) / theta[1];
             memory[0] = memory[0] * (-over).exp() + mean_decay(over) * change;
             *force = *force - theta[0] * memory[0];
@@ -80,10 +80,8 @@ mod tests {
         // From 0 to 2 bar in 1 s with tau = 2 s: g b 2 (1 - exp(-1/2)); then exp(-1/2) per second.
         let rows = [[0.0, 0.1], [2e5, 0.1], [2e5, 0.1], [2e5, 0.1]];
         let out = driven(&BladderRelaxation, &[15.0, 2.0], &rows);
-        let first = 15.0
-            * FilledBladder::at(&balance(0.1), &crate::probe::SETTING).value()
-            * 2.0
-            * (1.0 - (-0.5_f64).exp());
+        let first =
+            15.0 * filled(&balance(0.1), &crate::probe::SETTING).value() * 2.0 * (1.0 - (-0.5_f64).exp());
         for (found, expected) in
             out.iter().zip([0.0, -first, -first * (-0.5_f64).exp(), -first * (-1.0_f64).exp()])
         {

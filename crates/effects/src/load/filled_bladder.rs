@@ -3,40 +3,28 @@
 use bulge_numerics::Real;
 
 use crate::effect::{Balance, Jet, Setting};
+use crate::material::tube::Tube;
 
 /// Pressure at which the gas has filled out the bladder by 76 % \[Pa\]: muscles of 20 mm would push below 0.5 to 1.5 bar at 4 to 16 %.
 const TAUT: f64 = 1e5;
-/// Least square of the hoop stretch that is counted, as for other effects of the bladder.
-const LEAST: f64 = 0.1;
+/// Least scale of the force: at 45 deg the hoop shrinks as fast as the axis grows, and the scale would be 0.
+const LEAST_SCALE: f64 = 0.1;
 
 /// The axial force of a neo-Hookean tube in a cylindrical braid, over the largest that its modulus and wall allow, times how far the gas has filled it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct FilledBladder;
-
-impl FilledBladder {
-    /// ```text
-    /// b = -(dW/d l1)/(cot^2 alpha0 - 1) tanh(p/1 bar)
-    /// W = (l1^2 + l2^2 + 1/(l1 l2)^2)/2,   l1 = 1 - eps,   l2^2 = (1 - l1^2 cos^2 alpha0)/sin^2 alpha0
-    /// ```
-    /// with the sign such that b grows from 0 while the muscle shortens from rest.
-    pub(super) fn at(balance: &Balance, setting: &Setting) -> Jet {
-        let (sin, cos) = setting.braid_angle.sin_cos();
-        if sin <= 0.0 || cos <= 0.0 {
-            return Jet::from(0.0);
-        }
-        let square_of = cos * cos / (sin * sin);
-        let axial = -balance.contraction + 1.0;
-        let square = (-(axial * axial * (cos * cos)) + 1.0) / (sin * sin);
-        let square = if square.value() < LEAST { Jet::from(LEAST) } else { square };
-        // d(l2^2)/d(l1) = -2 l1 cot^2(alpha0).
-        let hoop = axial * (-2.0 * square_of);
-        let product = axial * axial * square;
-        let product_slope = axial * square * 2.0 + axial * axial * hoop;
-        let slope = (axial * 2.0 + hoop - product_slope / (product * product)) * 0.5;
-        let largest = (square_of - 1.0).abs().max(0.1);
-        let fills = (balance.pressure / TAUT).tanh();
-        -slope / largest * fills
-    }
+///
+/// ```text
+/// b = -(dW/d l1)/(cot^2 alpha0 - 1) tanh(p/1 bar)
+/// W = (l1^2 + l2^2 + 1/(l1 l2)^2)/2,   l1 = 1 - eps,   l2^2 = (1 - l1^2 cos^2 alpha0)/sin^2 alpha0
+/// ```
+/// with the sign such that b grows from 0 while the muscle shortens from rest.
+pub(super) fn filled(balance: &Balance, setting: &Setting) -> Jet {
+    let Some(Tube { hoop, slope }) = Tube::at(balance.contraction, setting) else { return Jet::from(0.0) };
+    let axial = -balance.contraction + 1.0;
+    let product = axial * hoop;
+    let product_slope = hoop + axial * slope;
+    let energy_slope = axial + hoop * slope - product_slope / (product * product * product);
+    let largest = (1.0 / setting.braid_angle.tan().powi(2) - 1.0).abs().max(LEAST_SCALE);
+    -energy_slope / largest * (balance.pressure / TAUT).tanh()
 }
 
 #[cfg(test)]
@@ -55,11 +43,11 @@ mod tests {
         };
         let largest = 1.0 / SETTING.braid_angle.tan().powi(2) - 1.0;
         for eps in [0.0, 0.02, 0.1, 0.2] {
-            let found = FilledBladder::at(&balance(eps), &SETTING).value();
+            let found = filled(&balance(eps), &SETTING).value();
             let expected = (energy(eps + 1e-6) - energy(eps - 1e-6)) / 2e-6 / largest * 2.0_f64.tanh();
             assert!((found - expected).abs() < 1e-8, "{eps}: {found} {expected}");
         }
-        let at = |eps: f64| FilledBladder::at(&balance(eps), &SETTING).value();
+        let at = |eps: f64| filled(&balance(eps), &SETTING).value();
         // Forces of 28, 154, 194 and 204 N at 0.5, 5, 10 and 15 % in an independent solution with clamped ends: the same shape within 12 %.
         for (eps, force) in [(0.05, 154.0), (0.1, 194.0), (0.15, 204.0)] {
             assert!(

@@ -8,7 +8,7 @@ mod fibre_stretch;
 mod hoop_elasticity;
 mod limited_unfolding;
 mod membrane_axial;
-mod tube;
+pub(crate) mod tube;
 
 use crate::effect::Effect;
 use std::sync::Arc;

@@ -13,16 +13,16 @@ const LEAST: f64 = 0.1;
 /// l1 = 1 - eps,   l2 = r/r0 = sqrt(1 - l1^2 cos^2(alpha0))/sin(alpha0),   dl2/dl1 = -l1 cot^2(alpha0)/l2
 /// ```
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Tube {
+pub(crate) struct Tube {
     /// l2.
-    pub(super) hoop: Jet,
+    pub(crate) hoop: Jet,
     /// dl2/dl1.
-    pub(super) slope: Jet,
+    pub(crate) slope: Jet,
 }
 
 impl Tube {
     /// At a contraction; none without a braid angle.
-    pub(super) fn at(contraction: Jet, setting: &Setting) -> Option<Self> {
+    pub(crate) fn at(contraction: Jet, setting: &Setting) -> Option<Self> {
         let (sin, cos) = setting.braid_angle.sin_cos();
         if sin <= 0.0 || cos <= 0.0 {
             return None;

@@ -152,6 +152,15 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
     };
     let slow = limits.period_s;
     let one = |says, blocks: Vec<Block>| Proposal { says, protocol: Protocol::new(blocks) };
+    let [low_pressure, high_pressure] = limits.pressure_pa;
+    let third = low_pressure.max(high_pressure / 3.0);
+    let filling = |from: f64, lengths: u32, period: f64| {
+        let from = from.min(0.9 * high_pressure);
+        let held = (0..lengths)
+            .map(|i| whole[0] + (whole[1] - whole[0]) * (0.1 + 0.8 * f64::from(i) / f64::from(lengths - 1)));
+        let block = Block::isometric([from, high_pressure], held.collect(), period);
+        Block { cycles: 2, rows: ROWS, ..block }
+    };
     let small = [whole[0], (whole[0] + 0.25 * (high - whole[0])).max(whole[0] + 0.01)];
     vec![
         one(
@@ -163,8 +172,12 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
             vec![block(2, whole, Path::Triangle, slow, 3)],
         ),
         one(
-            "slow loops, and loops twenty times as fast, at two pressures",
-            vec![block(2, whole, Path::Triangle, slow, 1), block(2, whole, Path::Triangle, slow / 20.0, 1)],
+            "the same loops, and then ten times slower, at two pressures",
+            vec![block(2, whole, Path::Triangle, slow, 1), block(2, whole, Path::Triangle, 10.0 * slow, 1)],
+        ),
+        one(
+            "the same loops, and then ten times faster, at two pressures",
+            vec![block(2, whole, Path::Triangle, slow, 1), block(2, whole, Path::Triangle, slow / 10.0, 1)],
         ),
         one(
             "sines at three pressures, whose speed goes through 0 at the ends",
@@ -181,6 +194,15 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
         one(
             "twelve loops at one pressure, one after the other",
             vec![block(1, whole, Path::Triangle, slow, 12)],
+        ),
+        one("filling and venting at three held lengths, twice each", vec![filling(low_pressure, 3, slow)]),
+        one(
+            "filling and venting at two held lengths, from the lowest pressure and from a third of the highest",
+            vec![filling(low_pressure, 2, slow), filling(third, 2, slow)],
+        ),
+        one(
+            "filling and venting at two held lengths, and then ten times slower",
+            vec![filling(low_pressure, 2, slow), filling(low_pressure, 2, 10.0 * slow)],
         ),
         one("a static map of eight pressures", vec![Block::map(limits.pressures(8), whole, 20)]),
     ]
