@@ -234,7 +234,7 @@ pub(crate) fn next_experiment(
     let names: Vec<String> = rivals.iter().map(|(effect, _)| effect.card().name.to_owned()).collect();
     let mut best: Option<(f64, &'static str)> = None;
     for proposal in proposals(limits) {
-        let Some(sigma) = least_separation(given, with, without, &names, &proposal.protocol) else {
+        let Some(sigma) = least_separation(given, with, without, (&named, &names), &proposal.protocol) else {
             continue;
         };
         if best.is_none_or(|(other, _)| sigma > other) {
@@ -285,7 +285,7 @@ fn least_separation(
     given: &Given<'_>,
     with: &Confirmed,
     without: &Confirmed,
-    rivals: &[String],
+    (named, rivals): (&String, &[String]),
     protocol: &Protocol,
 ) -> Option<f64> {
     let record = protocol.moments_within(&with.prepared.model, &with.theta).ok()?;
@@ -307,10 +307,14 @@ fn least_separation(
     };
     let record = record.with_force(prediction.force);
     let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &variances).ok()?;
-    let planned = Given { record: &record, whitening: &whitening, law: &law, only: Some(rivals), ..*given };
+    // Coordinates are those of what is looked for: without the effect itself, most of its signal would have none.
+    let only: Vec<String> = rivals.iter().chain([named]).cloned().collect();
+    let planned = Given { record: &record, whitening: &whitening, law: &law, only: Some(&only), ..*given };
     let scene = planned.scene(&without.prepared, &without.theta).ok()?;
     let signal = planned.signal(with, &scene).ok()?;
+    let is_rival = |effect: &usize| scene.showings.effects[*effect].effect.card().name != named.as_str();
     let least = (0..scene.showings.effects.len())
+        .filter(is_rival)
         .map(|effect| separation(&scene, effect, &signal))
         .fold(f64::INFINITY, f64::min);
     least.is_finite().then_some(least)
