@@ -1,0 +1,86 @@
+"""The list of tests: which rig, hidden effects, dialect, size and damage each has."""
+
+from dataclasses import dataclass
+
+from .dialects import DIALECTS
+from .rigs import RIGS
+
+HIDDEN = {
+    "isobaric": (
+        ("strand-friction",), ("rig-friction",), ("pressure-zero",), ("strand-friction",), ("rubber-loss",), ("frame-compliance",), ("creep",),
+        ("strand-friction", "pressure-zero"),
+    ),
+    "isometric": (
+        ("strand-friction",), ("rubber-loss",), ("pressure-hysteresis",), ("creep",), ("pressure-lag",), ("rubber-loss",),
+        ("strand-friction",), ("pressure-hysteresis", "rubber-loss"),
+    ),
+    "isotonic": (
+        ("strand-friction",), ("rig-friction",), ("pressure-hysteresis",), ("rubber-loss",), ("strand-friction",), ("pressure-lag",),
+    ),
+    "mixed": (("strand-friction",), ("rig-friction",), ("pressure-hysteresis",), ("creep",), ("strand-friction",), ("pressure-zero",)),
+}  # fmt: skip
+"""What is hidden in the tests of each rig, in turn."""
+COUNTS = {"isobaric": 16, "isometric": 28, "isotonic": 14, "mixed": 14}
+ROWS = (300, 600, 450, 1200, 240, 900, 2000, 400)
+NULLS = 100
+DAMAGE = (
+    ("nan", "spikes"), ("duplicates", "blank"), ("frozen", "nan"), ("clipped", "duplicates"), ("spikes", "duplicates", "nan"),
+    ("mislabelled", "spikes"), ("negative-pressure", "nan"), ("spikes",), ("blank", "frozen"), ("mislabelled", "clipped"),
+    ("nan", "blank", "duplicates", "spikes"),
+)  # fmt: skip
+LARGE_ROWS = (1500, 3000, 6000, 15000)
+LARGE = 12
+NAMES = tuple(DIALECTS)
+
+
+@dataclass(frozen=True)
+class Order:
+    """One test to be made. `group` is hidden, null or large."""
+
+    name: str
+    group: str
+    rig: str
+    hidden: tuple = ()
+    dialect: str = "contract"
+    rows: int = 600
+    damage: tuple = ()
+    number: int = 0
+
+
+def orders():
+    """All tests, in a fixed order."""
+    return [*_hidden(), *_nulls(), *_large()]
+
+
+def _hidden():
+    number = 0
+    for rig in RIGS:
+        for i in range(COUNTS[rig]):
+            hidden = HIDDEN[rig][i % len(HIDDEN[rig])]
+            damage = DAMAGE[number % len(DAMAGE)] if number % 5 == 4 else ()
+            yield _order(f"{rig}-{'-and-'.join(hidden)}-{i:02d}", "hidden", rig, hidden, number, damage)
+            number += 1
+
+
+def _nulls():
+    for i in range(NULLS):
+        damage = DAMAGE[i // 2 % len(DAMAGE)] if i % 2 else ()
+        # Rigs and dialects in turn, both with and without damage.
+        yield _order(f"null-{RIGS[i // 2 % 4]}-{'damaged' if damage else 'whole'}-{i:03d}", "null", RIGS[i // 2 % 4], (), i // 2 + 31 * (i % 2), damage)
+
+
+def _large():
+    for i in range(LARGE):
+        rows = LARGE_ROWS[i % len(LARGE_ROWS)]
+        rig = ("isometric", "isobaric", "isometric", "isotonic", "isometric", "mixed")[i // 2 % 6]
+        if i % 2:
+            hidden = HIDDEN[rig][i // 2 % len(HIDDEN[rig])]
+            yield Order(f"large-{rig}-{'-and-'.join(hidden)}-{rows}", "large", rig, hidden, rows=rows, number=i)
+        else:
+            damage = ("spikes", "nan", "frozen") if i % 4 == 2 else ()
+            yield Order(f"large-null-{rig}-{'damaged' if damage else 'whole'}-{rows}", "large", rig, rows=rows, damage=damage, number=i)
+
+
+def _order(name, group, rig, hidden, number, damage):
+    dialect = "labelled" if "mislabelled" in damage else NAMES[number % len(NAMES)]
+    return Order(name, group, rig, hidden, dialect, ROWS[(number + number // len(ROWS)) % len(ROWS)], damage, number)
