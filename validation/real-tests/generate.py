@@ -1,10 +1,12 @@
 """Writes the simulated tests of laboratories.
 
     python generate.py --seed 1 --out DIR [--only REGEX] [--jobs 2] [--plain]
+    python generate.py --select DIR
     python generate.py --check
 
 Every test becomes DIR/<case>/ with the data in the dialect of its laboratory, muscle.toml, args (what follows `bulge diagnose`, a word a line) and
 truth.json. With --plain all data are written as the contract's CSV, and what is hidden and damaged stays the same.
+--select writes the small tests of seed 1 that the program's own tests use.
 """
 
 import argparse
@@ -15,7 +17,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 from bench import case, check
-from bench.suite import orders
+from bench.suite import SELECTED, orders
 
 
 def main():
@@ -25,11 +27,17 @@ def main():
     parser.add_argument("--only", default="", help="regular expression that the names of the cases must contain")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--plain", action="store_true", help="all data as the contract's CSV")
+    parser.add_argument(
+        "--select", type=Path, metavar="DIR", help="write the small tests that lie beside this program, of seed 1, and stop"
+    )
     parser.add_argument("--list", action="store_true", help="print the names of the cases and stop")
     parser.add_argument("--check", action="store_true", help="check the generator itself and stop")
     arguments = parser.parse_args()
     if arguments.check:
         return check.run()
+    if arguments.select is not None:
+        arguments.seed, arguments.out = 1, arguments.select
+        return _generate([order for order in orders() if order.name in SELECTED], arguments)
     chosen = [order for order in orders() if re.search(arguments.only, order.name)]
     if arguments.list:
         print("\n".join(order.name for order in chosen))

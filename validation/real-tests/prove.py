@@ -40,7 +40,8 @@ def main():
         status = _run(arguments, suite, out)
     found = answers(suite, out / "diagnose", out / "compare")
     version = subprocess.run([arguments.bulge, "--version"], capture_output=True, text=True, check=True).stdout.strip()
-    told = f"{version}, seed {arguments.seed}, {len(found)} tests{', all as the contract' + chr(39) + 's CSV' if arguments.plain else ' in their dialects'}"
+    files = "all written as the contract's CSV" if arguments.plain else "each in its dialect"
+    told = f"{version}, seed {arguments.seed}, {len(found)} tests, {files}"
     text = tables(found, f"{told}; one thread a test, {arguments.limit:g} s at most.")
     (out / "score.md").write_text(text + "\n", encoding="utf-8")
     print(text)

@@ -170,7 +170,9 @@ def _slopes(hose, record):
 def readings(rng, rig, hose, record):
     """The table that the instruments give: columns in SI."""
     rest = hose.muscle.length
-    force, pressure, length = rig.read(rng, record.kept("force"), record.kept("shown_pressure"), rest * (1.0 - record.kept("shown_contraction")))
+    force, pressure, length = rig.read(
+        rng, record.kept("force"), record.kept("shown_pressure"), rest * (1.0 - record.kept("shown_contraction"))
+    )
     motion = record.motion
     return {
         "time": motion.time[motion.keep],

@@ -15,9 +15,7 @@ from .hoses import CONTRACTION, HIGHEST, Hose, hoses
 from .suite import Order
 from .world import Nature, World
 
-HOSE = Hose(
-    Muscle("reference", "braided", 0.25, 10.7e-3, 100, np.radians(25.0), wall=2e-3, bladder=(3e5, 0.0), fibre_stiffness=5e3)
-)
+HOSE = Hose(Muscle("reference", "braided", 0.25, 10.7e-3, 100, np.radians(25.0), wall=2e-3, bladder=(3e5, 0.0), fibre_stiffness=5e3))
 """250 mm, 25 degrees, rubber of 0.3 MPa, fibres that stretch by 0.2 %/kN: the hose for which loop sizes are known from another model and from benches."""
 
 

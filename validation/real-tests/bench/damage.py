@@ -60,9 +60,7 @@ def _frozen(rng, table, _):
     width = max(5, round(rng.uniform(0.01, 0.03) * count))
     start = int(rng.integers(5, count - width - 5))
     if np.isfinite(table["force"][start]):
-        table["force"][start : start + width] = np.where(
-            np.isfinite(table["force"][start : start + width]), table["force"][start], np.nan
-        )
+        table["force"][start : start + width] = np.where(np.isfinite(table["force"][start : start + width]), table["force"][start], np.nan)
     return table, np.arange(start + 1, start + width)
 
 

@@ -71,13 +71,23 @@ def _plain(folder, table, columns, name="data.csv", sep=",", encoding="utf-8", d
 
 def contract(folder, table):
     """Columns `name [unit]`."""
-    columns = {"pressure [bar]": ("pressure", "bar"), "contraction [%]": ("contraction", "%"), "force [N]": ("force", "N"), "time [s]": ("time", "s")}
+    columns = {
+        "pressure [bar]": ("pressure", "bar"),
+        "contraction [%]": ("contraction", "%"),
+        "force [N]": ("force", "N"),
+        "time [s]": ("time", "s"),
+    }
     return _plain(folder, table, columns)
 
 
 def round_brackets(folder, table):
     """`Time (s)`."""
-    columns = {"Time (s)": ("time", "s"), "Pressure (kPa)": ("pressure", "kPa"), "Length (mm)": ("length", "mm"), "Force (N)": ("force", "N")}
+    columns = {
+        "Time (s)": ("time", "s"),
+        "Pressure (kPa)": ("pressure", "kPa"),
+        "Length (mm)": ("length", "mm"),
+        "Force (N)": ("force", "N"),
+    }
     return _plain(folder, table, columns)
 
 
@@ -89,19 +99,34 @@ def underscores(folder, table):
 
 def slashes(folder, table):
     """`Displacement/mm`: the shortening from rest."""
-    columns = {"time/s": ("time", "s"), "pressure/bar": ("pressure", "bar"), "Displacement/mm": ("displacement", "mm"), "Force/N": ("force", "N")}
+    columns = {
+        "time/s": ("time", "s"),
+        "pressure/bar": ("pressure", "bar"),
+        "Displacement/mm": ("displacement", "mm"),
+        "Force/N": ("force", "N"),
+    }
     return _plain(folder, table, columns)
 
 
 def semicolons(folder, table):
     """Semicolons and decimal commas."""
-    columns = {"Time [s]": ("time", "s"), "Pressure [bar]": ("pressure", "bar"), "Contraction [%]": ("contraction", "%"), "Force [N]": ("force", "N")}
+    columns = {
+        "Time [s]": ("time", "s"),
+        "Pressure [bar]": ("pressure", "bar"),
+        "Contraction [%]": ("contraction", "%"),
+        "Force [N]": ("force", "N"),
+    }
     return _plain(folder, table, columns, sep=";", decimal=",")
 
 
 def german(folder, table):
     """German names in Latin-1 with a temperature in degrees, semicolons and decimal commas."""
-    columns = {"Zeit / s": ("time", "s"), "Druck / bar": ("pressure", "bar"), "Weg / mm": ("displacement", "mm"), "Kraft / N": ("force", "N")}
+    columns = {
+        "Zeit / s": ("time", "s"),
+        "Druck / bar": ("pressure", "bar"),
+        "Weg / mm": ("displacement", "mm"),
+        "Kraft / N": ("force", "N"),
+    }
     rows = [[*row, "21,5" if any(row) else ""] for row in _cells(table, columns, decimal=",")]
     _text(folder, "data.csv", [*columns, "Temperatur / °C"], rows, ";", "latin-1")
     return Written("data.csv", columns, {"sep": ";", "encoding": "latin-1", "decimal": ",", "skip_blank_lines": False})
@@ -109,13 +134,23 @@ def german(folder, table):
 
 def utf16(folder, table):
     """UTF-16 with a byte order mark, tabs, as spreadsheets export Unicode text."""
-    columns = {"Time (s)": ("time", "s"), "Pressure (bar)": ("pressure", "bar"), "Length (mm)": ("length", "mm"), "Force (N)": ("force", "N")}
+    columns = {
+        "Time (s)": ("time", "s"),
+        "Pressure (bar)": ("pressure", "bar"),
+        "Length (mm)": ("length", "mm"),
+        "Force (N)": ("force", "N"),
+    }
     return _plain(folder, table, columns, name="data.txt", sep="\t", encoding="utf-16")
 
 
 def labview(folder, table):
     """A LabVIEW measurement file: two headers, tabs, a column of comments."""
-    columns = {"X_Value": ("time", "s"), "Pressure (bar)": ("pressure", "bar"), "Length (mm)": ("length", "mm"), "Force (N)": ("force", "N")}
+    columns = {
+        "X_Value": ("time", "s"),
+        "Pressure (bar)": ("pressure", "bar"),
+        "Length (mm)": ("length", "mm"),
+        "Force (N)": ("force", "N"),
+    }
     before = [
         "LabVIEW Measurement\t", "Writer_Version\t2", "Reader_Version\t2", "Separator\tTab", "Decimal_Separator\t.", "Multi_Headings\tNo",
         "X_Columns\tOne", "Time_Pref\tRelative", "Operator\tbench", "Date\t2024/03/05", "Time\t14:02:11.5", "***End_of_Header***\t", "\t\t\t\t",
@@ -129,7 +164,12 @@ def labview(folder, table):
 
 def preamble(folder, table):
     """Metadata of the acquisition above the table, with a blank line between."""
-    columns = {"Time (s)": ("time", "s"), "Pressure (bar)": ("pressure", "bar"), "Length (mm)": ("length", "mm"), "Force (N)": ("force", "N")}
+    columns = {
+        "Time (s)": ("time", "s"),
+        "Pressure (bar)": ("pressure", "bar"),
+        "Length (mm)": ("length", "mm"),
+        "Force (N)": ("force", "N"),
+    }
     before = [
         "Device:,USB-6211", "Serial number:,01A3F5C7", "Operator:,M. Keller", "Date:,05.03.2024", "Sample rate (Hz):,see time", "Channels:,3",
         "Range ai0:,-10 V to 10 V", "Remark:,\"hose A, second day\"", "",
@@ -156,7 +196,12 @@ def iso_times(folder, table):
 
 def extra_columns(folder, table):
     """Voltages, set points' names and remarks beside what is asked for."""
-    columns = {"time [s]": ("time", "s"), "pressure [kPa]": ("pressure", "kPa"), "length [mm]": ("length", "mm"), "force [N]": ("force", "N")}
+    columns = {
+        "time [s]": ("time", "s"),
+        "pressure [kPa]": ("pressure", "kPa"),
+        "length [mm]": ("length", "mm"),
+        "force [N]": ("force", "N"),
+    }
     rows = []
     for i, row in enumerate(_cells(table, columns)):
         volt = "" if np.isnan(table["force"][i]) else f"{table['force'][i] / 250.0:.4f}"
@@ -167,13 +212,23 @@ def extra_columns(folder, table):
 
 def tabs(folder, table):
     """Tabs, capitals, `[SEC]`."""
-    columns = {"TIME [SEC]": ("time", "s"), "PRESSURE [KPA]": ("pressure", "kPa"), "LENGTH [MM]": ("length", "mm"), "FORCE [N]": ("force", "N")}
+    columns = {
+        "TIME [SEC]": ("time", "s"),
+        "PRESSURE [KPA]": ("pressure", "kPa"),
+        "LENGTH [MM]": ("length", "mm"),
+        "FORCE [N]": ("force", "N"),
+    }
     return _plain(folder, table, columns, name="data.tsv", sep="\t")
 
 
 def us_units(folder, table):
     """Pounds per square inch, pounds and inches."""
-    columns = {"Time (s)": ("time", "s"), "Pressure (psi)": ("pressure", "psi"), "Length (in)": ("length", "in"), "Load (lbf)": ("force", "lbf")}
+    columns = {
+        "Time (s)": ("time", "s"),
+        "Pressure (psi)": ("pressure", "psi"),
+        "Length (in)": ("length", "in"),
+        "Load (lbf)": ("force", "lbf"),
+    }
     return _plain(folder, table, columns)
 
 
@@ -185,7 +240,12 @@ def milliseconds(folder, table):
 
 def excel(folder, table):
     """An Excel workbook with a title above the table and a second sheet."""
-    columns = {"Time (s)": ("time", "s"), "Pressure (bar)": ("pressure", "bar"), "Length (mm)": ("length", "mm"), "Force (N)": ("force", "N")}
+    columns = {
+        "Time (s)": ("time", "s"),
+        "Pressure (bar)": ("pressure", "bar"),
+        "Length (mm)": ("length", "mm"),
+        "Force (N)": ("force", "N"),
+    }
     book = openpyxl.Workbook()
     sheet = book.active
     sheet.title = "Test"
@@ -205,7 +265,7 @@ def excel(folder, table):
             part = found.read(entry)
             if entry.filename == "docProps/core.xml":
                 part = re.sub(rb"(<dcterms:modified[^>]*>)[^<]*", rb"\g<1>2024-03-05T14:02:11Z", part)
-            written.writestr(zipfile.ZipInfo(entry.filename, STAMP.timetuple()[:6]), part)
+            written.writestr(zipfile.ZipInfo(entry.filename, STAMP.timetuple()[:6]), part, zipfile.ZIP_DEFLATED)
     return Written("data.xlsx", columns, {"skiprows": 2, "sheet_name": "Test"})
 
 
@@ -222,7 +282,12 @@ def matlab(folder, table):
 
 def parquet(folder, table):
     """Parquet with the columns of the contract."""
-    columns = {"pressure [bar]": ("pressure", "bar"), "contraction [%]": ("contraction", "%"), "force [N]": ("force", "N"), "time [s]": ("time", "s")}
+    columns = {
+        "pressure [bar]": ("pressure", "bar"),
+        "contraction [%]": ("contraction", "%"),
+        "force [N]": ("force", "N"),
+        "time [s]": ("time", "s"),
+    }
     frame = pandas.DataFrame({name: table[quantity] / FACTORS[unit] for name, (quantity, unit) in columns.items()})
     frame.to_parquet(folder / "data.parquet", index=False)
     return Written("data.parquet", columns)
@@ -230,7 +295,12 @@ def parquet(folder, table):
 
 def comments(folder, table):
     """Comments above the header and between the rows."""
-    columns = {"time [s]": ("time", "s"), "pressure [kPa]": ("pressure", "kPa"), "length [mm]": ("length", "mm"), "force [N]": ("force", "N")}
+    columns = {
+        "time [s]": ("time", "s"),
+        "pressure [kPa]": ("pressure", "kPa"),
+        "length [mm]": ("length", "mm"),
+        "force [N]": ("force", "N"),
+    }
     rows = _cells(table, columns)
     lines = ["# rig 2, load cell 2 kN", "# room 21.5 degC", ",".join(columns)]
     for i, row in enumerate(rows):
@@ -252,7 +322,12 @@ def labelled(folder, table):
 
 def absolute(folder, table):
     """Absolute pressure, labelled as such."""
-    columns = {"time [s]": ("time", "s"), "absolute pressure [kPa]": ("pressure", "kPa"), "length [mm]": ("length", "mm"), "force [N]": ("force", "N")}
+    columns = {
+        "time [s]": ("time", "s"),
+        "absolute pressure [kPa]": ("pressure", "kPa"),
+        "length [mm]": ("length", "mm"),
+        "force [N]": ("force", "N"),
+    }
     written = _plain(folder, {**table, "pressure": table["pressure"] + ATMOSPHERE}, columns)
     written.absolute = True
     return written
@@ -260,7 +335,12 @@ def absolute(folder, table):
 
 def not_available(folder, table):
     """`#N/A` where a spreadsheet had no number."""
-    columns = {"time [s]": ("time", "s"), "pressure [bar]": ("pressure", "bar"), "length [mm]": ("length", "mm"), "force [N]": ("force", "N")}
+    columns = {
+        "time [s]": ("time", "s"),
+        "pressure [bar]": ("pressure", "bar"),
+        "length [mm]": ("length", "mm"),
+        "force [N]": ("force", "N"),
+    }
     return _plain(folder, table, columns, missing="#N/A")
 
 

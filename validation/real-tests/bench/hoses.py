@@ -138,5 +138,9 @@ def _braid(rng, number):
 def _pleats(rng, number):
     radius = round(rng.uniform(12e-3, 17e-3), 4)
     return Muscle(
-        name=f"pleated {'ab'[number]}", kind="pleated", length=round(radius * rng.uniform(6.0, 8.5), 3), radius=radius, fibres=int(rng.integers(30, 60))
+        name=f"pleated {'ab'[number]}",
+        kind="pleated",
+        length=round(radius * rng.uniform(6.0, 8.5), 3),
+        radius=radius,
+        fibres=int(rng.integers(30, 60)),
     )

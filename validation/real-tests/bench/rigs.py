@@ -71,7 +71,7 @@ def _runs(rng, rows, levels, loops, form, continuous):
         shape.append(wave(form, np.arange(count) * loops / (count - 1)))
         run.append(np.full(count, 0 if continuous else k))
     counts = [len(part) for part in level]
-    for k, count in enumerate(counts):
+    for count in counts:
         time.append(start + np.arange(count) * step)
         start = time[-1][-1] + (step if continuous else PAUSE)
     # The last sample of a wave closes it.
@@ -88,7 +88,16 @@ def isobaric(rng, hose, rows, most):
     low, high = _strokes(rng, hose)
     contraction = low + (high - low) * shape
     return Motion(
-        "isobaric", form, time, np.interp(level, np.arange(levels), pressures), contraction, None, run, np.ones(len(time), bool), np.round(level) + 1.0, levels
+        "isobaric",
+        form,
+        time,
+        np.interp(level, np.arange(levels), pressures),
+        contraction,
+        None,
+        run,
+        np.ones(len(time), bool),
+        np.round(level) + 1.0,
+        levels,
     )
 
 
@@ -109,7 +118,16 @@ def isometric(rng, hose, rows, most, from_zero):
             bottom *= 1.15
     pressure = bottom + (rng.uniform(0.8, 0.97) * most - bottom) * shape
     return Motion(
-        "isometric", form, time, pressure, np.interp(level, np.arange(levels), lengths), None, run, np.ones(len(time), bool), np.round(level) + 1.0, levels
+        "isometric",
+        form,
+        time,
+        pressure,
+        np.interp(level, np.arange(levels), lengths),
+        None,
+        run,
+        np.ones(len(time), bool),
+        np.round(level) + 1.0,
+        levels,
     )
 
 

@@ -10,7 +10,10 @@ from simulator.wilson import interval
 MEMORY = re.compile(r"friction|presliding|hysteresis|slip|bouc-wen|strand|solid|relax|loss|creep|viscous|viscosity|lag|line-delay")
 """Effects of a catalogue that make loops, by what their names contain."""
 KINDS = (
-    ("pressure", re.compile(r"^valve|^regulator|^pressure-(droop|hysteresis|lag|stop)|^sensor|^line-(lag|delay)|^force-lag|^pressure-sensor")),
+    (
+        "pressure",
+        re.compile(r"^valve|^regulator|^pressure-(droop|hysteresis|lag|stop)|^sensor|^line-(lag|delay)|^force-lag|^pressure-sensor"),
+    ),
     ("zero", re.compile(r"^pressure-(offset|gain|threshold)|^line-drop")),
     ("viscoelastic", re.compile(r"creep|solid|relax|rubber|bladder-(loss|hysteresis)|viscous|viscosity|stress-softening")),
     ("frame", re.compile(r"^frame|^end-slip|^displacement|^length-zero")),
@@ -77,8 +80,18 @@ class Answer:
             return "unknown"
         if self.verdict != "missing":
             return "nothing"
-        wanted = set().union(*(RIGHT[name] for name in self.hidden))
-        return "right" if kind((self.named or [""])[0]) in wanted else "wrong"
+        return "right" if kind((self.named or [""])[0]) in self.wanted else "wrong"
+
+    @property
+    def wanted(self):
+        """Kinds that are right."""
+        return set().union(*(RIGHT[name] for name in self.hidden))
+
+    @property
+    def in_class(self):
+        """Whether the first name, or one that the data cannot tell from it, is of a right kind."""
+        first = (self.document.get("missing") or [{}])[0] if self.verdict == "missing" else {}
+        return any(kind(name) in self.wanted for name in [first.get("effect", ""), *first.get("class", [])])
 
     @property
     def looks_for_loops(self):
@@ -131,7 +144,10 @@ def _summary(found):
     rows = [
         ("tests that `diagnose` answers", rate(sum(one.document is not None for one in found), len(found))),
         ("tests that `compare` answers", rate(sum(one.compared for one in found), len(found))),
-        ("isometric tests in which hysteresis is looked for", rate(sum(bool(one.document) and one.looks_for_loops for one in isometric), len(isometric))),
+        (
+            "isometric tests in which hysteresis is looked for",
+            rate(sum(bool(one.document) and one.looks_for_loops for one in isometric), len(isometric)),
+        ),
         ("of nulls, claimed", rate(sum(one.claimed for one in nulls), len(nulls))),
     ]
     return _markdown(("measure", "value [Wilson's 95 % interval]"), rows)
@@ -148,8 +164,19 @@ def _rates(found):
     for title, group in groups:
         if group:
             count = {name: sum(one.outcome == name for one in group) for name in ("right", "unknown", "wrong", "nothing", "none")}
-            rows.append((title, len(group), rate(count["right"], len(group)), *(count[name] for name in ("unknown", "wrong", "nothing", "none"))))
-    return _markdown(("hidden in", "tests", "right kind named first", "unknown", "wrong name", "adequate or cannot tell", "no answer"), rows)
+            others = [count[name] for name in ("unknown", "wrong", "nothing", "none")]
+            rows.append((title, len(group), rate(count["right"], len(group)), sum(one.in_class for one in group), *others))
+    header = (
+        "hidden in",
+        "tests",
+        "right kind first",
+        "right kind in the class",
+        "unknown",
+        "wrong name first",
+        "adequate or cannot tell",
+        "no answer",
+    )
+    return _markdown(header, rows)
 
 
 def _nulls(found):

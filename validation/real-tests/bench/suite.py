@@ -28,9 +28,20 @@ DAMAGE = (
     ("mislabelled", "spikes"), ("negative-pressure", "nan"), ("spikes",), ("blank", "frozen"), ("mislabelled", "clipped"),
     ("nan", "blank", "duplicates", "spikes"),
 )  # fmt: skip
-LARGE_ROWS = (1500, 3000, 6000, 15000)
+LARGE_ROWS = (15000, 3000, 6000, 1500)
 LARGE = 12
 NAMES = tuple(DIALECTS)
+SELECTED = (
+    "isobaric-strand-friction-and-pressure-zero-15",
+    "isometric-rubber-loss-13",
+    "isometric-strand-friction-00",
+    "isometric-strand-friction-06",
+    "isotonic-strand-friction-10",
+    "mixed-strand-friction-10",
+    "null-isobaric-damaged-097",
+    "null-isometric-damaged-011",
+)
+"""Small tests of all rigs in eight dialects, for the program's own tests."""
 
 
 @dataclass(frozen=True)
@@ -66,19 +77,28 @@ def _nulls():
     for i in range(NULLS):
         damage = DAMAGE[i // 2 % len(DAMAGE)] if i % 2 else ()
         # Rigs and dialects in turn, both with and without damage.
-        yield _order(f"null-{RIGS[i // 2 % 4]}-{'damaged' if damage else 'whole'}-{i:03d}", "null", RIGS[i // 2 % 4], (), i // 2 + 31 * (i % 2), damage)
+        yield _order(
+            f"null-{RIGS[i // 2 % 4]}-{'damaged' if damage else 'whole'}-{i:03d}",
+            "null",
+            RIGS[i // 2 % 4],
+            (),
+            i // 2 + 31 * (i % 2),
+            damage,
+        )
 
 
 def _large():
     for i in range(LARGE):
-        rows = LARGE_ROWS[i % len(LARGE_ROWS)]
+        rows = LARGE_ROWS[i // 2 % len(LARGE_ROWS)]
         rig = ("isometric", "isobaric", "isometric", "isotonic", "isometric", "mixed")[i // 2 % 6]
         if i % 2:
             hidden = HIDDEN[rig][i // 2 % len(HIDDEN[rig])]
-            yield Order(f"large-{rig}-{'-and-'.join(hidden)}-{rows}", "large", rig, hidden, rows=rows, number=i)
+            yield Order(f"large-{rig}-{'-and-'.join(hidden)}-{rows}-{i:02d}", "large", rig, hidden, rows=rows, number=i)
         else:
             damage = ("spikes", "nan", "frozen") if i % 4 == 2 else ()
-            yield Order(f"large-null-{rig}-{'damaged' if damage else 'whole'}-{rows}", "large", rig, rows=rows, damage=damage, number=i)
+            yield Order(
+                f"large-null-{rig}-{'damaged' if damage else 'whole'}-{rows}-{i:02d}", "large", rig, rows=rows, damage=damage, number=i
+            )
 
 
 def _order(name, group, rig, hidden, number, damage):

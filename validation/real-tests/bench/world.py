@@ -8,7 +8,16 @@ from simulator.hysteresis import Strands
 
 from . import rigs
 
-FAMILIES = ("strand-friction", "rubber-loss", "pressure-hysteresis", "pressure-lag", "creep", "rig-friction", "frame-compliance", "pressure-zero")
+FAMILIES = (
+    "strand-friction",
+    "rubber-loss",
+    "pressure-hysteresis",
+    "pressure-lag",
+    "creep",
+    "rig-friction",
+    "frame-compliance",
+    "pressure-zero",
+)
 """What can be hidden; each has an amplitude, 0: absent."""
 SHARES_LENGTH = ("strand-friction", "rig-friction")
 """What answers the length while it is found: an isotonic test solves for both."""
