@@ -16,6 +16,8 @@ SWING = (5.0, 40.0)
 SIGMAS = (12.0, 120.0)
 """Norm of what is hidden over the noise; the noise is chosen for it, within bounds."""
 NOISE = (0.15, 4.0)
+BUCKLED = 5.0
+"""Static force [N] below which a muscle at held length is about to push, and buckles: such rows are counted."""
 UNIT = {
     "strand-friction": 7.5e-5, "rubber-loss": 0.1, "pressure-hysteresis": 1.0, "pressure-lag": 0.02, "creep": 0.01, "rig-friction": 5.0,
     "frame-compliance": 1e-6, "pressure-zero": 3e3,
@@ -43,6 +45,8 @@ def build(order, seed, out, plain=False):
     missing = misfit(world, record)
     noise = _noise(rng, missing, record)
     rig = instruments.draw(rng, noise, record.kept("force"), _slopes(hose, record))
+    if order.noise:
+        rig = replace(rig, law=order.noise[0], memory=order.noise[1])
     table = readings(rng, rig, hose, record)
     table, rows = damage.damaged(rng, table, order.damage, rig.total)
     folder = out / order.name
@@ -63,6 +67,7 @@ def build(order, seed, out, plain=False):
         "rows": len(table["force"]),
         "hidden": [_entry(world, motion, name, rig.total) for name in order.hidden],
         "sigmas": round(float(np.linalg.norm(missing - missing.mean()) / rig.total), 2),
+        "buckled": int(np.count_nonzero(hose.tangent(record.kept("pressure"), record.kept("contraction")) < BUCKLED)),
         "damage": rows,
         "noise": rig.describe(),
     }

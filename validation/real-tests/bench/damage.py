@@ -2,7 +2,7 @@
 
 import numpy as np
 
-ALL = ("duplicates", "nan", "blank", "spikes", "frozen", "clipped", "mislabelled", "negative-pressure")
+ALL = ("shifted", "duplicates", "nan", "blank", "spikes", "frozen", "clipped", "mislabelled", "negative-pressure")
 """In this order: what inserts rows comes first."""
 
 
@@ -20,6 +20,14 @@ def damaged(rng, table, kinds, noise):
 def _some(rng, table, share):
     count = len(table["force"])
     return np.sort(rng.choice(np.arange(2, count - 2), max(2, round(share * count)), replace=False))
+
+
+def _shifted(rng, table, noise):
+    """All of one sweep is 4 to 8 standard deviations off: the amplifier was balanced anew."""
+    sweeps = np.unique(table["sweep"])
+    rows = np.flatnonzero(table["sweep"] == sweeps[int(rng.integers(len(sweeps)))])
+    table["force"][rows] += noise * rng.uniform(4.0, 8.0) * rng.choice([-1.0, 1.0])
+    return table, rows
 
 
 def _duplicates(rng, table, _):
@@ -91,6 +99,7 @@ def _negative_pressure(rng, table, _):
 
 
 _KINDS = {
+    "shifted": _shifted,
     "duplicates": _duplicates,
     "nan": _nan,
     "blank": _blank,

@@ -51,17 +51,18 @@ class Hose:
 
     def pull(self, pressure, contraction):
         """Static force [N] of a muscle that may buckle or hang slack: below the map's pressures its tangent, never much below 0."""
-        force = self._tangent(pressure, contraction)
+        force = self.tangent(pressure, contraction)
         return SLACK * np.logaddexp(0.0, force / SLACK)
 
-    def _tangent(self, pressure, contraction):
+    def tangent(self, pressure, contraction):
+        """Static force [N] of a net that never goes slack; below the map's pressures its tangent."""
         inside = np.maximum(pressure, self.lowest)
         return self.map(inside, contraction) + (pressure - inside) * self.map.rise(inside, contraction)
 
     def slope(self, pressure, contraction):
         """dF/deps [N] at constant pressure, of the muscle that may buckle."""
         inside = np.maximum(pressure, self.lowest)
-        taut = 1.0 / (1.0 + np.exp(-np.clip(self._tangent(pressure, contraction) / SLACK, -60.0, 60.0)))
+        taut = 1.0 / (1.0 + np.exp(-np.clip(self.tangent(pressure, contraction) / SLACK, -60.0, 60.0)))
         return taut * self.map.slope(inside, contraction)
 
     def rubber_force(self, contraction):

@@ -182,7 +182,7 @@ def _rates(found):
 def _nulls(found):
     rows = []
     nulls = [one for one in found if not one.hidden]
-    for group, title in (("null", "nulls"), ("large", "large nulls")):
+    for group, title in (("null", "nulls"), ("large", "large nulls"), ("hard", "hard nulls")):
         for damaged in (False, True):
             some = [one for one in nulls if one.truth["group"] == group and bool(one.truth["damage"]) == damaged]
             if some:

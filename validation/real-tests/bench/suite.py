@@ -30,6 +30,21 @@ DAMAGE = (
 )  # fmt: skip
 LARGE_ROWS = (15000, 3000, 6000, 1500)
 LARGE = 12
+HARD = (
+    ("isometric", (), 15000, ("spikes", "frozen"), "heavy", 0.0),
+    ("isobaric", (), 6000, (), "correlated", 200.0),
+    ("isotonic", (), 3000, ("shifted",), "white", 0.0),
+    ("isometric", (), 3000, ("shifted", "nan"), "heavy", 0.0),
+    ("mixed", (), 15000, (), "correlated", 300.0),
+    ("isobaric", (), 15000, ("spikes", "clipped"), "white", 0.0),
+    ("isobaric", ("strand-friction",), 15000, (), "correlated", 50.0),
+    ("isometric", ("rubber-loss",), 3000, ("spikes",), "heavy", 0.0),
+    ("isometric", ("pressure-hysteresis",), 1200, (), "correlated", 100.0),
+    ("isotonic", ("strand-friction",), 6000, ("shifted",), "white", 0.0),
+    ("mixed", ("creep",), 6000, (), "heavy", 0.0),
+    ("isometric", ("strand-friction", "creep"), 1200, ("nan", "spikes"), "correlated", 30.0),
+)
+"""Rig, hidden, rows, damage, law of the noise and rows within which it forgets: each a trap for what takes rows for independent or a shift for physics."""
 NAMES = tuple(DIALECTS)
 SELECTED = (
     "isobaric-strand-friction-and-pressure-zero-15",
@@ -46,7 +61,7 @@ SELECTED = (
 
 @dataclass(frozen=True)
 class Order:
-    """One test to be made. `group` is hidden, null or large."""
+    """One test to be made. `group` is hidden, null, large or hard; `noise`: law and memory in rows, drawn if None."""
 
     name: str
     group: str
@@ -56,11 +71,12 @@ class Order:
     rows: int = 600
     damage: tuple = ()
     number: int = 0
+    noise: tuple | None = None
 
 
 def orders():
     """All tests, in a fixed order."""
-    return [*_hidden(), *_nulls(), *_large()]
+    return [*_hidden(), *_nulls(), *_large(), *_hard()]
 
 
 def _hidden():
@@ -99,6 +115,12 @@ def _large():
             yield Order(
                 f"large-null-{rig}-{'damaged' if damage else 'whole'}-{rows}-{i:02d}", "large", rig, rows=rows, damage=damage, number=i
             )
+
+
+def _hard():
+    for i, (rig, hidden, rows, damage, law, memory) in enumerate(HARD):
+        what = "-and-".join(hidden) or "null"
+        yield Order(f"hard-{what}-{rig}-{rows}-{i:02d}", "hard", rig, hidden, rows=rows, damage=damage, number=i, noise=(law, memory))
 
 
 def _order(name, group, rig, hidden, number, damage):
