@@ -10,7 +10,7 @@ from simulator import hysteresis, meridian
 from simulator.hysteresis import Strands
 from simulator.muscle import Muscle
 
-from . import case, damage, dialects, instruments, rigs
+from . import case, damage, dialects, instruments, rigs, scores
 from .hoses import CONTRACTION, HIGHEST, Hose, hoses
 from .suite import Order
 from .world import Nature, World
@@ -39,6 +39,7 @@ def run():
         ("noise: size of samples, three laws", _noise, 0.05),
         ("damage: rows that are not named are untouched", _untouched, 0.0),
         ("24 dialects read back by pandas, openpyxl and SciPy", _dialects, 2e-7),
+        ("score: kinds of the catalogue's names, and outcomes of made-up answers", _scored, 0.0),
         ("sizes of what is hidden, and noise, as ordered; the same seed gives the same bytes", _built, 0.0),
     ]
     failed = 0
@@ -76,13 +77,16 @@ def _virtual_work():
 
 
 def _angles():
-    muscle = Muscle("long", "braided", 0.8, 8e-3, braid_angle=np.radians(25.0))
     contraction = np.array([0.03, 0.1, 0.17])
-    middle = meridian.angles(Hose(muscle).shape.body(), np.full(3, 2e5), 0.8 * (1.0 - contraction), np.array([0.0, 0.5]))
-    # The clamps take a little length: two muscles differ by it.
-    shorter = meridian.angles(Hose(Muscle("long", "braided", 0.4, 8e-3, braid_angle=np.radians(25.0))).shape.body(), np.full(3, 2e5), 0.4 * (1.0 - contraction), np.array([0.0, 0.5]))  # fmt: skip
-    ends = 2.0 * np.cos(middle) - np.cos(shorter)
-    return float(np.abs(ends / ((1.0 - contraction) * np.cos(np.radians(25.0)))[:, None] - 1.0).max())
+    # The clamps take a little length: two muscles differ by it, half as much where the length is twice as much.
+    extrapolated = 2.0 * np.cos(_middle(0.8, contraction)) - np.cos(_middle(0.4, contraction))
+    return float(np.abs(extrapolated / ((1.0 - contraction) * np.cos(np.radians(25.0))) - 1.0).max())
+
+
+def _middle(length, contraction):
+    """Angle at the middle of a net of this length."""
+    body = Hose(Muscle("long", "braided", length, 8e-3, braid_angle=np.radians(25.0))).shape.body()
+    return meridian.angles(body, np.full(3, 2e5), length * (1.0 - contraction), np.zeros(1))[:, 0]
 
 
 def _motion(pressure, contraction, seconds=200.0):
@@ -91,7 +95,7 @@ def _motion(pressure, contraction, seconds=200.0):
     return rigs.Motion("check", "check", np.linspace(0.0, seconds, count), pressure, contraction, None, zeros, zeros == 0, zeros, 1)
 
 
-def _loop(family, amplitude, pressure, contraction, at, nature=Nature(), turn=None, cycle=-1):
+def _loop(family, amplitude, pressure, contraction, at, nature=Nature(), cycle=-1):
     """Force on the way up minus that on the way down, of the hidden effect alone, at the value `at` of what is driven, in one of two cycles."""
     motion = _motion(pressure, contraction)
     world = World(HOSE, nature, {family: amplitude})
@@ -253,6 +257,41 @@ def _dialects():
                 return np.inf
             worst = max(worst, float(np.nanmax(np.abs(values - wanted)) / np.nanmax(np.abs(wanted))))
     return worst
+
+
+def _scored():
+    kinds = {
+        "coulomb-friction": "friction",
+        "pressure-friction": "friction",
+        "pressure-presliding": "friction",
+        "maxwell-slip": "friction",
+        "pressure-creep": "viscoelastic",
+        "standard-linear-solid": "viscoelastic",
+        "pressure-viscosity": "viscoelastic",
+        "valve-hysteresis": "pressure",
+        "regulator-lag": "pressure",
+        "force-lag": "pressure",
+        "pressure-offset": "zero",
+        "frame-compliance": "frame",
+        "bladder-elasticity": None,
+        "force-gain": None,
+    }
+    wrong = sum(scores.kind(name) != wanted for name, wanted in kinds.items())
+    truth = {"hidden": [{"family": "strand-friction"}]}
+    named = {"verdict": "missing", "missing": [{"effect": "pressure-creep", "class": ["pressure-creep", "maxwell-slip"]}]}
+    for document, outcome, in_class, claimed in (
+        (None, "none", False, False),
+        ({"verdict": "adequate"}, "nothing", False, False),
+        ({"verdict": "unknown", "missing": []}, "unknown", False, True),
+        ({"verdict": "missing", "missing": [{"effect": "pressure-friction", "class": []}]}, "right", True, True),
+        (named, "wrong", True, True),
+    ):
+        one = scores.Answer(truth, document, None, 1.0, True)
+        wrong += (one.outcome, one.in_class, one.claimed) != (outcome, in_class, claimed)
+    tried = {"candidates": [{"effect": "pressure-friction", "status": "not-testable"}, {"effect": "creep", "status": "rejected"}]}
+    wrong += not scores.Answer(truth, tried, None, 1.0, True).looks_for_loops
+    wrong += scores.Answer(truth, {"candidates": tried["candidates"][:1]}, None, 1.0, True).looks_for_loops
+    return wrong
 
 
 def _built():

@@ -31,7 +31,6 @@ RIGHT = {
     "frame-compliance": {"frame"},
 }
 """The kinds that are right for what is hidden here."""
-LOOPS = ("strand-friction", "rig-friction", "rubber-loss", "pressure-hysteresis", "pressure-lag")
 STRENGTHS = ((0.0, 40.0, "12 to 40"), (40.0, 70.0, "40 to 70"), (70.0, math.inf, "above 70"))
 """Of what is hidden, in sigma."""
 
