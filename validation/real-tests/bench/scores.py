@@ -221,8 +221,11 @@ def _refusals(found):
     said = {}
     for one in found:
         if one.problem:
-            short = re.sub(r"`[^`]*`|\"[^\"]*\"", "...", one.problem)
-            short = re.sub(r"-?\d[\d.,e+-]*", "#", short).replace("|", "/")
+            status, _, message = one.problem.partition(": ")
+            message = re.sub(r"`[^`]*`|\"[^\"]*\"", "...", message)
+            # Lists of lines differ in length.
+            message = re.sub(r"-?\d[\d.e+-]*((, | and )(-?\d[\d.e+-]*|more))*", "#", message)
+            short = re.sub(r"#( and # more)?", "#", f"{status}: {message}").replace("|", "/")
             said.setdefault(short[:150], []).append(one.truth["case"])
     if not said:
         return "Every test has an answer."
