@@ -34,7 +34,7 @@ def main():
     parser.add_argument("--readme", action="store_true", help="put the tables into README.md")
     arguments = parser.parse_args()
     name = f"seed-{arguments.seed}{'-plain' if arguments.plain else ''}"
-    out = (arguments.out or Path("target") / "real-tests" / name).resolve()
+    out = (arguments.out or HERE.parents[1] / "target" / "real-tests" / name).resolve()
     suite, status = out / "suite", 0
     if not arguments.score:
         status = _run(arguments, suite, out)

@@ -221,11 +221,11 @@ def _refusals(found):
     said = {}
     for one in found:
         if one.problem:
-            status, _, message = one.problem.partition(": ")
+            status, _, message = one.problem.partition(" Usage:")[0].partition(": ")
             message = re.sub(r"`[^`]*`|\"[^\"]*\"", "...", message)
             # Lists of lines differ in length.
             message = re.sub(r"-?\d[\d.e+-]*((, | and )(-?\d[\d.e+-]*|more))*", "#", message)
-            short = re.sub(r"#( and # more)?", "#", f"{status}: {message}").replace("|", "/")
+            short = f"{status}: {message}".rstrip(": ").replace("# more", "#").replace("|", "/")
             said.setdefault(short[:150], []).append(one.truth["case"])
     if not said:
         return "Every test has an answer."
