@@ -1,11 +1,12 @@
-"""Runs `bulge diagnose --json` on the cases of a suite.
+"""Runs `bulge diagnose --json`, or another command, on the cases of a suite.
 
-    python run.py DIR RESULTS --bulge PATH [--jobs 2] [--only REGEX] [--again]
+    python run.py DIR RESULTS --bulge PATH [--command diagnose] [--limit SECONDS] [--jobs 2] [--only REGEX] [--again]
 
-RESULTS/<case>.json is the answer, times.json the seconds of each case, inputs.json a checksum of the program and the files that it answered on. A case
-is skipped if this program has answered on these files already, unless --again is given. Each case runs on one thread; the cases are what runs in
-parallel. Every file appears whole or not at all. Failures are listed at the end with what the program said, and make the exit status 1; after Ctrl-C
-(exit status 130) the same command goes on where it stopped.
+A case is a folder with a truth.json; its file `args` holds the arguments of the command, one a line, else these are `data.csv --muscle muscle.toml`.
+RESULTS/<case>.json is the answer, times.json the seconds of each case, inputs.json a checksum of the program and the files that it answered on,
+failures.json what the program said where there is no answer. A case is skipped if this program has answered on these files already, unless --again
+is given. Each case runs on one thread; the cases are what runs in parallel. Every file appears whole or not at all. Failures are listed at the end,
+and make the exit status 1; after Ctrl-C (exit status 130) the same command goes on where it stopped.
 """
 
 import argparse
@@ -24,6 +25,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 PART = ".part"
+USUAL = ["data.csv", "--muscle", "muscle.toml"]
 
 
 def main():
@@ -31,6 +33,8 @@ def main():
     parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the cases")
     parser.add_argument("results", type=Path, metavar="RESULTS", help="folder of the answers")
     parser.add_argument("--bulge", default="bulge", help="the program to run")
+    parser.add_argument("--command", default="diagnose", help="what the program is to do")
+    parser.add_argument("--limit", type=float, help="seconds after which a case has failed [default: none]")
     parser.add_argument("--jobs", type=int, default=2, help="cases at a time")
     parser.add_argument("--only", default="", help="regular expression that the names of the cases must contain")
     parser.add_argument("--again", action="store_true", help="run cases that are answered already")
@@ -44,7 +48,7 @@ def main():
     # A polite request to end is Ctrl-C.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     arguments.results.mkdir(parents=True, exist_ok=True)
-    run = Run(os.path.abspath(program), arguments.results)
+    run = Run(os.path.abspath(program), arguments.results, arguments.command, arguments.limit)
     try:
         return run.all(cases, arguments.jobs, arguments.again)
     except KeyboardInterrupt:
@@ -55,10 +59,11 @@ def main():
 class Run:
     """A program at work on cases: what it answered, how long that took, what is running."""
 
-    def __init__(self, program, results):
-        self.program, self.results = program, results
+    def __init__(self, program, results, command, limit):
+        self.program, self.results, self.command, self.limit = program, results, command, limit
         self.checksum = hashlib.sha256(Path(program).read_bytes()).hexdigest()
         self.times, self.inputs = _numbers(results / "times.json"), _numbers(results / "inputs.json")
+        self.failures = _numbers(results / "failures.json")
         self.running, self.stopping = set(), threading.Event()
 
     def all(self, cases, jobs, again):
@@ -66,7 +71,7 @@ class Run:
         started, failed = time.monotonic(), []
         waiting = [case for case in cases if again or not self._answered(case)]
         # The longest files first, so that none is left to run alone at the end.
-        waiting.sort(key=lambda case: -(case / "data.csv").stat().st_size)
+        waiting.sort(key=lambda case: -sum(file.stat().st_size for file in _inputs(case)))
         with ThreadPoolExecutor(max_workers=jobs) as pool:
             tasks = {pool.submit(self._diagnose, case): case for case in waiting}
             try:
@@ -89,17 +94,19 @@ class Run:
     def _fingerprint(self, case):
         """Checksum of the program and of what it reads."""
         digest = hashlib.sha256(self.checksum.encode())
-        for name in ("data.csv", "muscle.toml"):
-            digest.update(hashlib.sha256((case / name).read_bytes()).digest())
+        for file in _inputs(case):
+            digest.update(hashlib.sha256(file.read_bytes()).digest())
         return digest.hexdigest()
 
     def _diagnose(self, case):
         """Seconds, and what went wrong or None."""
-        command = [self.program, "diagnose", str(case / "data.csv"), "--muscle", str(case / "muscle.toml"), "--json"]
+        words = (case / "args").read_text(encoding="utf-8").splitlines() if (case / "args").exists() else USUAL
+        command = [self.program, self.command, *words, "--json"]
         started = time.monotonic()
         # A session of its own: Ctrl-C reaches this program, which then ends the others.
         process = subprocess.Popen(
             command,
+            cwd=case,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             env={**os.environ, "RAYON_NUM_THREADS": "1"},
@@ -108,7 +115,13 @@ class Run:
         self.running.add(process)
         if self.stopping.is_set():
             process.terminate()
-        answer, said = process.communicate()
+        try:
+            answer, said = process.communicate(timeout=self.limit)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.communicate()
+            self.running.discard(process)
+            return time.monotonic() - started, f"no answer within {self.limit:g} s"
         self.running.discard(process)
         seconds = time.monotonic() - started
         problem = _problem(process.returncode, answer, said)
@@ -120,12 +133,14 @@ class Run:
         """Enters a case in the tables. An earlier answer doesn't outlive a failure."""
         if problem is None:
             self.times[case.name], self.inputs[case.name] = round(seconds, 3), self._fingerprint(case)
+            self.failures.pop(case.name, None)
         else:
             failed.append(f"{case.name}: {problem}")
+            self.failures[case.name] = problem
             (self.results / f"{case.name}.json").unlink(missing_ok=True)
             self.times.pop(case.name, None)
             self.inputs.pop(case.name, None)
-        for name, table in (("times.json", self.times), ("inputs.json", self.inputs)):
+        for name, table in (("times.json", self.times), ("inputs.json", self.inputs), ("failures.json", self.failures)):
             _write(self.results / name, (json.dumps(table, indent=1, sort_keys=True) + "\n").encode())
 
     def _stop(self, pool):
@@ -134,6 +149,11 @@ class Run:
         for process in list(self.running):
             with contextlib.suppress(ProcessLookupError):
                 process.terminate()
+
+
+def _inputs(case):
+    """What the program may read."""
+    return sorted(file for file in case.iterdir() if file.is_file() and file.name not in ("truth.json", "unseen.csv"))
 
 
 def _problem(status, answer, said):

@@ -118,6 +118,17 @@ def profile(body, pressure, length):
     return _fields(body, basis, unknowns)[0], basis.weights
 
 
+def angles(body, pressure, length, sigma):
+    """Angles [rad] between fibre and axis at the places `sigma` along half a fibre, points x places; sin(theta) = kappa r/(1 + e)."""
+    basis = _Basis(body.kind, body.stiffness is not None)
+    unknowns = _unknowns(body, basis, pressure, length)
+    count = basis.value.shape[1]
+    radius = body.end_radius + unknowns[:, :count] @ ((1.0 - sigma[:, None] ** 2) * _legendre_even(sigma, count)[0]).T
+    stretches = basis.stretch.shape[1]
+    stretch = unknowns[:, count:-1] @ _legendre_even(sigma, stretches)[0].T if stretches else 0.0
+    return np.arcsin(body.turn * radius / (1.0 + stretch))
+
+
 def _unknowns(body, basis, pressure, length):
     """Solves all points; those that fail start again from their neighbours."""
     unknowns = _first_guess(body, basis, pressure, length)

@@ -20,7 +20,7 @@ class Sheet:
 
 @dataclass(frozen=True)
 class Muscle:
-    """Stated geometry [m, rad], material and instruments; `widths` are the standard deviations stated with `+-`."""
+    """Stated geometry [m, rad], material and instruments; `fibre_stiffness` is EA of one fibre [N]; `widths` are the standard deviations stated with `+-`."""
 
     name: str
     kind: str
@@ -35,6 +35,7 @@ class Muscle:
     force: Sheet = Sheet()
     pressure: Sheet = Sheet()
     stroke: Sheet = Sheet()
+    fibre_stiffness: float | None = None
 
     def without_instruments(self):
         """The same muscle on a rig about which nothing is stated."""
@@ -46,6 +47,8 @@ class Muscle:
         lines.append(f"radius = {self._sized('radius', 1e-3, 'mm')}")
         if self.fibres is not None:
             lines.append(f"fibres = {self.fibres}")
+        if self.fibre_stiffness is not None:
+            lines.append(f'fibre = {{ stiffness = "{self.fibre_stiffness / 1e3:.10g} kN", section = "0.1 mm^2" }}')
         if self.kind == "braided":
             lines.append(f"braid_angle = {self._sized('braid_angle', np.pi / 180.0, 'deg')}")
             lines.append(f'ends = "{self.ends}"')
@@ -103,6 +106,7 @@ def read(path):
         force=sheets["force"],
         pressure=sheets["pressure"],
         stroke=sheets["length"],
+        fibre_stiffness=_quantity(table["fibre"]["stiffness"])[0] if "fibre" in table else None,
     )
 
 

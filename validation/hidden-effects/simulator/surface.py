@@ -82,12 +82,12 @@ class Window:
 class ForceMap:
     """Callable F(p, eps) [N]; also slope dF/deps, volume [m^3] and tension across the equator [N]."""
 
-    def __init__(self, shape, window):
+    def __init__(self, shape, window, pressures=PRESSURE_NODES):
         self.window = window
         u = np.linspace(0.0, 1.0, CONTRACTION_NODES)
         lo, hi = window.contraction
         contraction = lo + (hi - lo) * u**2
-        nodes = np.geomspace(*window.pressure, PRESSURE_NODES)
+        nodes = np.geomspace(*window.pressure, pressures)
         p, eps = np.meshgrid(nodes, contraction, indexing="ij")
         force, volume, tension = _grid(shape, p, eps)
         axis = np.log(nodes)
@@ -117,6 +117,11 @@ class ForceMap:
         u = self._place(contraction)
         return pressure * self._force.ev(self._log(pressure), u, dy=1) / (2.0 * u * (hi - lo))
 
+    def rise(self, pressure, contraction):
+        """dF/dp at constant contraction [m^2]."""
+        x, u = self._log(pressure), self._place(contraction)
+        return self._force.ev(x, u) + self._force.ev(x, u, dx=1)
+
     def volume(self, pressure, contraction):
         """Enclosed volume [m^3]."""
         return self._volume.ev(self._log(pressure), self._place(contraction))
@@ -127,9 +132,9 @@ class ForceMap:
 
 
 @lru_cache(maxsize=256)
-def force_map(shape, window):
+def force_map(shape, window, pressures=PRESSURE_NODES):
     """The map of a shape; the same shape is solved once."""
-    return ForceMap(shape, window)
+    return ForceMap(shape, window, pressures)
 
 
 def _grid(shape, p, eps):
