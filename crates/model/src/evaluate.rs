@@ -39,6 +39,17 @@ pub struct Prediction {
     pub by_contraction: Vec<f64>,
 }
 
+/// The force of the rows that have a state, and which have none.
+#[derive(Debug, Clone)]
+pub struct Partly {
+    /// The force is NaN, and derivatives are 0, in rows without a state.
+    pub prediction: Prediction,
+    /// Rows without a state, in their order.
+    pub without_state: Vec<usize>,
+    /// What the model says of them; none if there are none.
+    pub error: Option<ModelError>,
+}
+
 /// Rows handed to one core at a time, where nothing is remembered from row to row, and where each of them takes a search. Fixed, so that results
 /// don't depend on the number of threads.
 const CHUNK: [usize; 2] = [256, 8];
@@ -56,6 +67,8 @@ pub(crate) struct Run<'a> {
     pub(crate) lattice: Option<Lattice>,
     /// Whether equilibria are searched for from those found before, as exactly as a fit needs them.
     pub(crate) within_fit: bool,
+    /// Whether a segment ends at its first row without a state.
+    all_or_none: bool,
 }
 
 /// Which variable each lane carries in one pass.
@@ -94,7 +107,8 @@ impl Model {
         theta: &[f64],
         wanted: &Wanted,
     ) -> Result<Prediction, ModelError> {
-        self.evaluate_with(record, theta, wanted, None, &mut Slots::default())
+        let (all, failed) = self.evaluate_with(record, theta, wanted, None, true, &mut Slots::default())?;
+        if failed.is_empty() { Ok(all) } else { Err(failure(failed)) }
     }
 
     /// The same within a fit: searches start where those of the evaluation before ended, and each of the rows that count (see
@@ -112,9 +126,40 @@ impl Model {
         warm: &Warm,
     ) -> Result<Prediction, ModelError> {
         let mut slots = warm.take();
-        let found = self.evaluate_with(record, theta, wanted, Some(warm), &mut slots);
+        let found = self.evaluate_with(record, theta, wanted, Some(warm), true, &mut slots);
         warm.put(slots);
-        found
+        let (all, failed) = found?;
+        if failed.is_empty() { Ok(all) } else { Err(failure(failed)) }
+    }
+
+    /// As [`Model::evaluate_warm`], but a row without a state takes nothing from the others: it is listed.
+    ///
+    /// # Errors
+    /// If an effect doesn't fit the muscle. That no row has a state is none.
+    pub fn evaluate_partly(
+        &self,
+        record: &Record,
+        theta: &[f64],
+        wanted: &Wanted,
+        warm: &Warm,
+    ) -> Result<Partly, ModelError> {
+        let mut slots = warm.take();
+        let found = self.evaluate_with(record, theta, wanted, Some(warm), false, &mut slots);
+        warm.put(slots);
+        let (mut prediction, failed) = match found {
+            // The muscle itself has no state.
+            Err(error @ ModelError::NoEquilibrium { .. }) => {
+                let without_state: Vec<usize> = (0..record.len()).filter(|row| warm.counts(*row)).collect();
+                let mut prediction = Prediction::zero(record.len(), wanted);
+                prediction.leave_out(&without_state);
+                return Ok(Partly { prediction, without_state, error: Some(error) });
+            }
+            found => found?,
+        };
+        let without_state: Vec<usize> = failed.iter().map(|(row, _)| *row).collect();
+        prediction.leave_out(&without_state);
+        let error = (!failed.is_empty()).then(|| failure(failed));
+        Ok(Partly { prediction, without_state, error })
     }
 
     fn evaluate_with(
@@ -123,11 +168,13 @@ impl Model {
         theta: &[f64],
         wanted: &Wanted,
         warm: Option<&Warm>,
+        all_or_none: bool,
         slots: &mut Slots,
-    ) -> Result<Prediction, ModelError> {
+    ) -> Result<(Prediction, Vec<(usize, RowError)>), ModelError> {
         let counts = |row: usize| warm.is_none_or(|warm| warm.counts(row));
         let mut run = self.run(record, theta, &wanted.parameters, &counts, slots)?;
         run.within_fit = warm.is_some();
+        run.all_or_none = warm.is_some() && all_or_none;
         let segments = run.segments(record);
         slots.fit(segments.iter().map(Range::len));
         let task = Task {
@@ -143,8 +190,7 @@ impl Model {
             .zip(&mut slots.rows)
             .map(|((rows, part), slots)| run.segment(&task, rows.clone(), part, slots))
             .collect();
-        let failed: Vec<(usize, RowError)> = failed.into_iter().flatten().collect();
-        if failed.is_empty() { Ok(all) } else { Err(failure(failed)) }
+        Ok((all, failed.into_iter().flatten().collect()))
     }
 
     fn run<'a>(
@@ -166,6 +212,7 @@ impl Model {
             equilibrium: None,
             lattice: None,
             within_fit: false,
+            all_or_none: false,
         };
         if let Base::Law { .. } = self.base {
             return Ok(run);
@@ -406,7 +453,7 @@ impl Run<'_> {
                     Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
                     Err(error) if counts && number == 0 => {
                         failed.push((row, error));
-                        if self.within_fit {
+                        if self.all_or_none {
                             return failed;
                         }
                     }
@@ -427,6 +474,18 @@ impl Prediction {
             jacobian: vec![0.0; rows * wanted.parameters.len()],
             by_pressure: vec![0.0; readings],
             by_contraction: vec![0.0; readings],
+        }
+    }
+
+    /// Rows without a state say nothing.
+    fn leave_out(&mut self, rows: &[usize]) {
+        let columns = self.jacobian.len().checked_div(self.force.len()).unwrap_or(0);
+        for row in rows {
+            self.force[*row] = f64::NAN;
+            self.jacobian[row * columns..(row + 1) * columns].fill(0.0);
+            for slopes in [&mut self.by_pressure, &mut self.by_contraction] {
+                slopes.iter_mut().skip(*row).take(1).for_each(|slope| *slope = 0.0);
+            }
         }
     }
 

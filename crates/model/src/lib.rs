@@ -24,7 +24,7 @@ mod warm;
 
 pub use equilibrium::{Equilibrium, EquilibriumDocument};
 pub use error::ModelError;
-pub use evaluate::{Prediction, Wanted};
+pub use evaluate::{Partly, Prediction, Wanted};
 pub use extended::{Extended, ExtendedError};
 pub use model::{AtRest, Chosen, Model};
 pub use parameter::ModelParameter;
