@@ -18,15 +18,17 @@ mod extended;
 mod lattice;
 mod model;
 mod parameter;
+mod prediction;
 mod record;
 mod row;
 mod warm;
 
 pub use equilibrium::{Equilibrium, EquilibriumDocument};
 pub use error::ModelError;
-pub use evaluate::{Partly, Prediction, Wanted};
+pub use evaluate::Wanted;
 pub use extended::{Extended, ExtendedError};
 pub use model::{AtRest, Chosen, Model};
 pub use parameter::ModelParameter;
+pub use prediction::{Partly, Prediction};
 pub use record::Record;
 pub use warm::Warm;
