@@ -176,11 +176,15 @@ fn rows_without_a_state_are_counted_and_the_ladder_goes_on() {
         assert!(left.rows == 42 && left.lines.contains("15-28"), "{left:?}");
         assert!(rung.rmse_n.is_finite() && rung.fit.is_some(), "{rung:?}");
     }
-    // The rows with a state know the friction.
+    // The rows with a state know the friction; 10 N too much and 2 N of scatter are left, as this load only takes away.
     let last = &comparison.ladder[2];
     let friction =
         last.fit.as_ref().unwrap().parameters.iter().find(|p| p.effect == "coulomb-friction").unwrap();
-    assert!((friction.value - 7.0).abs() < 0.5 && last.rmse_n < 6.0, "{friction:?} {}", last.rmse_n);
+    assert!(
+        (friction.value - 7.0).abs() < 0.5 && (last.rmse_n - 104.0_f64.sqrt()).abs() < 0.3,
+        "{friction:?} {}",
+        last.rmse_n
+    );
     assert!(comparison.warnings.iter().any(|w| w.contains("have no state")), "{:?}", comparison.warnings);
     assert!(comparison.curves.iter().flat_map(|c| &c.points).all(|p| p.last_n.is_finite()));
 }
