@@ -8,4 +8,5 @@ pub(crate) mod nuisance;
 pub(crate) mod problem;
 pub(crate) mod search;
 pub(crate) mod settle;
+pub(crate) mod states;
 pub(crate) mod weights;

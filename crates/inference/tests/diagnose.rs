@@ -203,3 +203,18 @@ fn a_wrong_unit_is_no_physics() {
     let error = diagnose(&data, &muscle(), &options).map(|found| found.says).unwrap_err().to_string();
     assert!(error.contains("14.50") && error.contains("psi"), "{error}");
 }
+
+/// The noise of a reading within 20 % of the truth, whether something is hidden or not, in short tests and in long ones of many cycles.
+#[test]
+fn more_rows_and_cycles_never_hurt_the_law_of_the_noise() {
+    let rubber: (&str, &[f64]) = ("bladder-elasticity", &[2e5]);
+    for (rows, cycles, hidden) in [(30, 1, vec![]), (200, 1, vec![rubber]), (120, 8, vec![rubber])] {
+        let block = Block { cycles, rows, ..Block::loops(vec![2e5, 3e5, 4e5, 5e5], [0.01, 0.18], 40.0) };
+        let noise = ReadingNoise { force_n: 2.0, ..ReadingNoise::default() };
+        let data = measured(&hidden, &Protocol { noise, ..Protocol::new(vec![block]) }, 4);
+        let found = diagnosed(&data);
+        let ratio = found.noise.sd_n / 2.0;
+        assert!((0.8..1.2).contains(&ratio), "{rows} rows, {cycles} cycles: {:?}", found.noise);
+        assert_eq!(names(&found), hidden.iter().map(|(name, _)| *name).collect::<Vec<_>>());
+    }
+}

@@ -3,7 +3,9 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use bulge_effects::{Catalogue, Moment};
-use bulge_inference::{Comparison, Noise, Options, compare};
+use bulge_inference::{
+    Block, Comparison, DiagnoseOptions, Noise, Options, Protocol, ReadingNoise, compare, diagnose, simulate,
+};
 use bulge_measurements::Data;
 use bulge_model::{Model, Prediction, Record, Wanted};
 use bulge_muscles::{Muscle, from_toml};
@@ -147,4 +149,83 @@ fn a_rig_error_beyond_its_data_sheet_is_said() {
         "{:?}",
         beyond.warnings
     );
+}
+
+/// A load that exists up to a contraction of 15 % at most: beyond, its force is not a number.
+const GIVES_OUT: &str = "[effects.gives-out]\ntitle = \"A load that ends\"\nforce = \"-k * sqrt(end - eps)\"\n\
+                         parameters.k = { unit = \"N\", typical = \"50 N\", low = \"0 N\", high = \"500 N\" }\n\
+                         parameters.end = { unit = \"1\", typical = 0.14, low = 0.1, high = 0.15 }\n";
+
+fn with_gives_out() -> Catalogue {
+    let effects = bulge_effects::user::from_toml(GIVES_OUT, "own.toml").unwrap();
+    effects.into_iter().fold(Catalogue::builtin(), |catalogue, effect| catalogue.with(effect).unwrap())
+}
+
+#[test]
+fn rows_without_a_state_are_counted_and_the_ladder_goes_on() {
+    let data = loops(|row, direction| 10.0 - 7.0 * direction + alternating(row));
+    let catalogue = with_gives_out();
+    let effects =
+        ["gives-out", "coulomb-friction"].map(|name| Arc::clone(catalogue.find(name).unwrap())).to_vec();
+    let comparison = compare(&data, &muscle(""), &Options::new(catalogue, effects)).unwrap();
+    assert_eq!(comparison.ladder.len(), 3);
+    assert!(comparison.ladder[0].without_state.is_none());
+    for rung in &comparison.ladder[1..] {
+        let left = rung.without_state.as_ref().unwrap();
+        // From 15 % on there are seven contractions on each of six branches; none can be kept by other numbers.
+        assert!(left.rows == 42 && left.lines.contains("15-28"), "{left:?}");
+        assert!(rung.rmse_n.is_finite() && rung.fit.is_some(), "{rung:?}");
+    }
+    // The rows with a state know the friction; 10 N too much and 2 N of scatter are left, as this load only takes away.
+    let last = &comparison.ladder[2];
+    let friction =
+        last.fit.as_ref().unwrap().parameters.iter().find(|p| p.effect == "coulomb-friction").unwrap();
+    assert!(
+        (friction.value - 7.0).abs() < 0.5 && (last.rmse_n - 104.0_f64.sqrt()).abs() < 0.3,
+        "{friction:?} {}",
+        last.rmse_n
+    );
+    assert!(comparison.warnings.iter().any(|w| w.contains("have no state")), "{:?}", comparison.warnings);
+    assert!(comparison.curves.iter().flat_map(|c| &c.points).all(|p| p.last_n.is_finite()));
+}
+
+#[test]
+fn a_base_or_a_candidate_without_a_state_ends_no_diagnosis() {
+    let data = loops(|row, direction| -7.0 * direction + alternating(row));
+    let catalogue = with_gives_out();
+    let own = Arc::clone(catalogue.find("gives-out").unwrap());
+    let as_candidate = DiagnoseOptions::new(Options::new(catalogue.clone(), Vec::new()));
+    let found = diagnose(&data, &muscle(""), &as_candidate).unwrap();
+    let candidate = found.candidates.iter().find(|c| c.effect == "gives-out").unwrap();
+    assert!(candidate.status != "confirmed", "{candidate:?}");
+    assert!(found.missing.iter().all(|m| m.effect != "gives-out"));
+    let in_base = DiagnoseOptions::new(Options::new(catalogue, vec![own]));
+    let found = diagnose(&data, &muscle(""), &in_base).unwrap();
+    assert!(found.warnings.iter().any(|w| w.contains("took no part")), "{:?}", found.warnings);
+    assert!(found.data.used <= 84, "{:?}", found.data);
+}
+
+#[test]
+fn trial_numbers_without_an_equilibrium_end_no_comparison() {
+    // Where a comparison starts, c10 = 0.3 MPa, rubber carries what the gas has at 1 bar.
+    let text = "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"9.75 mm\"\nbraid_angle = \"25 deg\"\nends = \"clamped\"\n\
+                wall = \"2 mm\"\n[instruments]\npressure = { noise = \"100 Pa\", zero = \"200 Pa\", gain = \"0.1 %\" }\n";
+    let muscle = from_toml(text, "m.toml").unwrap();
+    let catalogue = Catalogue::builtin();
+    let add = |model: Model, name: &str| model.with(catalogue.find(name).unwrap(), None).unwrap();
+    let truth = ["bladder-elasticity", "bladder-c01"].into_iter().fold(Model::new(&muscle), add);
+    let rubber = Arc::clone(catalogue.find("bladder-elasticity").unwrap());
+    for (seed, pressures) in [(1, vec![1e5, 3e5]), (2, vec![1e5]), (3, vec![1.1e5, 1.5e5])] {
+        let noise = ReadingNoise { force_n: 2.0, pressure_pa: 100.0, ..ReadingNoise::default() };
+        let block = Block { rows: 40, ..Block::loops(pressures, [0.01, 0.22], 50.0) };
+        let protocol = Protocol { noise, ..Protocol::new(vec![block]) };
+        let data = simulate(&truth, &[1.2e5, 3e4], &protocol, seed).unwrap().data;
+        let options = Options::new(catalogue.clone(), vec![Arc::clone(&rubber)]);
+        let last = compare(&data, &muscle, &options).unwrap().ladder.pop().unwrap();
+        // One constant for two: the sum of both, and nearly the noise.
+        let modulus =
+            last.fit.unwrap().parameters.iter().find(|p| p.effect == "bladder-elasticity").unwrap().value;
+        assert!((0.12..0.16).contains(&modulus) && last.rmse_n < 3.0, "{modulus} {}", last.rmse_n);
+        assert!(last.without_state.is_none());
+    }
 }

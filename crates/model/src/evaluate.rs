@@ -13,6 +13,7 @@ use crate::base::Equilibrium;
 use crate::error::ModelError;
 use crate::lattice::{FEWEST_NODES, Lattice};
 use crate::model::{AtRest, Base, Model};
+use crate::prediction::{Part, Partly, Prediction};
 use crate::record::Record;
 use crate::row::NORMAL;
 use crate::strands::{self, Strands};
@@ -25,19 +26,6 @@ pub struct Wanted {
     pub parameters: Vec<usize>,
     /// Derivatives by the readings of pressure and contraction.
     pub readings: bool,
-}
-
-/// The force of every row.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Prediction {
-    /// What the load cell should read \[N\].
-    pub force: Vec<f64>,
-    /// Derivatives by the wanted parameters, row by row.
-    pub jacobian: Vec<f64>,
-    /// dF/d(pressure reading) \[N/Pa\], if wanted.
-    pub by_pressure: Vec<f64>,
-    /// dF/d(contraction reading) \[N\], if wanted.
-    pub by_contraction: Vec<f64>,
 }
 
 /// Rows handed to one core at a time, where nothing is remembered from row to row, and where each of them takes a search. Fixed, so that results
@@ -58,31 +46,25 @@ pub(crate) struct Run<'a> {
     pub(crate) lattice: Option<Lattice>,
     /// Whether equilibria are searched for from those found before, as exactly as a fit needs them.
     pub(crate) within_fit: bool,
+    /// Whether a segment ends at its first row without a state.
+    all_or_none: bool,
 }
 
 /// Which variable each lane carries in one pass.
 pub(crate) struct Pass {
     pub(crate) theta: Vec<Jet>,
-    pressure_lane: Option<usize>,
-    contraction_lane: Option<usize>,
+    pub(crate) pressure_lane: Option<usize>,
+    pub(crate) contraction_lane: Option<usize>,
     /// Lane of each shape parameter.
     pub(crate) shape_lanes: Vec<Option<usize>>,
     /// (lane, place among the wanted parameters)
-    columns: Vec<(usize, usize)>,
+    pub(crate) columns: Vec<(usize, usize)>,
 }
 
 /// Why a row has no force.
 pub(crate) enum RowError {
     Solver { pressure: f64, contraction: f64, source: FibreError },
     NotFinite,
-}
-
-/// The rows of one segment in a [`Prediction`].
-struct Part<'a> {
-    force: &'a mut [f64],
-    jacobian: &'a mut [f64],
-    by_pressure: &'a mut [f64],
-    by_contraction: &'a mut [f64],
 }
 
 impl Model {
@@ -96,7 +78,8 @@ impl Model {
         theta: &[f64],
         wanted: &Wanted,
     ) -> Result<Prediction, ModelError> {
-        self.evaluate_with(record, theta, wanted, None, &mut Slots::default())
+        let (all, failed) = self.evaluate_with(record, theta, wanted, None, true, &mut Slots::default())?;
+        if failed.is_empty() { Ok(all) } else { Err(failure(failed)) }
     }
 
     /// The same within a fit: searches start where those of the evaluation before ended, and each of the rows that count (see
@@ -114,9 +97,40 @@ impl Model {
         warm: &Warm,
     ) -> Result<Prediction, ModelError> {
         let mut slots = warm.take();
-        let found = self.evaluate_with(record, theta, wanted, Some(warm), &mut slots);
+        let found = self.evaluate_with(record, theta, wanted, Some(warm), true, &mut slots);
         warm.put(slots);
-        found
+        let (all, failed) = found?;
+        if failed.is_empty() { Ok(all) } else { Err(failure(failed)) }
+    }
+
+    /// As [`Model::evaluate_warm`], but a row without a state takes nothing from the others: it is listed.
+    ///
+    /// # Errors
+    /// If an effect doesn't fit the muscle. That no row has a state is none.
+    pub fn evaluate_partly(
+        &self,
+        record: &Record,
+        theta: &[f64],
+        wanted: &Wanted,
+        warm: &Warm,
+    ) -> Result<Partly, ModelError> {
+        let mut slots = warm.take();
+        let found = self.evaluate_with(record, theta, wanted, Some(warm), false, &mut slots);
+        warm.put(slots);
+        let (mut prediction, failed) = match found {
+            // The muscle itself has no state.
+            Err(error @ ModelError::NoEquilibrium { .. }) => {
+                let without_state: Vec<usize> = (0..record.len()).filter(|row| warm.counts(*row)).collect();
+                let mut prediction = Prediction::zero(record.len(), wanted);
+                prediction.leave_out(&without_state);
+                return Ok(Partly { prediction, without_state, error: Some(error) });
+            }
+            found => found?,
+        };
+        let without_state: Vec<usize> = failed.iter().map(|(row, _)| *row).collect();
+        prediction.leave_out(&without_state);
+        let error = (!failed.is_empty()).then(|| failure(failed));
+        Ok(Partly { prediction, without_state, error })
     }
 
     fn evaluate_with(
@@ -125,11 +139,13 @@ impl Model {
         theta: &[f64],
         wanted: &Wanted,
         warm: Option<&Warm>,
+        all_or_none: bool,
         slots: &mut Slots,
-    ) -> Result<Prediction, ModelError> {
+    ) -> Result<(Prediction, Vec<(usize, RowError)>), ModelError> {
         let counts = |row: usize| warm.is_none_or(|warm| warm.counts(row));
         let mut run = self.run(record, theta, &wanted.parameters, &counts, slots)?;
         run.within_fit = warm.is_some();
+        run.all_or_none = warm.is_some() && all_or_none;
         let segments = run.segments(record);
         slots.fit(segments.iter().map(Range::len));
         let task = Task {
@@ -145,8 +161,7 @@ impl Model {
             .zip(&mut slots.rows)
             .map(|((rows, part), slots)| run.segment(&task, rows.clone(), part, slots))
             .collect();
-        let failed: Vec<(usize, RowError)> = failed.into_iter().flatten().collect();
-        if failed.is_empty() { Ok(all) } else { Err(failure(failed)) }
+        Ok((all, failed.into_iter().flatten().collect()))
     }
 
     fn run<'a>(
@@ -169,6 +184,7 @@ impl Model {
             equilibrium: None,
             lattice: None,
             within_fit: false,
+            all_or_none: false,
         };
         if let Base::Law { .. } = self.base {
             return Ok(run);
@@ -412,7 +428,7 @@ impl Run<'_> {
                     Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
                     Err(error) if counts && number == 0 => {
                         failed.push((row, error));
-                        if self.within_fit {
+                        if self.all_or_none {
                             return failed;
                         }
                     }
@@ -421,56 +437,6 @@ impl Run<'_> {
             }
         }
         failed
-    }
-}
-
-impl Prediction {
-    /// All zero, with room for what is wanted.
-    fn zero(rows: usize, wanted: &Wanted) -> Self {
-        let readings = if wanted.readings { rows } else { 0 };
-        Self {
-            force: vec![0.0; rows],
-            jacobian: vec![0.0; rows * wanted.parameters.len()],
-            by_pressure: vec![0.0; readings],
-            by_contraction: vec![0.0; readings],
-        }
-    }
-
-    /// One part for each of the segments, which follow one another.
-    fn parts(&mut self, segments: &[Range<usize>], columns: usize) -> Vec<Part<'_>> {
-        let readings = !self.by_pressure.is_empty();
-        let mut rest =
-            [&mut *self.force, &mut *self.jacobian, &mut *self.by_pressure, &mut *self.by_contraction];
-        let per_row = [1, columns, usize::from(readings), usize::from(readings)];
-        let part = |rows: &Range<usize>| {
-            let mut next = 0;
-            let [force, jacobian, by_pressure, by_contraction] = rest.each_mut().map(|rest| {
-                let count = rows.len() * per_row[next];
-                next += 1;
-                rest.split_off_mut(..count).unwrap_or_default()
-            });
-            Part { force, jacobian, by_pressure, by_contraction }
-        };
-        segments.iter().map(part).collect()
-    }
-}
-
-impl Part<'_> {
-    /// What one pass says of row `i`.
-    fn fill(&mut self, i: usize, number: usize, pass: &Pass, columns: usize, reading: Jet) {
-        if number == 0 {
-            self.force[i] = reading.value();
-        }
-        let gradient = reading.gradient();
-        for (lane, column) in &pass.columns {
-            self.jacobian[i * columns + column] = gradient[*lane];
-        }
-        if let Some(lane) = pass.pressure_lane {
-            self.by_pressure[i] = gradient[lane];
-        }
-        if let Some(lane) = pass.contraction_lane {
-            self.by_contraction[i] = gradient[lane];
-        }
     }
 }
 

@@ -181,6 +181,17 @@ fn rows_that_do_not_count_need_no_equilibrium() {
     assert!(matches!(&error, ModelError::NoEquilibrium { rows, .. } if *rows == [2, 3]), "{error}");
     let error = model.evaluate_warm(&record, &theta, &wanted, &Warm::new()).unwrap_err();
     assert!(matches!(&error, ModelError::NoEquilibrium { rows, .. } if *rows == [2]), "{error}");
+    // The rows with a state are what they are without the others.
+    let all = Wanted { parameters: vec![0, 2], readings: true };
+    let partly = model.evaluate_partly(&record, &theta, &all, &Warm::new()).unwrap();
+    assert_eq!(partly.without_state, [2, 3]);
+    assert_eq!(partly.prediction.force[..2], alone[..]);
+    assert!(partly.prediction.force[2..].iter().all(|force| force.is_nan()));
+    assert!(partly.prediction.jacobian[..4].iter().all(|slope| *slope != 0.0));
+    assert!(
+        partly.prediction.jacobian[4..].iter().chain(&partly.prediction.by_pressure[2..]).all(|s| *s == 0.0)
+    );
+    assert!(matches!(partly.error, Some(ModelError::NoEquilibrium { .. })));
 }
 
 /// Rows between the nodes against the same rows alone, which are solved themselves.

@@ -8,7 +8,7 @@ use bulge_muscles::{Muscle, Parameter, Quantity};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-use crate::comparison::document::{DataSummary, NoiseFloor, Rung};
+use crate::comparison::document::{DataSummary, LeftOut, NoiseFloor, Rung};
 use crate::comparison::floor::noise_floor;
 use crate::comparison::levels::{Folds, Levels};
 use crate::comparison::requirements::{check_needs, check_size};
@@ -20,6 +20,7 @@ use crate::fit::document::Fit;
 use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::free;
 use crate::fit::search::{Task, fit, fit_and_force};
+use crate::fit::states::is_of_rows;
 use crate::fit::weights::Noise;
 
 /// Rows on which held-out errors and contributions are computed.
@@ -57,8 +58,10 @@ pub(crate) struct Climbed {
     pub(crate) prepared: Prepared,
     pub(crate) theta: Vec<f64>,
     pub(crate) fit: Option<Fit>,
-    /// Of every row of the record \[N\].
+    /// Of every row of the record \[N\]; NaN in rows without a state.
     pub(crate) force: Vec<f64>,
+    /// Why its numbers couldn't be fitted.
+    pub(crate) failed: Option<ModelError>,
 }
 
 /// A comparison under way.
@@ -66,7 +69,8 @@ pub(crate) struct Analysis<'a> {
     pub(crate) data: &'a Data,
     pub(crate) muscle: &'a Muscle,
     pub(crate) options: &'a Options,
-    pub(crate) record: Record,
+    /// Shared by the comparisons of one diagnosis: of many rows it is the largest thing there is.
+    pub(crate) record: Arc<Record>,
     pub(crate) used: Used,
     pub(crate) levels: Levels,
     pub(crate) folds: Option<Folds>,
@@ -82,7 +86,16 @@ impl<'a> Analysis<'a> {
         muscle: &'a Muscle,
         options: &'a Options,
     ) -> Result<Self, InferenceError> {
-        let record = Record::new(data, muscle.length().si());
+        Self::of(data, muscle, options, Arc::new(Record::new(data, muscle.length().si())))
+    }
+
+    /// The same with the record of these data and this muscle.
+    pub(crate) fn of(
+        data: &'a Data,
+        muscle: &'a Muscle,
+        options: &'a Options,
+        record: Arc<Record>,
+    ) -> Result<Self, InferenceError> {
         let used = used(data);
         if !used.mask.contains(&true) {
             let left_out = if data.is_empty() { "the file has none" } else { "all are slack" };
@@ -137,17 +150,13 @@ impl<'a> Analysis<'a> {
         with_effects().map_err(|error| self.about(error))
     }
 
-    /// The force of the base with everything as stated, nothing fitted \[N\].
+    /// The force of the base with everything as stated, nothing fitted \[N\]; NaN in rows without a state.
     pub(crate) fn as_stated(&self) -> Result<Vec<f64>, InferenceError> {
         let prepared = self.model(0)?;
         let counting = Warm::of_rows(&self.used.mask);
-        let found = prepared.model.evaluate_warm(
-            &self.record,
-            &prepared.model.start(),
-            &Wanted::default(),
-            &counting,
-        );
-        Ok(found.map_err(|error| self.about(error))?.force)
+        let start = prepared.model.start();
+        let found = prepared.model.evaluate_partly(&self.record, &start, &Wanted::default(), &counting);
+        Ok(found.map_err(|error| self.about(error))?.prediction.force)
     }
 
     /// The rung of the first `count` effects: fitted if there is anything to fit.
@@ -162,6 +171,7 @@ impl<'a> Analysis<'a> {
             carry_over(model, numbers, &prepared.model, &mut theta);
         }
         let numbers = free(&prepared.model).len();
+        let mut failed = None;
         if numbers > 0 {
             self.check_rows(numbers)?;
             let task = Task {
@@ -171,13 +181,23 @@ impl<'a> Analysis<'a> {
                 is_near: near.is_some(),
                 quick: false,
             };
-            let (fit, force) = fit_and_force(&prepared, &theta, &task).map_err(|error| self.about(error))?;
-            return Ok(Climbed { prepared, theta: fit.theta.clone(), fit: Some(fit), force });
+            match fit_and_force(&prepared, &theta, &task) {
+                Ok((fit, force)) => {
+                    return Ok(Climbed { prepared, theta: fit.theta.clone(), fit: Some(fit), force, failed });
+                }
+                // Nothing can be fitted to rows without a state: the rung stands as it starts, and says so.
+                Err(error) if is_of_rows(&error) => failed = Some(error),
+                Err(error) => return Err(self.about(error)),
+            }
         }
         let counting = Warm::of_rows(&self.used.mask);
-        let prediction = prepared.model.evaluate_warm(&self.record, &theta, &Wanted::default(), &counting);
-        let force = prediction.map_err(|error| self.about(error))?.force;
-        Ok(Climbed { prepared, theta, fit: None, force })
+        let found = prepared.model.evaluate_partly(&self.record, &theta, &Wanted::default(), &counting);
+        let found = found.map_err(|error| self.about(error))?;
+        if count == 0 && self.with_state(&[&found.prediction.force]).next().is_none() {
+            // Without a single row there is nothing to compare with.
+            return Err(self.about(found.error.unwrap_or(ModelError::Values { given: 0, expected: 1 })));
+        }
+        Ok(Climbed { prepared, theta, fit: None, force: found.prediction.force, failed })
     }
 
     fn check_rows(&self, numbers: usize) -> Result<(), InferenceError> {
@@ -196,6 +216,26 @@ impl<'a> Analysis<'a> {
     /// Rows that count.
     pub(crate) fn rows(&self) -> impl Iterator<Item = usize> {
         (0..self.record.len()).filter(|row| self.used.mask[*row])
+    }
+
+    /// Rows that count, of which each of these predictions says something.
+    pub(crate) fn with_state<'b>(
+        &self,
+        forces: &'b [&Vec<f64>],
+    ) -> impl Iterator<Item = usize> + use<'_, 'b> {
+        self.rows().filter(move |row| forces.iter().all(|force| force[*row].is_finite()))
+    }
+
+    /// Rows that count and have no state in a prediction, with the reason.
+    pub(crate) fn without_state(&self, climbed: &Climbed) -> Option<LeftOut> {
+        let rows: Vec<usize> = self.rows().filter(|row| !climbed.force[*row].is_finite()).collect();
+        let model = &climbed.prepared.model;
+        let mut only = vec![false; self.record.len()];
+        *only.get_mut(*rows.first()?)? = true;
+        let first =
+            model.evaluate_warm(&self.record, &climbed.theta, &Wanted::default(), &Warm::of_rows(&only));
+        let why = first.err().map_or_else(|| "no state within the fit".to_owned(), |error| error.to_string());
+        Some(LeftOut { why, lines: lines(self.data, &rows), rows: rows.len() })
     }
 
     /// A model error with the lines of the file.
@@ -240,7 +280,14 @@ impl<'a> Analysis<'a> {
             .map(|(measured, model)| measured - model)
             .collect();
         let repeats = self.data.repeats(self.muscle.length().si());
-        noise_floor(repeats.pure_error().as_ref(), &self.record, &self.used.mask, &residuals, self.muscle)
+        let used: Vec<bool> = self
+            .used
+            .mask
+            .iter()
+            .zip(&climbed.force)
+            .map(|(used, force)| *used && force.is_finite())
+            .collect();
+        noise_floor(repeats.pure_error().as_ref(), &self.record, &used, &residuals, self.muscle)
     }
 
     /// The noise of the force from here on, and the floor for people.
@@ -281,10 +328,11 @@ impl<'a> Analysis<'a> {
             fitted: free(&climbed.prepared.model).len(),
             half_gap_rmse_n: loops::half_gap_error(self, &climbed.force),
             fit: climbed.fit.clone(),
+            without_state: self.without_state(climbed),
         }
     }
 
-    /// RMS error on pressures (specimens, sweeps) that took no part in the fit.
+    /// RMS error on pressures (specimens, sweeps) that took no part in the fit, of the rows that have a state there; none if fewer than half have.
     pub(crate) fn held_out(&self, climbed: &Climbed) -> Option<f64> {
         let folds = self.folds.as_ref()?;
         let (thin, kept) = self.record.thinned(FEWER_ROWS);
@@ -307,19 +355,20 @@ impl<'a> Analysis<'a> {
                 (0..self.record.len()).map(|row| self.used.mask[row] && in_fold(&row)).collect();
             let warm = Warm::of_rows(&test);
             let model = &climbed.prepared.model;
-            let force = model.evaluate_warm(&self.record, &theta, &Wanted::default(), &warm)?.force;
-            let rows = (0..test.len()).filter(|row| test[*row]);
+            let found = model.evaluate_partly(&self.record, &theta, &Wanted::default(), &warm)?;
+            let force = found.prediction.force;
+            let rows = (0..test.len()).filter(|row| test[*row] && force[*row].is_finite());
             let square = rows.clone().map(|row| (self.record.force()[row] - force[row]).powi(2)).sum();
             Ok(Some((square, rows.count())))
         };
         let found: Vec<_> = (0..folds.count).into_par_iter().map(of_fold).collect();
         let mut sums = (0.0, 0_usize);
         for fold in found {
-            // Numbers that suit the other rows may leave these without an equilibrium: there is no error to state then.
+            // Numbers that suit the other rows may leave these without a state.
             let (square, count) = fold.ok().flatten()?;
             sums = (sums.0 + square, sums.1 + count);
         }
-        (sums.1 > 0).then(|| (sums.0 / sums.1 as f64).sqrt())
+        (2 * sums.1 > self.rows().count()).then(|| (sums.0 / sums.1 as f64).sqrt())
     }
 
     pub(crate) fn summary(&self) -> DataSummary {
@@ -352,6 +401,10 @@ impl<'a> Analysis<'a> {
                 "nothing could be held out: there are fewer than three pressures, two specimens and three sweeps".to_owned(),
             );
         }
+        for rung in ladder {
+            let without = rung.without_state.as_ref();
+            warnings.extend(without.map(|w| without_state(rung.added.as_deref().unwrap_or("base"), w)));
+        }
         let used = |p: Parameter| matches!(p, Parameter::Length | Parameter::Radius | Parameter::BraidAngle);
         for (parameter, _) in self.muscle.widths().iter().filter(|(p, _)| !used(*p)) {
             warnings.push(format!(
@@ -375,7 +428,7 @@ impl<'a> Analysis<'a> {
         warnings
     }
 
-    pub(crate) fn nothing_fitted(&self, theta: Vec<f64>, force: &[f64]) -> Fit {
+    pub(crate) fn nothing_fitted(&self, theta: Vec<f64>, force: &Vec<f64>) -> Fit {
         let error = residuals::summary(self, force);
         Fit {
             parameters: Vec::new(),
@@ -398,4 +451,12 @@ impl<'a> Analysis<'a> {
             warnings: Vec::new(),
         }
     }
+}
+
+/// The sentence on rows of which a model says nothing.
+pub(crate) fn without_state(model: &str, left: &LeftOut) -> String {
+    let LeftOut { why, lines, rows } = left;
+    format!(
+        "`{model}`: {rows} rows have no state with its numbers (line {lines}) and are not in its error; of the first: {why}"
+    )
 }

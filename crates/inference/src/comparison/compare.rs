@@ -1,11 +1,12 @@
 //! Model against measurement: the ladder of errors, rung by rung, and where the error lies.
 
 use bulge_measurements::{Data, QualityOptions};
-use bulge_model::Model;
+use bulge_model::{Model, ModelError};
 use bulge_muscles::{Muscle, Quantity};
 use rayon::prelude::*;
+use std::sync::Arc;
 
-use crate::comparison::analysis::{Analysis, Climbed, Options};
+use crate::comparison::analysis::{Analysis, Climbed, Options, without_state};
 use crate::comparison::document::{Comparison, DataSummary, NoiseFloor};
 use crate::comparison::{loops, residuals, rivals, stack};
 use crate::error::InferenceError;
@@ -17,26 +18,21 @@ use crate::fit::document::Fit;
 /// See [`InferenceError`]: too few rows, a muscle that doesn't match, an effect that doesn't fit the muscle or the data.
 pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
     // On a thread of the pool: small evaluations aren't handed over to it one by one.
-    rayon::scope(|_| compared(data, muscle, options, None))
+    rayon::scope(|_| compared(Analysis::new(data, muscle, options)?))
 }
 
-/// The same with the numbers of the last rung about known, of a model with the same effects.
+/// The same with the numbers of the last rung about known, of a model with the same effects, and the record that another analysis has.
 pub(crate) fn compare_near(
-    data: &Data,
-    muscle: &Muscle,
+    other: &Analysis<'_>,
     options: &Options,
     near: (&Model, &[f64]),
 ) -> Result<Comparison, InferenceError> {
-    compared(data, muscle, options, Some(near))
+    let analysis = Analysis::of(other.data, other.muscle, options, Arc::clone(&other.record))?;
+    compared(Analysis { near: Some(near), ..analysis })
 }
 
-fn compared(
-    data: &Data,
-    muscle: &Muscle,
-    options: &Options,
-    near: Option<(&Model, &[f64])>,
-) -> Result<Comparison, InferenceError> {
-    let mut analysis = Analysis { near, ..Analysis::new(data, muscle, options)? };
+fn compared(mut analysis: Analysis<'_>) -> Result<Comparison, InferenceError> {
+    let Analysis { data, muscle, options, .. } = analysis;
     let first = analysis.climb(0, None)?;
     analysis.check_match(&first)?;
     let floor = analysis.measure_noise(&first);
@@ -52,7 +48,8 @@ fn compared(
         .enumerate()
         .map(|(number, climbed)| analysis.rung(number, climbed))
         .collect::<Vec<_>>();
-    let last = &rungs[rungs.len() - 1];
+    let says_something = |climbed: &&Climbed| analysis.with_state(&[&climbed.force]).next().is_some();
+    let last = rungs.iter().rfind(says_something).unwrap_or(&rungs[0]);
     // A surface follows the residuals of a better model better: then less of them is taken for noise.
     let again = analysis.noise_floor(last);
     let floor = match (floor, again) {
@@ -61,11 +58,19 @@ fn compared(
     };
     let forces = [&rungs[0].force, &last.force];
     let mut warnings = analysis.warnings(&ladder);
+    for (rung, climbed) in ladder.iter().zip(&rungs) {
+        let name = rung.added.as_deref().unwrap_or("base");
+        warnings.extend(climbed.failed.as_ref().map(|error| not_fitted(name, error)));
+    }
     // With the last fit's numbers the muscle may not even pull before all effects are in.
     let contributions = stack::contributions(&analysis, last).unwrap_or_else(|error| {
         warnings.push(format!("what each effect contributes can't be shown one by one: {error}"));
         Vec::new()
     });
+    if contributions.is_empty() && !options.effects.is_empty() && warnings.is_empty() {
+        let why = "with the numbers of the last fit the muscle has no state before all effects are in";
+        warnings.push(format!("what each effect contributes can't be shown one by one: {why}"));
+    }
     Ok(Comparison {
         schema: "bulge.comparison/1",
         muscle: muscle.name().to_owned(),
@@ -85,6 +90,10 @@ fn compared(
         warnings,
         ladder,
     })
+}
+
+fn not_fitted(name: &str, error: &ModelError) -> String {
+    format!("`{name}` could not be fitted, its numbers are those that it starts from: {error}")
 }
 
 /// The effects fitted to the data, and the error before and after.
@@ -119,10 +128,14 @@ fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, In
     let noise_floor = analysis.measure_noise(&base);
     let climbed = analysis.climb(options.effects.len(), None)?;
     let rmse_n = residuals::summary(&analysis, &climbed.force).rmse;
-    let Climbed { prepared, theta, fit, force } = climbed;
+    let left = analysis.without_state(&climbed);
+    let Climbed { prepared, theta, fit, force, failed } = climbed;
+    let mut fit = fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force));
+    fit.warnings.extend(failed.map(|error| not_fitted("the fit", &error)));
+    fit.warnings.extend(left.map(|left| without_state("the fit", &left)));
     Ok(Fitting {
         model: prepared.model,
-        fit: fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force)),
+        fit,
         data: analysis.summary(),
         before_rmse_n: residuals::summary(&analysis, &base.force).rmse,
         rmse_n,

@@ -98,7 +98,7 @@ pub struct Rung {
     pub added: Option<String>,
     /// Its title.
     pub title: String,
-    /// RMS error \[N\].
+    /// RMS error of the rows that have a state \[N\].
     pub rmse_n: f64,
     /// The same in per cent of full scale.
     pub rmse_percent: f64,
@@ -118,6 +118,8 @@ pub struct Rung {
     pub half_gap_rmse_n: Option<f64>,
     /// The fit, where something was fitted.
     pub fit: Option<Fit>,
+    /// Rows of which this model says nothing: they have no state with its numbers, and aren't in its errors.
+    pub without_state: Option<LeftOut>,
 }
 
 /// The error by one variable.

@@ -23,7 +23,7 @@ pub(crate) fn gaps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<LoopG
     let [low, high] = contractions(analysis);
     let place = |level: usize, specimen: usize, bin: usize| (level * specimens.len() + specimen) * BINS + bin;
     let mut bins = vec![Branches::default(); analysis.levels.len() * specimens.len() * BINS];
-    for row in analysis.rows().filter(|row| moments[*row].branch() != 0.0) {
+    for row in analysis.with_state(&forces).filter(|row| moments[*row].branch() != 0.0) {
         let m = &moments[row];
         let at = place(analysis.levels.of[row], m.specimen as usize, bin(m.contraction, low, high, BINS));
         let branch = usize::from(m.branch() < 0.0);

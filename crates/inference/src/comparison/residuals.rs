@@ -23,15 +23,18 @@ pub(crate) struct Errors {
     pub(crate) r_squared: f64,
 }
 
-/// Over all rows that count.
-pub(crate) fn summary(analysis: &Analysis<'_>, force: &[f64]) -> Errors {
+/// Over all rows that count and have a state. If none has one, the error is the measured force: what says nothing predicts none.
+pub(crate) fn summary(analysis: &Analysis<'_>, force: &Vec<f64>) -> Errors {
     let measured = analysis.record.force();
-    let n = analysis.rows().count().max(1) as f64;
-    let mean = analysis.rows().map(|row| measured[row]).sum::<f64>() / n;
+    let has_any = analysis.with_state(&[force]).next().is_some();
+    let counted: Vec<usize> =
+        if has_any { analysis.with_state(&[force]).collect() } else { analysis.rows().collect() };
+    let n = counted.len().max(1) as f64;
+    let mean = counted.iter().map(|row| measured[*row]).sum::<f64>() / n;
     let mut sums = [0.0; 3];
     let mut largest: f64 = 0.0;
-    for row in analysis.rows() {
-        let error = measured[row] - force[row];
+    for row in counted {
+        let error = measured[row] - if has_any { force[row] } else { 0.0 };
         sums[0] += error;
         sums[1] += error * error;
         sums[2] += (measured[row] - mean).powi(2);
@@ -141,7 +144,7 @@ pub(crate) fn bin(value: f64, low: f64, high: f64, bins: usize) -> usize {
 fn broken_down(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2], groups: Groups) -> Breakdown {
     let measured = analysis.record.force();
     let mut sums = vec![(0_usize, [0.0; 2], [0.0; 2]); groups.labels.len()];
-    for row in analysis.rows() {
+    for row in analysis.with_state(&forces) {
         let (rows, bias, square) = &mut sums[groups.of[row]];
         *rows += 1;
         for (i, force) in forces.iter().enumerate() {
@@ -170,7 +173,8 @@ pub(crate) fn maps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Resid
     let mut maps = Vec::new();
     for (direction, sign) in [("shortening", 1.0), ("at rest", 0.0), ("lengthening", -1.0)] {
         let mut sums = vec![(0_usize, [0.0; 2]); levels * COLUMNS];
-        let rows = analysis.rows().filter(|row| moments[*row].branch().total_cmp(&sign).is_eq());
+        let rows =
+            analysis.with_state(&forces).filter(|row| moments[*row].branch().total_cmp(&sign).is_eq());
         let mut any = 0_usize;
         for row in rows {
             let cell = analysis.levels.of[row] * COLUMNS + bin(moments[row].contraction, low, high, COLUMNS);
@@ -219,7 +223,7 @@ pub(crate) fn curves(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Cur
             let is_here = |row: &usize| {
                 analysis.levels.of[*row] == level && moments[*row].specimen as usize == specimen
             };
-            let mut rows: Vec<usize> = analysis.rows().filter(is_here).collect();
+            let mut rows: Vec<usize> = analysis.with_state(&forces).filter(is_here).collect();
             if rows.is_empty() {
                 continue;
             }
@@ -244,6 +248,10 @@ pub(crate) fn curves(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Cur
 /// Measured against predicted.
 pub(crate) fn scatter(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<[f64; 3]> {
     let measured = analysis.record.force();
-    let stride = analysis.rows().count().div_ceil(MOST_SCATTER).max(1);
-    analysis.rows().step_by(stride).map(|row| [measured[row], forces[0][row], forces[1][row]]).collect()
+    let stride = analysis.with_state(&forces).count().div_ceil(MOST_SCATTER).max(1);
+    analysis
+        .with_state(&forces)
+        .step_by(stride)
+        .map(|row| [measured[row], forces[0][row], forces[1][row]])
+        .collect()
 }

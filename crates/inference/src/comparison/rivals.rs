@@ -73,5 +73,5 @@ fn fitted(analysis: &Analysis<'_>, law: &'static Law, values: &[f64]) -> Result<
     let theta = found.theta.clone();
     let prediction = prepared.model.evaluate(&analysis.record, &theta, &Wanted::default());
     let force = prediction.map_err(|error| analysis.about(error))?.force;
-    Ok(Climbed { prepared, theta, fit: Some(found), force })
+    Ok(Climbed { prepared, theta, fit: Some(found), force, failed: None })
 }

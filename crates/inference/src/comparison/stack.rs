@@ -32,8 +32,8 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
                 *value = final_values[i];
             }
         }
-        let prediction = prepared.model.evaluate_warm(record, &theta, &Wanted::default(), &counting);
-        forces.push(prediction.map_err(|error| analysis.about(error))?.force);
+        let prediction = prepared.model.evaluate_partly(record, &theta, &Wanted::default(), &counting);
+        forces.push(prediction.map_err(|error| analysis.about(error))?.prediction.force);
     }
     let mut names: Vec<String> = effects.iter().map(|effect| effect.card().name.to_owned()).collect();
     if last.prepared.nuisance.contains(&true) {
@@ -42,13 +42,18 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
     }
     let [low, high] = contractions(analysis);
     let contraction: Vec<f64> = record.moments().iter().map(|m| m.contraction).collect();
+    let all: Vec<&Vec<f64>> = forces.iter().collect();
     let mut stacks = Vec::new();
     for (level, pressure_pa) in analysis.levels.mean.iter().enumerate() {
         let mut rows_of = vec![Vec::new(); BINS];
-        for row in analysis.rows().filter(|row| analysis.levels.of[*row] == level) {
+        for row in analysis.with_state(&all).filter(|row| analysis.levels.of[*row] == level) {
             rows_of[bin(contraction[row], low, high, BINS)].push(row);
         }
         let filled: Vec<&Vec<usize>> = rows_of.iter().filter(|rows| !rows.is_empty()).collect();
+        if filled.is_empty() {
+            // With these numbers the muscle has no state here before all effects are in.
+            continue;
+        }
         let mean = |values: &[f64]| -> Vec<f64> {
             filled
                 .iter()

@@ -5,6 +5,13 @@ use std::ops::Range;
 
 use crate::comparison::levels::Levels;
 
+/// Means of each way from one reversal to the next, where there are rows enough: fewer would hide the shape of the loop.
+const PARTS: usize = 16;
+/// Most means that this makes.
+const MOST_PARTS: usize = 5_000;
+/// Groups that scatter by this multiple of the usual variance hold something else than noise.
+const ODD: f64 = 9.0;
+
 /// A record of means, and what belongs to each of them.
 #[derive(Debug, Clone)]
 pub(crate) struct Averaged {
@@ -16,6 +23,7 @@ pub(crate) struct Averaged {
 
 impl Averaged {
     /// About `most` means of the rows that are used, each within one sweep, one specimen and one direction. With no more rows than that, each is its own mean.
+    /// Of many cycles there are more: so many that each way has its shape.
     ///
     /// Rows of a static map have no order: neighbours are those of the same pressure level and nearly the same contraction.
     pub(crate) fn of(record: &Record, used: &[bool], levels: &Levels, most: usize) -> Option<Self> {
@@ -23,6 +31,7 @@ impl Averaged {
         let size = rows.div_ceil(most.max(1)).max(1);
         let mut groups: Vec<Vec<usize>> = Vec::new();
         let mut sweeps: Vec<Range<usize>> = Vec::new();
+        let least = if size > 1 && record.is_path() { parts_of_ways(record, used, levels) } else { 1 };
         for sweep in record.sweeps() {
             let start = groups.len();
             let mut rows: Vec<usize> = sweep.clone().filter(|row| used[*row]).collect();
@@ -30,7 +39,7 @@ impl Averaged {
                 sort_as_map(&mut rows, record, levels);
             }
             for run in runs(&rows, record, levels) {
-                let parts = run.len().div_ceil(size);
+                let parts = run.len().div_ceil(size).max(least.min(run.len()));
                 groups.extend(
                     (0..parts).map(|i| run[i * run.len() / parts..(i + 1) * run.len() / parts].to_vec()),
                 );
@@ -62,17 +71,48 @@ impl Averaged {
         self.means(&residual).iter().zip(at_means).map(|(residual, force)| residual + force).collect()
     }
 
-    /// Scatter of residuals within the groups: sum of squares about their means, and its degrees of freedom.
+    /// Scatter of residuals within the groups: sum of squares about a straight line through each, and its degrees of freedom. What a misfit does within a group is
+    /// nearly straight, and no scatter; a group with a reversal or a spike in it is left out.
     pub(crate) fn within(&self, residual: &[f64]) -> (f64, f64) {
-        let mut sum = 0.0;
-        let mut freedom = 0.0;
-        for group in &self.groups {
-            let middle = mean(group, residual);
-            sum += group.iter().map(|row| (residual[*row] - middle).powi(2)).sum::<f64>();
-            freedom += group.len() as f64 - 1.0;
-        }
-        (sum, freedom)
+        let mut all: Vec<(f64, f64)> =
+            self.groups.iter().filter_map(|group| scatter(group, residual)).collect();
+        all.sort_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
+        let Some(middle) = all.get(all.len() / 2).map(|(sum, freedom)| {
+            // Median of chi-squared over its degrees of freedom (Wilson and Hilferty 1931).
+            sum / freedom / (1.0 - 2.0 / (9.0 * freedom)).powi(3)
+        }) else {
+            return (0.0, 0.0);
+        };
+        let usual = all.iter().filter(|(sum, freedom)| *sum <= ODD * middle * freedom);
+        usual.fold((0.0, 0.0), |(sum, freedom), one| (sum + one.0, freedom + one.1))
     }
+}
+
+/// Sum of squares of a group about its line (of two or three rows about their mean), with its degrees of freedom.
+fn scatter(group: &[usize], residual: &[f64]) -> Option<(f64, f64)> {
+    let n = group.len() as f64;
+    let middle = mean(group, residual);
+    let about: f64 = group.iter().map(|row| (residual[*row] - middle).powi(2)).sum();
+    match group.len() {
+        0 | 1 => None,
+        2 | 3 => Some((about, n - 1.0)),
+        _ => {
+            let x = |i: usize| i as f64 - 0.5 * (n - 1.0);
+            let square = n * (n * n - 1.0) / 12.0;
+            let along: f64 = group.iter().enumerate().map(|(i, row)| x(i) * (residual[*row] - middle)).sum();
+            Some(((about - along * along / square).max(0.0), n - 2.0))
+        }
+    }
+}
+
+/// Means for each way from one reversal to the next.
+fn parts_of_ways(record: &Record, used: &[bool], levels: &Levels) -> usize {
+    let ways = |sweep: &Range<usize>| {
+        let rows: Vec<usize> = sweep.clone().filter(|row| used[*row]).collect();
+        runs(&rows, record, levels).count()
+    };
+    let ways: usize = record.sweeps().iter().map(ways).sum();
+    (MOST_PARTS / ways.max(1)).clamp(1, PARTS)
 }
 
 fn mean(group: &[usize], values: &[f64]) -> f64 {
@@ -162,5 +202,30 @@ mod tests {
         for (force, at_mean) in forces.iter().zip(&at_means) {
             assert!((force - at_mean).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn many_cycles_keep_the_shape_of_each_and_a_misfit_is_no_scatter() {
+        // 100 cycles of 200 rows; a misfit of 100 N over the stroke, friction that jumps at reversals, 1.2 N of noise.
+        let cycle = triangle(200);
+        let moments: Vec<Moment> = (0..20_000)
+            .map(|i: u32| {
+                let m = cycle.moments()[(i % 200) as usize];
+                let number = f64::from(i / 200) + f64::from(i % 200) / 200.0;
+                Moment { begins: i == 0, cycle: number, clock: f64::from(i), time: f64::from(i), ..m }
+            })
+            .collect();
+        let mut random = bulge_numerics::Random::new(4, 0);
+        let misfit = |m: &Moment| 100.0 * (8.0 * m.contraction).exp().recip() - 14.0 * m.direction;
+        let force: Vec<f64> = moments.iter().map(|m| misfit(m) + 1.2 * random.normal()).collect();
+        let record = Record::from_moments(moments, force, std::iter::once(0..20_000).collect()).unwrap();
+        let used = vec![true; record.len()];
+        let levels = Levels::of(&record, &used);
+        let averaged = Averaged::of(&record, &used, &levels, 300).unwrap();
+        // 200 ways of 16 means each.
+        assert!((3_200..3_300).contains(&averaged.groups.len()), "{}", averaged.groups.len());
+        let (sum, freedom) = averaged.within(record.force());
+        let sd = (sum / freedom).sqrt();
+        assert!((sd / 1.2 - 1.0).abs() < 0.05, "{sd}");
     }
 }

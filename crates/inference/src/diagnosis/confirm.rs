@@ -17,6 +17,7 @@ use crate::fit::carry_over::carry_over;
 use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::{FitProblem, free};
 use crate::fit::settle::settled;
+use crate::fit::states::{is_of_rows, of_start, settled_where_possible};
 
 /// Tolerance of the fits, as a part of what the residuals are.
 const TOLERANCE: f64 = 1e-5;
@@ -93,6 +94,29 @@ impl Given<'_> {
         self.best(prepared, &thetas)
     }
 
+    /// Numbers at which more rows may have a state than at a start: the minimum over those that have one there. All rows must have one in the end: a model
+    /// gains nothing by what it doesn't say.
+    fn nearer(
+        &self,
+        prepared: &Prepared,
+        start: &[f64],
+        priors: &[Option<(f64, f64)>],
+        options: &Options,
+    ) -> Option<Vec<f64>> {
+        let model = &prepared.model;
+        let sd = vec![self.row_n; self.record.len()];
+        let problem = |used: &[bool], at: &[f64]| {
+            FitProblem::new(model, self.record, used, sd.clone(), at.to_vec(), priors)
+        };
+        let settle = |problem: &FitProblem<'_>, at: &[f64]| {
+            let bounds = problem.bounds();
+            settled(problem, &inside(problem.coordinates(at), &bounds), &bounds, options).map_err(of_start)
+        };
+        let used = vec![true; self.record.len()];
+        let found = settled_where_possible((model, self.record), &used, start, problem, settle).ok()?;
+        Some(found.problem.theta(&found.minimum.theta))
+    }
+
     /// The least of the minima that several starts lead to.
     fn best(&self, prepared: Prepared, starts: &[Vec<f64>]) -> Result<Confirmed, ModelError> {
         let priors = nuisance_priors(&prepared);
@@ -115,17 +139,18 @@ impl Given<'_> {
                     max_evaluations: EVALUATIONS,
                     ..Options::default()
                 };
-                match settled(&problem, &inside, &bounds, &options) {
-                    Ok(minimum) => {
-                        let theta = problem.theta(&minimum.theta);
-                        Ok((minimum, theta))
+                let from = |inside: &[f64]| settled(&problem, inside, &bounds, &options).map_err(of_start);
+                let found = match from(&inside) {
+                    Err(error) if is_of_rows(&error) => {
+                        let nearer = self.nearer(&prepared, start, &priors, &options).ok_or(error)?;
+                        from(&self::inside(problem.coordinates(&nearer), &bounds))
                     }
-                    Err(bulge_numerics::least_squares::LeastSquaresError::Start(error)) => Err(error),
-                    Err(_) => Err(ModelError::NotFinite {
-                        rows: Vec::new(),
-                        what: "the fit cannot start: the model has no finite derivatives there",
-                    }),
-                }
+                    found => found,
+                };
+                found.map(|minimum| {
+                    let theta = problem.theta(&minimum.theta);
+                    (minimum, theta)
+                })
             })
             .collect();
         let mut best: Option<(Minimum, Vec<f64>)> = None;

@@ -1,29 +1,27 @@
 //! Diagnosis: the noise first, then what is missing, step by step, with an honest word on how sure that is.
 
 use bulge_measurements::Data;
-use bulge_model::{Model, Record, Wanted, Warm};
-use bulge_muscles::{Muscle, Quantity};
+use bulge_model::Model;
+use bulge_muscles::Muscle;
 use std::sync::Arc;
 
 use crate::comparison::analysis::{Analysis, Climbed, Options};
 use crate::comparison::compare::compare_near;
 use crate::comparison::mismatch::check_scale;
-use crate::diagnosis::averaged::Averaged;
+use crate::comparison::rows::lines;
 use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
 use crate::diagnosis::document::Diagnosis;
+use crate::diagnosis::ground::{Ground, Stop, effective_rows, ground, ground_again, row_sd};
 use crate::diagnosis::next::{Judged, Limits, NextLimits, next_experiment};
-use crate::diagnosis::noise::Source;
 use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::{Search, Stage};
 use crate::diagnosis::write::{Findings, cannot_tell, document};
 use crate::error::InferenceError;
-use crate::noise::law::NoiseLaw;
-use crate::noise::whitening::Whitening;
 use crate::progress::Progress;
 
-/// Means of rows on which models are tried.
-const MOST_ROWS: usize = 2500;
+/// Times that rows without a state are left out.
+const MOST_LEFT_OUT: usize = 8;
 
 /// Times that an accepted effect gives way to a better one.
 const MOST_SWAPS: usize = 3;
@@ -77,70 +75,108 @@ pub fn diagnose(
     })
 }
 
-/// Means of rows that models are tried on, and what is known of their noise.
-struct Ground {
-    averaged: Averaged,
-    record: Record,
-    input_variances: Vec<f64>,
-    /// Mean variance of a single row from noise of the inputs that data sheets state \[N^2\].
-    stated: f64,
-    law: Option<NoiseLaw>,
-}
-
 fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<Diagnosis, InferenceError> {
-    let progress = &options.progress;
     let mut analysis = Analysis::new(data, muscle, &options.base)?;
     check_scale(data, &analysis.as_stated()?, &analysis.used.mask)?;
     let first = analysis.climb(0, None)?;
     analysis.check_match(&first)?;
     analysis.measure_noise(&first);
     let base = analysis.climb(options.base.effects.len(), Some(&first))?;
+    // Of rows without a state the base says nothing: what the catalogue could say there, nothing could be compared with.
+    let mut used = vec![false; analysis.record.len()];
+    for row in analysis.with_state(&[&base.force]) {
+        used[row] = true;
+    }
+    for _ in 0..MOST_LEFT_OUT {
+        match on_rows(&analysis, &base, &used, options) {
+            Ok(diagnosis) => return Ok(diagnosis.without(&analysis, &used)),
+            Err(Stop::Error(error)) => return Err(error),
+            Err(Stop::Rows(rows)) => rows.into_iter().for_each(|row| used[row] = false),
+        }
+    }
+    let left_out = "the model has no state at nearly all of them".to_owned();
+    Err(InferenceError::NoRows { left_out })
+}
+
+impl Diagnosis {
+    /// The same with a word on rows that count, and on which the base says nothing.
+    fn without(mut self, analysis: &Analysis<'_>, used: &[bool]) -> Self {
+        let rows: Vec<usize> = analysis.rows().filter(|row| !used[*row]).collect();
+        if !rows.is_empty() {
+            self.warnings.push(format!(
+                "{} rows took no part in the diagnosis, because the base has no state there (line {})",
+                rows.len(),
+                lines(analysis.data, &rows)
+            ));
+            self.data.used = self.data.used.saturating_sub(rows.len());
+        }
+        self
+    }
+}
+
+/// The diagnosis on some of the rows.
+fn on_rows(
+    analysis: &Analysis<'_>,
+    base: &Climbed,
+    used: &[bool],
+    options: &DiagnoseOptions,
+) -> Result<Diagnosis, Stop> {
+    let progress = &options.progress;
     progress.at(0.1, "the noise");
-    let ground = ground(&analysis, &base, options)?;
+    let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
+    let ground = ground(analysis, base, used, options)?;
     let Some(law) = &ground.law else {
         let rows = ground.record.len();
-        return Ok(cannot_tell(data, muscle, &format!("{rows} rows are too few to know their noise")));
+        let says = format!("{rows} rows are too few to know their noise");
+        return Ok(cannot_tell(analysis.data, analysis.muscle, &says));
     };
-    let used = vec![true; ground.record.len()];
-    let whitening = Whitening::new(law, &ground.record, &used, &ground.input_variances)?;
-    let residual: Vec<f64> =
-        analysis.record.force().iter().zip(&base.force).map(|(measured, force)| measured - force).collect();
-    let given = Given {
-        catalogue: &options.base.catalogue,
-        record: &ground.record,
-        whitening: &whitening,
-        law,
-        row_n: (white_of_row(law, &ground, &residual) - ground.stated).max(law.white_n.powi(2)).sqrt(),
-        seed: options.seed,
-        tolerance_n: options.tolerance_n,
-        only: None,
-        progress,
-    };
-    let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
+    let given = ground.given(law, options);
     progress.at(0.25, "the catalogue");
     let near = (&base.prepared.model, &base.theta[..]);
-    let mut search = given.search(&model, near).map_err(|error| analysis.about(error))?;
+    let search = given.search(&model, near);
+    let search = search.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))?;
+    // The misfit of the base is in the first law as far as no smooth function follows it: about a better model the noise is better known.
+    if let Some(again) = ground_again(analysis, &search, &ground, used, options)
+        && let Some(law) = &again.law
+    {
+        let given = again.given(law, options);
+        let search = given.search(&model, near);
+        let search = search.map_err(|error| Stop::at_means(error, &again.averaged, analysis))?;
+        return concluded(analysis, (&given, &again), &model, search, options);
+    }
+    concluded(analysis, (&given, &ground), &model, search, options)
+}
+
+/// Classes, confidence and the ladder of what a search has found.
+fn concluded(
+    analysis: &Analysis<'_>,
+    (given, ground): (&Given<'_>, &Ground),
+    model: &Model,
+    mut search: Search,
+    options: &DiagnoseOptions,
+) -> Result<Diagnosis, Stop> {
+    let progress = &options.progress;
     progress.at(0.6, "rivals");
-    let mut judged = classes(&given, &model, &search);
+    let mut judged = classes(given, model, &search);
     for _ in 0..MOST_SWAPS {
         let last = &search.stages[search.stages.len() - 1];
         let better = judged.iter().enumerate().find_map(|(place, j)| given.swapped(last, place, &j.class));
         let Some(better) = better else { break };
         search.replace_last(better);
-        judged = classes(&given, &model, &search);
+        judged = classes(given, model, &search);
     }
     progress.at(0.75, "the next experiment");
-    let next = next_experiment(&given, &judged, &Limits::of(&ground.record, options.limits));
+    let next = next_experiment(given, &judged, &Limits::of(&ground.record, options.limits));
     progress.at(0.85, "the ladder");
     let classes: Vec<(Class, Confidence)> =
         judged.into_iter().map(|judged| (judged.class, judged.confidence)).collect();
-    let sd_n = row_sd(law, &ground, &residual);
+    let sd_n = row_sd(given.law, ground);
     let found = Findings {
-        given: &given,
+        given,
         search: &search,
         classes: &classes,
         sd_n,
-        effective_rows: effective_rows(law, &ground, &whitening, sd_n),
+        effective_rows: effective_rows(given.law, ground, sd_n),
         known: options.base.effects.len(),
         tolerance_n: options.tolerance_n,
         next,
@@ -148,51 +184,9 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
     let mut compared = options.base.clone();
     compared.effects.extend(found.shown().iter().map(Arc::clone));
     let last = &search.stages[search.stages.len() - 1].confirmed;
-    let comparison = compare_near(data, muscle, &compared, last.numbers())?;
+    let comparison = compare_near(analysis, &compared, last.numbers())?;
     progress.at(1.0, "done");
-    Ok(document(muscle, &found, comparison))
-}
-
-/// Means, their forces, and their noise under the base model.
-fn ground(
-    analysis: &Analysis<'_>,
-    base: &Climbed,
-    options: &DiagnoseOptions,
-) -> Result<Ground, InferenceError> {
-    let none = || InferenceError::NoRows { left_out: "none counts".to_owned() };
-    let averaged =
-        Averaged::of(&analysis.record, &analysis.used.mask, &analysis.levels, MOST_ROWS).ok_or_else(none)?;
-    let readings = Wanted { parameters: Vec::new(), readings: true };
-    let model = &base.prepared.model;
-    let at_means = model
-        .evaluate_warm(&averaged.record, &base.theta, &readings, &Warm::new())
-        .map_err(|error| analysis.about(error))?;
-    let forces = averaged.forces(&analysis.record, &base.force, &at_means.force);
-    let record = averaged.record.clone().with_force(forces);
-    let noise = analysis.noise;
-    let slopes = at_means.by_pressure.iter().zip(&at_means.by_contraction);
-    let input_variances: Vec<f64> = slopes
-        .zip(averaged.counts())
-        .map(|((p, e), count)| ((p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)) / count)
-        .collect();
-    let counts: Vec<f64> = averaged.counts().collect();
-    let stated = mean_of_rows(&input_variances, &counts);
-    let residual: Vec<f64> =
-        analysis.record.force().iter().zip(&base.force).map(|(measured, force)| measured - force).collect();
-    let extra = unequal(&averaged, &counts, &residual, analysis.record.force_sd());
-    let source = Source {
-        catalogue: &options.base.catalogue,
-        muscle: analysis.muscle,
-        record: &record,
-        input_variances: &input_variances,
-        slopes: [&at_means.by_contraction, &at_means.by_pressure],
-        counts: &counts,
-        unequal: &extra,
-        pure_error: analysis.data.repeats(analysis.muscle.length().si()).pure_error(),
-    };
-    let found = source.law(&base.prepared, &base.theta).map_err(|error| analysis.about(error))?;
-    let (law, input_variances) = found.map_or((None, input_variances), |(law, inputs)| (Some(law), inputs));
-    Ok(Ground { averaged, record, input_variances, stated, law })
+    Ok(document(analysis.muscle, &found, comparison))
 }
 
 /// Each named effect with its rivals, and how often such a claim is right.
@@ -210,46 +204,4 @@ fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
         Judged { class: Class::alone(last, place, before), confidence, models: None }
     };
     (0..last.added.len()).map(of).collect()
-}
-
-/// Variances by which the means differ, on top of what they share \[N^2\]: a mean of fewer rows knows less, and a file may state a scatter for each row.
-fn unequal(averaged: &Averaged, counts: &[f64], residual: &[f64], stated: Option<&[f64]>) -> Vec<f64> {
-    let (sum, freedom) = averaged.within(residual);
-    let within = if freedom > 0.0 { sum / freedom } else { 0.0 };
-    let most = counts.iter().copied().fold(1.0, f64::max);
-    let squares = stated.map(|sd| averaged.means(&sd.iter().map(|sd| sd * sd).collect::<Vec<_>>()));
-    let least = squares.iter().flatten().copied().fold(f64::INFINITY, f64::min);
-    let of = |(place, count): (usize, &f64)| {
-        let own = squares.as_ref().map_or(0.0, |squares| (squares[place] - least) / count);
-        within * (1.0 / count - 1.0 / most) + own
-    };
-    counts.iter().enumerate().map(of).collect()
-}
-
-/// Rows that count as independent: as many single rows as would know a constant as well as the means do.
-fn effective_rows(law: &NoiseLaw, ground: &Ground, whitening: &Whitening, sd_n: f64) -> f64 {
-    let means = ground.input_variances.len().max(1) as f64;
-    let inputs = ground.input_variances.iter().sum::<f64>() / means;
-    let of_mean = law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs;
-    let rows: f64 = ground.averaged.counts().sum();
-    if of_mean > 0.0 { (whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
-}
-
-/// Standard deviation of a single row: the law of the means, what the means have averaged, and what noise of pressure and contraction makes of it.
-fn row_sd(law: &NoiseLaw, ground: &Ground, residual: &[f64]) -> f64 {
-    (white_of_row(law, ground, residual) + law.correlated_n.powi(2) + law.offset_n.powi(2)).sqrt()
-}
-
-/// Variance of a single row without what it shares with its neighbours \[N^2\].
-fn white_of_row(law: &NoiseLaw, ground: &Ground, residual: &[f64]) -> f64 {
-    let counts: Vec<f64> = ground.averaged.counts().collect();
-    let (sum, freedom) = ground.averaged.within(residual);
-    let own = law.white_n.powi(2) + mean_of_rows(&ground.input_variances, &counts);
-    if freedom > 0.0 { (sum / freedom).max(own) } else { own }
-}
-
-/// Mean variance of single rows from those of means.
-fn mean_of_rows(variances: &[f64], counts: &[f64]) -> f64 {
-    let sum: f64 = variances.iter().zip(counts).map(|(variance, count)| variance * count).sum();
-    sum / variances.len().max(1) as f64
 }

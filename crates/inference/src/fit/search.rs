@@ -12,6 +12,7 @@ use crate::fit::interval;
 use crate::fit::nuisance::Prepared;
 use crate::fit::problem::{FitProblem, free};
 use crate::fit::settle::settled;
+use crate::fit::states::{Settled, is_of_rows, of_start, settled_where_possible};
 use crate::fit::weights::{Noise, effective_rows};
 use bulge_muscles::units::significant;
 
@@ -29,6 +30,12 @@ const POLISHED: usize = 2;
 const MORE_ROWS: usize = 4000;
 /// Rows from which that saves time: several minima, and one.
 const MANY_ROWS: [usize; 2] = [8000, 20_000];
+/// Rows from which a fit takes some of them: its numbers are then known to a hundredth of what the formulas are right to, and passes over all rows are many.
+const LONG: usize = 100_000;
+/// How many it takes.
+const OF_LONG: usize = 40_000;
+/// Rows of each cycle that it takes at least, so that the path keeps its shape.
+const OF_CYCLE: f64 = 40.0;
 /// Part by which a minimum may be above the least one there, and is still followed on all rows.
 const RIVAL: f64 = 0.05;
 /// Costs that differ by less than this part belong to the same minimum.
@@ -53,12 +60,15 @@ pub(crate) fn fit(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result
     fit_and_force(prepared, start, task).map(|(fit, _)| fit)
 }
 
-/// The same with the force that goes with the fit \[N\]; it is 0 in rows that don't count.
+/// The same with the force that goes with the fit \[N\]; it is 0 in rows that don't count, and NaN in those without a state.
 pub(crate) fn fit_and_force(
     prepared: &Prepared,
     start: &[f64],
     task: &Task<'_>,
 ) -> Result<(Fit, Vec<f64>), ModelError> {
+    if task.record.len() > LONG && !task.quick && keeps_cycles(task.record) {
+        return of_long(prepared, start, task);
+    }
     let model = &prepared.model;
     let mut best = vec![start.to_vec()];
     let mut minima = 1;
@@ -72,19 +82,26 @@ pub(crate) fn fit_and_force(
     if task.record.len() > MANY_ROWS[usize::from(best.len() == 1)] && !task.quick {
         best = followed(prepared, best, task)?;
     }
-    let mut found: Option<(Minimum, FitProblem<'_>)> = None;
+    let mut found: Option<Settled<'_>> = None;
+    let mut error = None;
     for theta in &best {
-        let sd = weights(model, theta, task)?;
-        let problem = FitProblem::new(model, task.record, task.used, sd, theta.clone(), &prepared.priors);
-        let minimum = settle(&problem, theta, task.quick)?;
-        if found.as_ref().is_none_or(|(other, _)| minimum.cost < other.cost) {
-            found = Some((minimum, problem));
+        match polished(prepared, theta, task) {
+            Ok(end) if found.as_ref().is_none_or(|other| end.charged < other.charged) => found = Some(end),
+            Ok(_) => {}
+            Err(failed) if is_of_rows(&failed) => error = error.or(Some(failed)),
+            Err(failed) => return Err(failed),
         }
     }
-    let Some((minimum, problem)) = found else {
-        return Err(ModelError::Values { given: 0, expected: 1 });
+    let Some(Settled { minimum, problem, used, .. }) = found else {
+        return Err(error.unwrap_or(ModelError::Values { given: 0, expected: 1 }));
     };
-    let force = problem.force(&minimum.residuals);
+    let mut force = problem.force(&minimum.residuals);
+    for (row, force) in force.iter_mut().enumerate() {
+        if task.used[row] && !used[row] {
+            *force = f64::NAN;
+        }
+    }
+    let task = &Task { used: &used, ..*task };
     let fit = report(
         prepared,
         &minimum,
@@ -102,6 +119,46 @@ pub(crate) fn fit_and_force(
         },
     );
     Ok((fit, force))
+}
+
+/// Whether some of the rows still show each cycle.
+fn keeps_cycles(record: &Record) -> bool {
+    let of_sweep = |sweep: &std::ops::Range<usize>| {
+        let cycles = record.moments()[sweep.clone()].iter().map(|m| m.cycle);
+        let [low, high] = cycles.fold([f64::INFINITY, 0.0], |[l, h]: [f64; 2], c| [l.min(c), h.max(c)]);
+        (high - low).max(0.0).floor() + 1.0
+    };
+    let cycles: f64 = record.sweeps().iter().map(of_sweep).sum();
+    OF_LONG as f64 >= OF_CYCLE * cycles
+}
+
+/// The fit of some rows of a long record, and the force of all of them.
+fn of_long(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<(Fit, Vec<f64>), ModelError> {
+    let (thin, kept) = task.record.thinned(OF_LONG);
+    let used: Vec<bool> = kept.iter().map(|row| task.used[*row]).collect();
+    let some = Task { record: &thin, used: &used, ..*task };
+    let (mut fit, _) = fit_and_force(prepared, start, &some)?;
+    let counting = Warm::of_rows(task.used);
+    let found = prepared.model.evaluate_partly(task.record, &fit.theta, &Wanted::default(), &counting)?;
+    let force = found.prediction.force;
+    let rows = (0..force.len()).filter(|row| task.used[*row] && force[*row].is_finite());
+    let (square, count) = rows.fold((0.0, 0.0), |(square, count): (f64, f64), row| {
+        (square + (task.record.force()[row] - force[row]).powi(2), count + 1.0)
+    });
+    fit.rmse_n = (square / count.max(1.0)).sqrt();
+    Ok((fit, force))
+}
+
+/// The minimum near some numbers, over the rows that have a state.
+fn polished<'a>(prepared: &'a Prepared, theta: &[f64], task: &Task<'a>) -> Result<Settled<'a>, ModelError> {
+    let model = &prepared.model;
+    let sd = weights(model, theta, task)?;
+    let problem = |used: &[bool], at: &[f64]| {
+        FitProblem::new(model, task.record, used, sd.clone(), at.to_vec(), &prepared.priors)
+    };
+    settled_where_possible((model, task.record), task.used, theta, problem, |problem, at| {
+        settle(problem, at, task.quick)
+    })
 }
 
 struct Searched {
@@ -139,6 +196,16 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
             Err(_) => {}
         }
     }
+    if ends.is_empty() {
+        // Nowhere do all rows have a state: those that have one say where to begin.
+        for coordinates in &starts {
+            match polished(prepared, &problem.theta(coordinates), &few) {
+                Ok(end) => ends.push((end.charged, end.problem.theta(&end.minimum.theta))),
+                Err(error) if is_of_rows(&error) => first_error = first_error.or(Some(error)),
+                Err(error) => return Err(error),
+            }
+        }
+    }
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
     let Some(least) = ends.first().map(|end| end.0) else {
         return Err(first_error.unwrap_or(ModelError::Values { given: 0, expected: 1 }));
@@ -166,16 +233,17 @@ fn followed(
     minima: Vec<Vec<f64>>,
     task: &Task<'_>,
 ) -> Result<Vec<Vec<f64>>, ModelError> {
-    let model = &prepared.model;
     let (thin, kept) = task.record.thinned(MORE_ROWS);
     let used: Vec<bool> = kept.iter().map(|row| task.used[*row]).collect();
-    let some = Task { record: &thin, used: &used, ..*task };
+    let some = Task { record: &thin, used: &used, quick: true, ..*task };
     let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
     for theta in minima {
-        let sd = weights(model, &theta, &some)?;
-        let problem = FitProblem::new(model, &thin, &used, sd, theta.clone(), &prepared.priors);
-        let minimum = settle(&problem, &theta, true)?;
-        ends.push((minimum.cost, problem.theta(&minimum.theta)));
+        match polished(prepared, &theta, &some) {
+            Ok(end) => ends.push((end.charged, end.problem.theta(&end.minimum.theta))),
+            // Followed on all rows from where it is.
+            Err(error) if is_of_rows(&error) => ends.push((f64::INFINITY, theta)),
+            Err(error) => return Err(error),
+        }
     }
     let least = ends.iter().map(|end| end.0).fold(f64::INFINITY, f64::min);
     ends.retain(|end| end.0 <= least * (1.0 + RIVAL));
@@ -221,7 +289,8 @@ fn weights(model: &Model, theta: &[f64], task: &Task<'_>) -> Result<Vec<f64>, Mo
     let readings = task.noise.pressure_pa > 0.0 || task.noise.contraction > 0.0;
     let wanted = Wanted { parameters: Vec::new(), readings };
     let prediction = if readings {
-        model.evaluate_warm(task.record, theta, &wanted, &Warm::of_rows(task.used))?
+        // A row without a state has the noise of its force alone.
+        model.evaluate_partly(task.record, theta, &wanted, &Warm::of_rows(task.used))?.prediction
     } else {
         bulge_model::Prediction {
             force: Vec::new(),
@@ -239,13 +308,7 @@ fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimu
     // Numbers are then off by this part of sqrt(rows) standard deviations.
     let tolerance = if quick { 1e-4 } else { 1e-5 };
     let options = Options { check_curvature: false, tolerance, max_evaluations: 200, ..Options::default() };
-    settled(problem, &start, &bounds, &options).map_err(|error| match error {
-        LeastSquaresError::Start(error) => error,
-        _ => ModelError::NotFinite {
-            rows: Vec::new(),
-            what: "the fit cannot start: the model has no finite derivatives there",
-        },
-    })
+    settled(problem, &start, &bounds, &options).map_err(of_start)
 }
 
 fn reason(reason: Reason) -> &'static str {

@@ -75,6 +75,7 @@ pub struct Plot {
 /// #     r_squared: 0.96,
 /// #     fitted: 0,
 /// #     half_gap_rmse_n: None,
+/// #     without_state: None,
 /// #     fit: None,
 /// # };
 /// # let data = DataSummary {

@@ -371,6 +371,7 @@ fn ladder(rows: &[Row]) -> Vec<Rung> {
             (Some(NAMES[i - 1].0.to_owned()), NAMES[i - 1].1.to_owned())
         };
         ladder.push(Rung {
+            without_state: None,
             added,
             title,
             rmse_n: rmse,

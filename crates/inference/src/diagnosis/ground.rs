@@ -1,0 +1,206 @@
+//! What models are tried on: means of the rows, and what is known of their noise.
+
+use bulge_model::{ModelError, Record, Wanted, Warm};
+use bulge_muscles::Quantity;
+
+use crate::comparison::analysis::{Analysis, Climbed};
+use crate::diagnosis::as_set::as_set;
+use crate::diagnosis::averaged::Averaged;
+use crate::diagnosis::confirm::Confirmed;
+use crate::diagnosis::diagnose::DiagnoseOptions;
+use crate::diagnosis::noise::Source;
+use crate::diagnosis::scene::Given;
+use crate::diagnosis::search::Search;
+use crate::error::InferenceError;
+use crate::noise::law::{NoiseLaw, NoiseSource};
+use crate::noise::whitening::Whitening;
+
+/// Means of rows on which models are tried.
+const MOST_ROWS: usize = 2500;
+/// Part of the variance below which a law about a better model is another law.
+const LESS_NOISE: f64 = 0.7;
+/// Part of it by which means may move, on average, without another search.
+const MOVED: f64 = 0.1;
+
+/// Means of rows that models are tried on, and what is known of their noise.
+pub(crate) struct Ground {
+    pub(crate) averaged: Averaged,
+    pub(crate) record: Record,
+    input_variances: Vec<f64>,
+    /// Mean variance of a single row from noise of the inputs that data sheets state \[N^2\].
+    stated: f64,
+    /// Variance of single rows about their means \[N^2\]; none where each is its own mean.
+    within: Option<f64>,
+    pub(crate) law: Option<NoiseLaw>,
+    /// Of the law; of white noise without one.
+    whitening: Whitening,
+}
+
+/// Why a diagnosis has to stop.
+pub(crate) enum Stop {
+    Error(InferenceError),
+    /// The base has no state at these rows of the record.
+    Rows(Vec<usize>),
+}
+
+impl Stop {
+    /// An error at means of rows.
+    pub(crate) fn at_means(error: ModelError, averaged: &Averaged, analysis: &Analysis<'_>) -> Self {
+        match &error {
+            ModelError::NoEquilibrium { rows, .. } | ModelError::NotFinite { rows, .. }
+                if !rows.is_empty() =>
+            {
+                Self::Rows(
+                    rows.iter().filter_map(|row| averaged.groups.get(*row)).flatten().copied().collect(),
+                )
+            }
+            _ => Self::Error(analysis.about(error)),
+        }
+    }
+}
+
+impl<E: Into<InferenceError>> From<E> for Stop {
+    fn from(error: E) -> Self {
+        Self::Error(error.into())
+    }
+}
+
+impl Ground {
+    pub(crate) fn given<'a>(&'a self, law: &'a NoiseLaw, options: &'a DiagnoseOptions) -> Given<'a> {
+        Given {
+            catalogue: &options.base.catalogue,
+            record: &self.record,
+            whitening: &self.whitening,
+            law,
+            row_n: (white_of_row(law, self) - self.stated).max(law.white_n.powi(2)).sqrt(),
+            seed: options.seed,
+            tolerance_n: options.tolerance_n,
+            only: None,
+            progress: &options.progress,
+        }
+    }
+
+    /// Variance of a mean as the law says it \[N^2\].
+    fn variance(&self) -> f64 {
+        let means = self.input_variances.len().max(1) as f64;
+        let inputs = self.input_variances.iter().sum::<f64>() / means;
+        self.law.as_ref().map_or(f64::INFINITY, |law| {
+            law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs
+        })
+    }
+}
+
+/// The ground about the best model of a search, where that changes what is known of the noise, or what the means are.
+pub(crate) fn ground_again(
+    analysis: &Analysis<'_>,
+    search: &Search,
+    before: &Ground,
+    used: &[bool],
+    options: &DiagnoseOptions,
+) -> Option<Ground> {
+    let last = search.stages.last().filter(|last| !last.added.is_empty())?;
+    let Confirmed { prepared, theta, .. } = &last.confirmed;
+    let found =
+        prepared.model.evaluate_partly(&analysis.record, theta, &Wanted::default(), &Warm::of_rows(used));
+    let force = found.ok().filter(|found| found.error.is_none())?.prediction.force;
+    let about = Climbed { prepared: prepared.clone(), theta: theta.clone(), fit: None, force, failed: None };
+    let again = ground(analysis, &about, used, options).ok()?;
+    let square: f64 =
+        again.record.force().iter().zip(before.record.force()).map(|(a, b)| (a - b).powi(2)).sum();
+    let moved = square / again.record.len().max(1) as f64;
+    (again.variance() < LESS_NOISE * before.variance() || moved > MOVED * again.variance()).then_some(again)
+}
+
+/// Means, their forces, and their noise under a model that is about right.
+pub(crate) fn ground(
+    analysis: &Analysis<'_>,
+    base: &Climbed,
+    used: &[bool],
+    options: &DiagnoseOptions,
+) -> Result<Ground, Stop> {
+    let none = || InferenceError::NoRows { left_out: "none of them has a state".to_owned() };
+    let averaged = Averaged::of(&analysis.record, used, &analysis.levels, MOST_ROWS).ok_or_else(none)?;
+    let readings = Wanted { parameters: Vec::new(), readings: true };
+    let model = &base.prepared.model;
+    let whole = |record: &Record| {
+        let found = model.evaluate_partly(record, &base.theta, &readings, &Warm::new());
+        let found = found.map_err(|error| Stop::at_means(error, &averaged, analysis))?;
+        match found.error {
+            Some(error) => Err(Stop::at_means(error, &averaged, analysis)),
+            None => Ok(found.prediction),
+        }
+    };
+    let at_means = whole(&averaged.record)?;
+    whole(&as_set(&averaged.record))?;
+    let forces = averaged.forces(&analysis.record, &base.force, &at_means.force);
+    let record = averaged.record.clone().with_force(forces);
+    let noise = analysis.noise;
+    let slopes = at_means.by_pressure.iter().zip(&at_means.by_contraction);
+    let input_variances: Vec<f64> = slopes
+        .zip(averaged.counts())
+        .map(|((p, e), count)| ((p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)) / count)
+        .collect();
+    let counts: Vec<f64> = averaged.counts().collect();
+    let stated = mean_of_rows(&input_variances, &counts);
+    let residual: Vec<f64> =
+        analysis.record.force().iter().zip(&base.force).map(|(measured, force)| measured - force).collect();
+    let (sum, freedom) = averaged.within(&residual);
+    let within = (freedom > 0.0).then(|| sum / freedom);
+    let extra = unequal(&averaged, &counts, within.unwrap_or(0.0), analysis.record.force_sd());
+    let source = Source {
+        catalogue: &options.base.catalogue,
+        muscle: analysis.muscle,
+        record: &record,
+        input_variances: &input_variances,
+        slopes: [&at_means.by_contraction, &at_means.by_pressure],
+        counts: &counts,
+        unequal: &extra,
+        pure_error: analysis.data.repeats(analysis.muscle.length().si()).pure_error(),
+    };
+    let found = source.law(&base.prepared, &base.theta);
+    let found = found.map_err(|error| Stop::at_means(error, &averaged, analysis))?;
+    let (law, input_variances) = found.map_or((None, input_variances), |(law, inputs)| (Some(law), inputs));
+    let white = || NoiseLaw::white(1.0, NoiseSource::Instruments, 0.0, String::new());
+    let all = vec![true; record.len()];
+    let whitening = Whitening::new(law.as_ref().unwrap_or(&white()), &record, &all, &input_variances)?;
+    Ok(Ground { averaged, record, input_variances, stated, within, law, whitening })
+}
+
+/// Variances by which the means differ, on top of what they share \[N^2\]: a mean of fewer rows knows less, and a file may state a scatter for each row.
+fn unequal(averaged: &Averaged, counts: &[f64], within: f64, stated: Option<&[f64]>) -> Vec<f64> {
+    let most = counts.iter().copied().fold(1.0, f64::max);
+    let squares = stated.map(|sd| averaged.means(&sd.iter().map(|sd| sd * sd).collect::<Vec<_>>()));
+    let least = squares.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+    let of = |(place, count): (usize, &f64)| {
+        let own = squares.as_ref().map_or(0.0, |squares| (squares[place] - least) / count);
+        within * (1.0 / count - 1.0 / most) + own
+    };
+    counts.iter().enumerate().map(of).collect()
+}
+
+/// Rows that count as independent: as many single rows as would know a constant as well as the means do.
+pub(crate) fn effective_rows(law: &NoiseLaw, ground: &Ground, sd_n: f64) -> f64 {
+    let means = ground.input_variances.len().max(1) as f64;
+    let inputs = ground.input_variances.iter().sum::<f64>() / means;
+    let of_mean = law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs;
+    let rows: f64 = ground.averaged.counts().sum();
+    if of_mean > 0.0 { (ground.whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
+}
+
+/// Standard deviation of a single row: the law of the means, what the means have averaged, and what noise of pressure and contraction makes of it.
+pub(crate) fn row_sd(law: &NoiseLaw, ground: &Ground) -> f64 {
+    (white_of_row(law, ground) + law.correlated_n.powi(2) + law.offset_n.powi(2)).sqrt()
+}
+
+/// Variance of a single row without what it shares with its neighbours \[N^2\].
+fn white_of_row(law: &NoiseLaw, ground: &Ground) -> f64 {
+    let counts: Vec<f64> = ground.averaged.counts().collect();
+    let own = law.white_n.powi(2) + mean_of_rows(&ground.input_variances, &counts);
+    ground.within.map_or(own, |within| within.max(own))
+}
+
+/// Mean variance of single rows from those of means.
+fn mean_of_rows(variances: &[f64], counts: &[f64]) -> f64 {
+    let sum: f64 = variances.iter().zip(counts).map(|(variance, count)| variance * count).sum();
+    sum / variances.len().max(1) as f64
+}

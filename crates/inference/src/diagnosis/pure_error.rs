@@ -1,0 +1,257 @@
+//! Pure error between cycles: what repeats from cycle to cycle is no noise, whatever a smooth model makes of it.
+//!
+//! ```text
+//! d = r_i - (1 - w) r_j - w r_(j+1),    s^2 = mean of d^2/(1 + (1 - w)^2 + w^2)
+//! ```
+//! r_i is a residual of one cycle, r_j and r_(j+1) its neighbours in contraction in another cycle, of the same specimen, level of pressure and direction. Of a law,
+//! s^2 is white noise with that part of the correlated noise which has decayed since the other cycle. Cycles may differ by physics too (creep, softening): so
+//! the pure error bounds the noise from above, never from below.
+
+use bulge_model::Record;
+use std::collections::BTreeMap;
+
+use crate::comparison::levels::Levels;
+use crate::noise::law::{CorrelationTime, NoiseLaw};
+use crate::noise::whitening::moment_of;
+
+/// Neighbours further apart than this part of the range of the contraction say nothing between them.
+const NEAR: f64 = 0.1;
+/// Pairs from which the pure error is believed.
+const ENOUGH: usize = 20;
+/// Relative standard deviation of the pure error that is there however many pairs there are.
+const SURE: f64 = 0.1;
+/// A correlated part beyond this multiple of the pure error repeats: it is no noise.
+const REPEATS: f64 = 1.5;
+
+/// Scatter of residuals between cycles.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct BetweenCycles {
+    /// Of one residual \[N^2\].
+    pub(crate) variance: f64,
+    /// Seconds (rows, without time) between the residuals of each pair.
+    lags: Vec<f64>,
+    /// Seconds (rows) of all sweeps together.
+    span: f64,
+}
+
+/// A residual of one stroke.
+struct Point {
+    contraction: f64,
+    residual: f64,
+    at: f64,
+}
+
+/// The way in one direction within one cycle, in the order of the contraction.
+struct Stroke {
+    sweep: usize,
+    points: Vec<Point>,
+}
+
+impl BetweenCycles {
+    /// Of residuals \[N\], one for each row of a record; none if no cycle is repeated.
+    pub(crate) fn of(record: &Record, residual: &[f64]) -> Option<Self> {
+        if !record.is_path() {
+            return None;
+        }
+        let contractions = record.moments().iter().map(|m| m.contraction);
+        let [low, high] =
+            contractions.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], e| [l.min(e), h.max(e)]);
+        let near = NEAR * (high - low);
+        let (mut sum, mut lags) = (0.0, Vec::new());
+        for strokes in strokes(record, residual) {
+            let half = strokes.len() / 2;
+            for (place, stroke) in strokes.iter().enumerate() {
+                // The next, and one that is far in time.
+                let others = [place + 1, place + half.max(2)];
+                for other in others.iter().filter_map(|other| strokes.get(*other)) {
+                    sum += compared(stroke, other, near, &mut lags);
+                }
+            }
+        }
+        let at = moment_of(record, seconds(record));
+        let of_sweep =
+            |rows: &std::ops::Range<usize>| (at(rows.end.saturating_sub(1)) - at(rows.start)).max(0.0);
+        let span = record.sweeps().iter().map(of_sweep).sum();
+        (lags.len() >= ENOUGH && sum > 0.0).then(|| Self { variance: sum / lags.len() as f64, lags, span })
+    }
+
+    /// The law with no more noise than cycles differ by: its variances beyond that are misfit that repeats.
+    ///
+    /// `inputs` is the mean variance from noise of the inputs, which is in the scatter too \[N^2\].
+    pub(crate) fn bounds(&self, mut law: NoiseLaw, inputs: f64) -> NoiseLaw {
+        let time = law.time.map_or(1.0, CorrelationTime::value);
+        let decayed = |lag: &f64| -(-lag / time).exp_m1();
+        let part = self.lags.iter().map(decayed).sum::<f64>() / self.lags.len() as f64;
+        let [white, correlated] = [law.white_n, law.correlated_n].map(|sd| sd * sd);
+        let expected = white + inputs + correlated * part;
+        // Pairs within a correlation time say the same.
+        let slow = if correlated > white { self.span / (2.0 * time) } else { f64::INFINITY };
+        let sure = SURE + 1.0 / (2.0 * slow.clamp(1.0, self.lags.len() as f64)).sqrt();
+        if expected <= self.variance * (1.0 + 2.0 * sure) {
+            return law;
+        }
+        let left = (self.variance - inputs).max(0.01 * self.variance);
+        // Neighbours know the white part; what is beyond the pure error repeats.
+        let white = white.min(left);
+        let rest = (left - white) / part.max(0.1);
+        let refused = correlated > REPEATS * REPEATS * self.variance;
+        law.white_n = white.sqrt();
+        law.correlated_n = correlated.min(rest).sqrt();
+        if law.correlated_n <= 0.0 {
+            law.time = None;
+        }
+        let what = if refused {
+            "its correlated part repeats from cycle to cycle, and is no noise"
+        } else {
+            "a part of it repeats"
+        };
+        law.says = format!(
+            "{}; cycles differ by {:.3} N only ({} pairs): {what}",
+            law.says,
+            self.variance.sqrt(),
+            self.lags.len()
+        );
+        law
+    }
+}
+
+/// The unit in which lags are.
+fn seconds(record: &Record) -> Option<CorrelationTime> {
+    record.has_time().then_some(CorrelationTime::Seconds(1.0))
+}
+
+/// Strokes that repeat each other, without the first of a sweep where there are others enough: it lacks the history of those after it.
+fn strokes(record: &Record, residual: &[f64]) -> Vec<Vec<Stroke>> {
+    let levels = Levels::of(record, &vec![true; record.len()]);
+    let at = moment_of(record, seconds(record));
+    let mut alike: BTreeMap<(u32, usize, bool), Vec<Stroke>> = BTreeMap::new();
+    for (sweep, rows) in record.sweeps().iter().enumerate() {
+        let moving: Vec<usize> = rows.clone().filter(|row| record.moments()[*row].direction != 0.0).collect();
+        let cycle = |row: usize| record.moments()[row].cycle.floor();
+        let up = |row: usize| record.moments()[row].direction > 0.0;
+        let last = moving.last().map_or(0.0, |row| cycle(*row));
+        let first = moving.first().map_or(0.0, |row| cycle(*row));
+        for run in moving.chunk_by(|a, b| up(*a) == up(*b) && cycle(*a).total_cmp(&cycle(*b)).is_eq()) {
+            if last >= first + 2.0 && cycle(run[0]) <= first {
+                continue;
+            }
+            let moment = &record.moments()[run[0]];
+            let mut points: Vec<Point> = run
+                .iter()
+                .map(|row| Point {
+                    contraction: record.moments()[*row].contraction,
+                    residual: residual[*row],
+                    at: at(*row),
+                })
+                .collect();
+            points.sort_by(|a, b| a.contraction.total_cmp(&b.contraction));
+            let key = (moment.specimen, levels.of[run[0]], up(run[0]));
+            alike.entry(key).or_default().push(Stroke { sweep, points });
+        }
+    }
+    alike.into_values().filter(|strokes| strokes.len() > 1).collect()
+}
+
+/// Sum of squared differences between two strokes, in variances of one residual; the lags go to the list.
+fn compared(one: &Stroke, other: &Stroke, near: f64, lags: &mut Vec<f64>) -> f64 {
+    let mut found: Vec<(f64, f64, f64)> = Vec::with_capacity(one.points.len());
+    for point in &one.points {
+        let after = other.points.partition_point(|p| p.contraction < point.contraction);
+        let (Some(a), Some(b)) =
+            (after.checked_sub(1).and_then(|i| other.points.get(i)), other.points.get(after))
+        else {
+            continue;
+        };
+        let width = b.contraction - a.contraction;
+        if width <= 0.0 || width > near {
+            continue;
+        }
+        let w = (point.contraction - a.contraction) / width;
+        let difference = point.residual - (1.0 - w) * a.residual - w * b.residual;
+        found.push((difference, 1.0 + (1.0 - w).powi(2) + w * w, (point.at - a.at).abs()));
+    }
+    let mut scale = 1.0;
+    if one.sweep != other.sweep && found.len() > 1 {
+        // Sweeps may be off as a whole.
+        let mean = found.iter().map(|f| f.0).sum::<f64>() / found.len() as f64;
+        for pair in &mut found {
+            pair.0 -= mean;
+        }
+        scale = found.len() as f64 / (found.len() as f64 - 1.0);
+    } else if one.sweep != other.sweep {
+        return 0.0;
+    }
+    lags.extend(found.iter().map(|f| f.2));
+    scale * found.iter().map(|f| f.0 * f.0 / f.1).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::law::NoiseSource;
+    use bulge_effects::Moment;
+    use bulge_numerics::Random;
+
+    /// Cycles of 80 rows in one sweep of 2 s steps.
+    fn record(cycles: usize) -> Record {
+        let moments: Vec<Moment> = (0..80 * cycles)
+            .map(|i| {
+                let x = (i % 80) as f64 / 80.0;
+                Moment {
+                    direction: if x < 0.5 { 1.0 } else { -1.0 },
+                    cycle: i as f64 / 80.0,
+                    clock: 2.0 * i as f64,
+                    time: 2.0 * i as f64,
+                    begins: i == 0,
+                    ..Moment::at_rest(2e5, 0.2 * (1.0 - (2.0 * x - 1.0).abs()))
+                }
+            })
+            .collect();
+        let n = moments.len();
+        Record::from_moments(moments, vec![0.0; n], std::iter::once(0..n).collect()).unwrap()
+    }
+
+    #[test]
+    fn a_ripple_that_repeats_is_no_noise_and_the_noise_stays_what_it_is() {
+        for cycles in [2, 4, 12] {
+            let record = record(cycles);
+            let mut random = Random::new(3, cycles as u64);
+            let residual: Vec<f64> = record
+                .moments()
+                .iter()
+                .map(|m| 20.0 * (150.0 * m.contraction).sin() * m.direction + 1.5 * random.normal())
+                .collect();
+            let found = BetweenCycles::of(&record, &residual).unwrap();
+            let ratio = (found.variance / 2.25).sqrt();
+            assert!((ratio - 1.0).abs() < 0.2, "{cycles} cycles: {ratio}");
+            let rippled = NoiseLaw {
+                correlated_n: 14.0,
+                time: Some(CorrelationTime::Seconds(30.0)),
+                ..NoiseLaw::white(1.4, NoiseSource::Saturated, 100.0, String::new())
+            };
+            let law = found.bounds(rippled, 0.0);
+            let total = law.white_n.hypot(law.correlated_n);
+            assert!((total / 1.5 - 1.0).abs() < 0.2, "{cycles} cycles: {total}");
+        }
+        assert!(BetweenCycles::of(&record(1), &[0.0; 80]).is_none());
+    }
+
+    #[test]
+    fn noise_that_is_slow_stays_in_the_law() {
+        // Over 400 s, of which a cycle takes 160 s: the cycles differ by a part of it only.
+        let truth = NoiseLaw {
+            correlated_n: 3.0,
+            time: Some(CorrelationTime::Seconds(400.0)),
+            ..NoiseLaw::white(0.5, NoiseSource::Saturated, 100.0, String::new())
+        };
+        let record = record(30);
+        let mut sum = 0.0;
+        for seed in 0..20 {
+            let noise = truth.simulate(&record, &vec![true; record.len()], &[], seed);
+            let found = BetweenCycles::of(&record, &noise).unwrap();
+            let law = found.bounds(truth.clone(), 0.0);
+            sum += law.correlated_n / 20.0;
+        }
+        assert!(sum > 2.5, "{sum}");
+    }
+}
