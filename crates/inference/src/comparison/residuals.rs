@@ -173,8 +173,7 @@ pub(crate) fn maps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Resid
     let mut maps = Vec::new();
     for (direction, sign) in [("shortening", 1.0), ("at rest", 0.0), ("lengthening", -1.0)] {
         let mut sums = vec![(0_usize, [0.0; 2]); levels * COLUMNS];
-        let rows =
-            analysis.with_state(&forces).filter(|row| moments[*row].branch().total_cmp(&sign).is_eq());
+        let rows = analysis.with_state(&forces).filter(|row| moments[*row].branch().total_cmp(&sign).is_eq());
         let mut any = 0_usize;
         for row in rows {
             let cell = analysis.levels.of[row] * COLUMNS + bin(moments[row].contraction, low, high, COLUMNS);

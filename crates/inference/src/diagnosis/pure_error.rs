@@ -3,10 +3,12 @@
 //! ```text
 //! d = r_i - (1 - w) r_j - w r_(j+1),    s^2 = mean of d^2/(1 + (1 - w)^2 + w^2)
 //! ```
-//! r_i is a residual of one cycle, r_j and r_(j+1) its neighbours in contraction in another cycle, of the same specimen, level of pressure and direction. Of a law,
+//! r_i is a residual of one cycle, r_j and r_(j+1) its neighbours in contraction in another cycle, of the same specimen, level of pressure and direction; at held
+//! length they are neighbours in pressure, at the same length. Of a law,
 //! s^2 is white noise with that part of the correlated noise which has decayed since the other cycle. Cycles may differ by physics too (creep, softening): so
 //! the pure error bounds the noise from above, never from below.
 
+use bulge_effects::Moment;
 use bulge_model::Record;
 use std::collections::BTreeMap;
 
@@ -14,8 +16,10 @@ use crate::comparison::levels::Levels;
 use crate::noise::law::{CorrelationTime, NoiseLaw};
 use crate::noise::whitening::moment_of;
 
-/// Neighbours further apart than this part of the range of the contraction say nothing between them.
+/// Neighbours further apart than this part of the range say nothing between them.
 const NEAR: f64 = 0.1;
+/// Contractions that differ by less are the same held length.
+const HELD: f64 = 2e-3;
 /// Pairs from which the pure error is believed.
 const ENOUGH: usize = 20;
 /// Relative standard deviation of the pure error that is there however many pairs there are.
@@ -36,12 +40,13 @@ pub(crate) struct BetweenCycles {
 
 /// A residual of one stroke.
 struct Point {
-    contraction: f64,
+    /// Contraction, or pressure at held length, in parts of its range.
+    place: f64,
     residual: f64,
     at: f64,
 }
 
-/// The way in one direction within one cycle, in the order of the contraction.
+/// The way in one direction within one cycle, in the order of the places.
 struct Stroke {
     sweep: usize,
     points: Vec<Point>,
@@ -53,10 +58,6 @@ impl BetweenCycles {
         if !record.is_path() {
             return None;
         }
-        let contractions = record.moments().iter().map(|m| m.contraction);
-        let [low, high] =
-            contractions.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], e| [l.min(e), h.max(e)]);
-        let near = NEAR * (high - low);
         let (mut sum, mut lags) = (0.0, Vec::new());
         for strokes in strokes(record, residual) {
             let half = strokes.len() / 2;
@@ -64,7 +65,7 @@ impl BetweenCycles {
                 // The next, and one that is far in time.
                 let others = [place + 1, place + half.max(2)];
                 for other in others.iter().filter_map(|other| strokes.get(*other)) {
-                    sum += compared(stroke, other, near, &mut lags);
+                    sum += compared(stroke, other, &mut lags);
                 }
             }
         }
@@ -124,11 +125,17 @@ fn seconds(record: &Record) -> Option<CorrelationTime> {
 fn strokes(record: &Record, residual: &[f64]) -> Vec<Vec<Stroke>> {
     let levels = Levels::of(record, &vec![true; record.len()]);
     let at = moment_of(record, seconds(record));
-    let mut alike: BTreeMap<(u32, usize, bool), Vec<Stroke>> = BTreeMap::new();
+    let width = |of: &dyn Fn(&Moment) -> f64| {
+        let ends = record.moments().iter().map(of);
+        let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+        (high - low).max(f64::MIN_POSITIVE)
+    };
+    let [contractions, pressures] = [width(&|m| m.contraction), width(&|m| m.pressure)];
+    let mut alike: BTreeMap<(u32, bool, i64, bool), Vec<Stroke>> = BTreeMap::new();
     for (sweep, rows) in record.sweeps().iter().enumerate() {
-        let moving: Vec<usize> = rows.clone().filter(|row| record.moments()[*row].direction != 0.0).collect();
+        let moving: Vec<usize> = rows.clone().filter(|row| record.moments()[*row].branch() != 0.0).collect();
         let cycle = |row: usize| record.moments()[row].cycle.floor();
-        let up = |row: usize| record.moments()[row].direction > 0.0;
+        let up = |row: usize| record.moments()[row].branch() > 0.0;
         let last = moving.last().map_or(0.0, |row| cycle(*row));
         let first = moving.first().map_or(0.0, |row| cycle(*row));
         for run in moving.chunk_by(|a, b| up(*a) == up(*b) && cycle(*a).total_cmp(&cycle(*b)).is_eq()) {
@@ -136,16 +143,20 @@ fn strokes(record: &Record, residual: &[f64]) -> Vec<Vec<Stroke>> {
                 continue;
             }
             let moment = &record.moments()[run[0]];
+            let is_held = moment.direction == 0.0;
             let mut points: Vec<Point> = run
                 .iter()
-                .map(|row| Point {
-                    contraction: record.moments()[*row].contraction,
-                    residual: residual[*row],
-                    at: at(*row),
+                .map(|row| {
+                    let m = &record.moments()[*row];
+                    let place = if is_held { m.pressure / pressures } else { m.contraction / contractions };
+                    Point { place, residual: residual[*row], at: at(*row) }
                 })
                 .collect();
-            points.sort_by(|a, b| a.contraction.total_cmp(&b.contraction));
-            let key = (moment.specimen, levels.of[run[0]], up(run[0]));
+            points.sort_by(|a, b| a.place.total_cmp(&b.place));
+            #[expect(clippy::cast_possible_truncation, reason = "a contraction over 0.2 %")]
+            let length = (moment.contraction / HELD).round() as i64;
+            let level = if is_held { length } else { i64::try_from(levels.of[run[0]]).unwrap_or(0) };
+            let key = (moment.specimen, is_held, level, up(run[0]));
             alike.entry(key).or_default().push(Stroke { sweep, points });
         }
     }
@@ -153,20 +164,20 @@ fn strokes(record: &Record, residual: &[f64]) -> Vec<Vec<Stroke>> {
 }
 
 /// Sum of squared differences between two strokes, in variances of one residual; the lags go to the list.
-fn compared(one: &Stroke, other: &Stroke, near: f64, lags: &mut Vec<f64>) -> f64 {
+fn compared(one: &Stroke, other: &Stroke, lags: &mut Vec<f64>) -> f64 {
     let mut found: Vec<(f64, f64, f64)> = Vec::with_capacity(one.points.len());
     for point in &one.points {
-        let after = other.points.partition_point(|p| p.contraction < point.contraction);
+        let after = other.points.partition_point(|p| p.place < point.place);
         let (Some(a), Some(b)) =
             (after.checked_sub(1).and_then(|i| other.points.get(i)), other.points.get(after))
         else {
             continue;
         };
-        let width = b.contraction - a.contraction;
-        if width <= 0.0 || width > near {
+        let width = b.place - a.place;
+        if width <= 0.0 || width > NEAR {
             continue;
         }
-        let w = (point.contraction - a.contraction) / width;
+        let w = (point.place - a.place) / width;
         let difference = point.residual - (1.0 - w) * a.residual - w * b.residual;
         found.push((difference, 1.0 + (1.0 - w).powi(2) + w * w, (point.at - a.at).abs()));
     }
@@ -189,7 +200,6 @@ fn compared(one: &Stroke, other: &Stroke, near: f64, lags: &mut Vec<f64>) -> f64
 mod tests {
     use super::*;
     use crate::noise::law::NoiseSource;
-    use bulge_effects::Moment;
     use bulge_numerics::Random;
 
     /// Cycles of 80 rows in one sweep of 2 s steps.
@@ -234,6 +244,28 @@ mod tests {
             assert!((total / 1.5 - 1.0).abs() < 0.2, "{cycles} cycles: {total}");
         }
         assert!(BetweenCycles::of(&record(1), &[0.0; 80]).is_none());
+    }
+
+    #[test]
+    fn at_held_length_cycles_are_compared_at_equal_pressures() {
+        let moments: Vec<Moment> = record(4)
+            .moments()
+            .iter()
+            .map(|m| Moment {
+                pressure: 1e5 + 2.5e6 * m.contraction,
+                contraction: 0.1,
+                pressure_direction: m.direction,
+                direction: 0.0,
+                ..*m
+            })
+            .collect();
+        let n = moments.len();
+        let record = Record::from_moments(moments, vec![0.0; n], std::iter::once(0..n).collect()).unwrap();
+        let mut random = Random::new(3, 1);
+        let ripple = |m: &Moment| 20.0 * (m.pressure / 2e4).sin() * m.pressure_direction;
+        let residual: Vec<f64> = record.moments().iter().map(|m| ripple(m) + 1.5 * random.normal()).collect();
+        let ratio = (BetweenCycles::of(&record, &residual).unwrap().variance / 2.25).sqrt();
+        assert!((ratio - 1.0).abs() < 0.2, "{ratio}");
     }
 
     #[test]
