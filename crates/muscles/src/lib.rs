@@ -49,7 +49,6 @@ mod parameter;
 mod presets;
 mod quantity;
 pub mod settings;
-mod table;
 mod unit_error;
 mod unit_expression;
 pub mod units;

@@ -252,7 +252,11 @@ fn keys_that_are_missing_or_unknown() {
         let kind = text.lines().nth(1).unwrap();
         let short: Vec<&str> = text.lines().filter(|line| !line.starts_with(missing)).collect();
         let line = short.iter().position(|line| *line == kind).unwrap() + 1;
-        refused(&short.join("\n"), (line, 8), &[&format!("`{missing}` is missing"), kind, example]);
+        refused(
+            &short.join("\n"),
+            (line, 8),
+            &[&format!("needs `{missing}`, which is missing"), kind, example],
+        );
     }
     refused(
         &with_line(PLEATED, 2, ""),
@@ -456,7 +460,7 @@ fn text_that_is_not_toml() {
     // Depth, size and width of a file are bounded.
     let deep = format!("{PLEATED}a = {}", "[".repeat(100_000));
     assert!(complaint(&deep).to_string().len() < 1000);
-    assert!(complaint(&" ".repeat((1 << 20) + 1)).to_string().contains("larger than 1024 KiB"));
+    assert!(complaint(&" ".repeat((1 << 20) + 1)).to_string().contains("larger than 1 MiB"));
     let wide = format!("{PLEATED}x = \"{}\"", "y".repeat(500_000));
     assert!(complaint(&wide).to_string().len() < 1000);
 }
@@ -486,7 +490,7 @@ fn files_that_cannot_be_read() {
         "{latin}"
     );
     let huge = message(&file("huge.toml", &vec![b'#'; (1 << 20) + 1]));
-    assert!(huge.contains("larger than 1024 KiB"), "{huge}");
+    assert!(huge.contains("larger than 1 MiB"), "{huge}");
     let empty = message(&file("empty.toml", b""));
     assert!(empty.contains("empty.toml:1:1") && empty.contains("kind = \"pleated\""), "{empty}");
     let wrong = read(file("wrong.toml", b"kind = \"pleated\"\nlength = 110\n")).unwrap_err();
