@@ -10,6 +10,7 @@ use crate::muscle::Muscle;
 use crate::parameter::Parameter;
 use crate::quantity::{Angle, Area, Force, Length, LineStiffness, Pressure, Ratio};
 use crate::settings::{Document, FileKind, Settings, nearest};
+use crate::specimen::specimens_in;
 use crate::units::{self, Quantity, shortened};
 use std::path::Path;
 
@@ -110,6 +111,9 @@ impl<'a> Reader<'a> {
         }
         if let Some(instruments) = instruments {
             muscle = muscle.with_instruments(instruments_in(&instruments)?);
+        }
+        if let Some(specimens) = self.root.table("specimens", "`[specimens]`", &[])? {
+            muscle = specimens_in(&specimens, muscle)?;
         }
         for (parameter, width) in &self.widths {
             muscle = muscle.with_width(*parameter, *width).map_err(|error| self.invalid(&error))?;

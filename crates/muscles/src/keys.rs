@@ -3,6 +3,10 @@
 use crate::construction::Kind;
 use crate::settings::Keys;
 
+/// The table of a specimen, and that of its fibres.
+pub(crate) const SPECIMEN: &str = "specimens.*";
+pub(crate) const SPECIMEN_FIBRE: &str = "specimens.*.fibre";
+
 /// The tables by their dotted paths, "" for the top of the file.
 const TABLES: &[(&str, Keys)] = &[
     (
@@ -19,8 +23,24 @@ const TABLES: &[(&str, Keys)] = &[
             ("fibre", "fibre = { stiffness = \"12 kN\" }"),
             ("effects", "effects.end-radius = { radius = \"16 mm\" }"),
             ("instruments", "instruments.force = { noise = \"4 N\" }"),
+            ("specimens", "specimens.short = { length = \"60 mm\" }"),
+            // Of who reads measurements.
+            ("data", "data.columns = { force = \"F1 [N]\" }"),
         ],
     ),
+    (
+        SPECIMEN,
+        &[
+            ("length", "length = \"60 mm\""),
+            ("radius", "radius = \"16 mm\""),
+            ("fibres", "fibres = 40"),
+            ("braid_angle", "braid_angle = \"25 deg\""),
+            ("wall", "wall = \"2 mm\""),
+            ("fibre", "fibre = { stiffness = \"12 kN\" }"),
+            ("effects", "effects.end-radius = { radius = \"16 mm\" }"),
+        ],
+    ),
+    (SPECIMEN_FIBRE, &[("stiffness", "stiffness = \"12 kN\"")]),
     ("fibre", &[("stiffness", "stiffness = \"12 kN\""), ("section", "section = \"0.3 mm^2\"")]),
     (
         "effects",
@@ -132,12 +152,13 @@ pub(crate) fn elsewhere(unknown: &str) -> Option<String> {
     if let Some((_, path)) = SYNONYMS.iter().find(|(other, _)| is_it(other)) {
         return Some(format!("write {}", example(path)));
     }
+    let of_muscle = |(table, _): &&(&str, Keys)| !table.contains('*');
     let of_table = |(table, keys): &(&str, Keys)| {
         keys.iter()
             .find(|(key, _)| is_it(key))
             .map(|(key, _)| format!("write {}", example(&join(table, key))))
     };
-    TABLES.iter().find_map(of_table)
+    TABLES.iter().filter(of_muscle).find_map(of_table)
 }
 
 #[cfg(test)]
@@ -146,7 +167,7 @@ mod tests {
 
     #[test]
     fn every_table_is_a_key_and_every_example_is_one_line_of_it() {
-        for (table, keys) in TABLES {
+        for (table, keys) in TABLES.iter().filter(|(table, _)| !table.contains('*')) {
             let (parent, name) = table.rsplit_once('.').unwrap_or(("", table));
             assert!(table.is_empty() || of(parent).iter().any(|(key, _)| *key == name), "{table}");
             for (key, line) in *keys {

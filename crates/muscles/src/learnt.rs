@@ -97,6 +97,12 @@ impl Place {
     pub(crate) fn new(file: Arc<SourceFile>, name: Range<usize>, values: Vec<Range<usize>>) -> Self {
         Self { file: Some(file), name, values }
     }
+
+    /// What is wrong at the name; none without a file.
+    pub(crate) fn error(&self, what: String, instead: String) -> Option<FileError> {
+        let file = self.file.as_ref()?;
+        Some(FileError::at(&file.origin, &file.text, self.name.clone(), what, instead))
+    }
 }
 
 /// Whether TOML takes it as a key without quotes.

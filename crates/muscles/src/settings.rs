@@ -164,6 +164,11 @@ impl<'a> Settings<'a> {
         Settings { span: self.value_span(key), title: title.into(), ..self }
     }
 
+    /// What messages call it.
+    pub(crate) fn title(&self) -> &str {
+        &self.title
+    }
+
     /// The name and the text of the file.
     pub(crate) fn source(&self) -> (&'a str, &'a str) {
         (self.origin, self.text)
@@ -217,7 +222,7 @@ impl<'a> Settings<'a> {
     pub(crate) fn parsed<T>(
         &self,
         name: &str,
-        parse: fn(&str) -> Result<T, UnitError>,
+        parse: impl Fn(&str) -> Result<T, UnitError>,
     ) -> Result<Option<T>, FileError> {
         let Some(value) = self.get(name) else { return Ok(None) };
         let text = self.number(name, value)?;
