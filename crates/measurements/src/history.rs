@@ -76,7 +76,8 @@ impl Data {
             let shortening = self.shortening();
             let mut loops: Vec<Loops> = vec![Loops::default(); self.specimens().len()];
             for (sweep, stretches) in self.paths() {
-                self.follow(sweep, stretches, &shortening, self.contraction_per_shortening(l0), &mut history);
+                let contraction = self.contraction_per_shortening(sweep.specimen, l0);
+                self.follow(sweep, stretches, &shortening, contraction, &mut history);
                 if let Some(loops) = loops.get_mut(sweep.specimen as usize) {
                     loops.count(sweep, stretches, &shortening, self.structure.band.width, &mut history.cycle);
                 }

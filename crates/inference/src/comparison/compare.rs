@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::comparison::analysis::{Analysis, Climbed, Options};
 use crate::comparison::document::{Comparison, DataSummary, NoiseFloor};
+use crate::comparison::specimens::of_specimens;
 use crate::comparison::{loops, residuals, rivals, stack};
 use crate::error::InferenceError;
 use crate::fit::document::Fit;
@@ -17,7 +18,8 @@ use crate::fit::document::Fit;
 /// See [`InferenceError`]: too few rows, a muscle that doesn't match, an effect that doesn't fit the muscle or the data.
 pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
     // On a thread of the pool: small evaluations aren't handed over to it one by one.
-    rayon::scope(|_| compared(data, muscle, options, None))
+    let data = of_specimens(data, muscle)?;
+    rayon::scope(|_| compared(&data, muscle, options, None))
 }
 
 /// The same with the numbers of the last rung about known, of a model with the same effects.
@@ -109,7 +111,8 @@ pub struct Fitting {
 /// # Errors
 /// As [`compare`].
 pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
-    rayon::scope(|_| fitted(data, muscle, options))
+    let data = of_specimens(data, muscle)?;
+    rayon::scope(|_| fitted(&data, muscle, options))
 }
 
 fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {

@@ -152,7 +152,7 @@ pub(crate) fn known_model(
     known: &[(Arc<dyn Effect>, Vec<f64>)],
     specimens: &[String],
 ) -> Result<Model, InferenceError> {
-    let mut model = Model::new(muscle).for_specimens(specimens);
+    let mut model = Model::new(muscle).for_specimens(specimens)?;
     for (effect, values) in known {
         model = model.with(effect, Some(values))?;
     }
