@@ -20,6 +20,7 @@ mod model;
 mod parameter;
 mod record;
 mod row;
+mod specimen;
 mod warm;
 
 pub use equilibrium::{Equilibrium, EquilibriumDocument};
@@ -29,4 +30,5 @@ pub use extended::{Extended, ExtendedError};
 pub use model::{AtRest, Chosen, Model};
 pub use parameter::ModelParameter;
 pub use record::Record;
+pub use specimen::specimen;
 pub use warm::Warm;

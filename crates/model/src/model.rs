@@ -134,8 +134,7 @@ impl Model {
         });
         for copy in 0..copies {
             let muscle = if each_specimen { &self.bodies[self.body_of[copy]].muscle } else { &self.muscle };
-            for (i, card) in effect.parameters().into_iter().enumerate() {
-                let number = card.of(muscle);
+            for (i, number) in effect.parameters().into_iter().map(|card| card.of(muscle)).enumerate() {
                 model.parameters.push(ModelParameter {
                     effect: card.name.to_owned(),
                     name: number.name.to_owned(),
@@ -387,7 +386,9 @@ fn in_proportion(
 ) -> Result<Reshaped, MuscleError> {
     for &parameter in numbers {
         let both = stated.get(parameter).filter(|v| *v != 0.0).zip(own.get(parameter));
-        let Some((stated, own)) = both.filter(|(stated, own)| stated.to_bits() != own.to_bits()) else { continue };
+        let Some((stated, own)) = both.filter(|(stated, own)| stated.to_bits() != own.to_bits()) else {
+            continue;
+        };
         let (Some(set), Some(found)) = (changed.get(parameter), reshaped.muscle.get(parameter)) else {
             continue;
         };

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::comparison::analysis::{Analysis, Climbed, Options};
 use crate::comparison::document::{Comparison, DataSummary, NoiseFloor};
-use crate::comparison::specimens::of_specimens;
+use crate::comparison::specimens::{note, of_specimens};
 use crate::comparison::{loops, residuals, rivals, stack};
 use crate::error::InferenceError;
 use crate::fit::document::Fit;
@@ -123,9 +123,11 @@ fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, In
     let climbed = analysis.climb(options.effects.len(), None)?;
     let rmse_n = residuals::summary(&analysis, &climbed.force).rmse;
     let Climbed { prepared, theta, fit, force } = climbed;
+    let mut fit = fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force));
+    fit.warnings.extend(note(data, muscle));
     Ok(Fitting {
         model: prepared.model,
-        fit: fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force)),
+        fit,
         data: analysis.summary(),
         before_rmse_n: residuals::summary(&analysis, &base.force).rmse,
         rmse_n,
