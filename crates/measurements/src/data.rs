@@ -209,8 +209,9 @@ impl Data {
         self
     }
 
-    /// Unpressurised length of a specimen, by its place.
-    fn length_of(&self, specimen: u32, l0: f64) -> f64 {
+    /// Unpressurised length of a specimen \[m\], by its place in [`Data::specimens`]; `l0` where it has none of its own.
+    #[must_use]
+    pub fn length_of(&self, specimen: u32, l0: f64) -> f64 {
         self.lengths.get(specimen as usize).copied().flatten().unwrap_or(l0)
     }
 

@@ -78,9 +78,12 @@ pub fn simulate(
         check_needs(&chosen.effect, &done.record)?;
     }
     let rig = rig(model.muscle(), protocol, seed)?;
-    let length = |name: &String| model.muscle().of_specimen(name).unwrap_or(model.muscle().clone()).length();
-    let lengths = model.specimens().iter().map(|name| length(name).si()).collect();
-    let csv = Readings { protocol, done: &done, rig, lengths, seed }.csv();
+    let names: Vec<&str> = (0..done.data.specimens().len())
+        .map(|i| model.specimens().get(i).unwrap_or(&done.data.specimens()[i]).as_str())
+        .collect();
+    let length = |name: &&str| model.muscle().of_specimen(name).unwrap_or(model.muscle().clone()).length();
+    let lengths = names.iter().map(|name| length(name).si()).collect();
+    let csv = Readings { protocol, done: &done, rig, names, lengths, seed }.csv();
     let data = Data::from_csv(&csv, "data.csv").map_err(|error| InferenceError::Protocol {
         what: format!("the simulated readings make no data: {error}"),
         instead: "check the noise of the protocol".to_owned(),
@@ -249,7 +252,8 @@ struct Readings<'a> {
     protocol: &'a Protocol,
     done: &'a Done,
     rig: RigReadings,
-    /// Of the specimens \[m\].
+    /// Of the specimens, and their lengths \[m\].
+    names: Vec<&'a str>,
     lengths: Vec<f64>,
     seed: u64,
 }
@@ -275,7 +279,7 @@ impl Readings<'_> {
                 }
                 if several {
                     let specimen = self.done.data.specimen()[row] as usize;
-                    let _ = write!(text, "{},", self.done.data.specimens()[specimen]);
+                    let _ = write!(text, "{},", self.names[specimen]);
                 }
                 let _ = write!(text, "{},", decimal(pressure / 1e5, DECIMALS[1]));
                 let _ = write!(text, "{},", decimal(100.0 * contraction, DECIMALS[2]));
