@@ -39,6 +39,7 @@ mod error;
 mod fault;
 mod file;
 mod file_error;
+mod file_kind;
 mod instrument;
 mod keys;
 mod learnt;

@@ -3,32 +3,18 @@
 use crate::dimension::Dimension;
 use crate::file::read;
 use crate::file_error::FileError;
+pub use crate::file_kind::FileKind;
+use crate::file_kind::MOST_BYTES;
 use crate::muscle::Muscle;
 use crate::presets::{PRESETS, PresetError, preset};
 pub use crate::units::shortened;
 use crate::units::{self, Quantity, UnitError};
 use std::borrow::Cow;
 use std::fmt::Display;
-use std::fs::File;
-use std::io::{ErrorKind, Read};
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// Most bytes of a settings file.
-const MOST_BYTES: usize = 1 << 20;
-
-/// What messages call a kind of settings file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FileKind {
-    /// What the file is, such as "protocol".
-    pub name: &'static str,
-    /// What such a file may be called, such as "protocol.toml".
-    pub file: &'static str,
-    /// A line of it with a unit, such as `period = "50 s"`.
-    pub line: &'static str,
-}
 
 /// The keys of a table, each with a line that shows how it is written.
 pub type Keys = &'static [(&'static str, &'static str)];
@@ -67,53 +53,6 @@ pub struct Settings<'a> {
 #[derive(Debug, Clone, Copy)]
 pub struct Setting<'a> {
     value: &'a Spanned<DeValue<'a>>,
-}
-
-impl FileKind {
-    /// The text of such a file.
-    ///
-    /// # Errors
-    /// If the file can't be read, is a folder, is larger than 1 MiB or is not UTF-8. The message is complete.
-    pub fn read(self, path: &Path) -> Result<String, FileError> {
-        let origin = path.display().to_string();
-        let failed = |what: &str, instead: String| FileError::whole(&origin, what, instead);
-        if path.is_dir() {
-            let instead = format!("name a file in it, such as `{}`", path.join(self.file).display());
-            return Err(failed(&format!("this is a directory, not a {} file", self.name), instead));
-        }
-        let unreadable = |error: std::io::Error| match error.kind() {
-            ErrorKind::NotFound => failed("there is no such file", similar_file(path)),
-            ErrorKind::PermissionDenied => {
-                failed("the file may not be read", "check its permissions, or copy it".to_owned())
-            }
-            _ => failed(
-                &format!("the file cannot be read: {error}"),
-                format!("name a {} file, such as `{}`", self.name, self.file),
-            ),
-        };
-        let mut bytes = Vec::new();
-        let file = File::open(path).map_err(unreadable)?;
-        file.take(MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-        // Before the encoding: what is cut off may end within a character.
-        if bytes.len() > MOST_BYTES {
-            return Err(self.too_large(&origin));
-        }
-        String::from_utf8(bytes).map_err(|error| {
-            let at = error.utf8_error().valid_up_to();
-            // Up to there the bytes are valid, so the replacement character stands exactly there.
-            let text = String::from_utf8_lossy(error.as_bytes());
-            let what = format!("byte {at} is not UTF-8 text");
-            let instead = "save the file as plain text with the encoding UTF-8";
-            FileError::at(&origin, &text, at..at + 1, what, instead)
-        })
-    }
-
-    fn too_large(self, origin: &str) -> FileError {
-        let what = format!("the file is larger than 1 MiB, so it is no {} file", self.name);
-        let instead =
-            format!("name a {} file: some ten lines of TOML (measured data go into a CSV file)", self.name);
-        FileError::whole(origin, what, instead)
-    }
 }
 
 impl<'t> Document<'t> {
@@ -526,20 +465,6 @@ pub fn nearest<'n>(word: &str, names: impl Iterator<Item = &'n str>) -> Option<&
     let slips = |name: &str| strsim::damerau_levenshtein(&plain(name), &word);
     let closest = names.iter().min_by_key(|name| slips(name)).filter(|name| slips(name) <= length / 3);
     closest.or_else(|| names.iter().find(|name| length >= 4 && plain(name).starts_with(&word))).copied()
-}
-
-/// The TOML file beside the missing one whose name is nearest.
-fn similar_file(path: &Path) -> String {
-    let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let listed = std::fs::read_dir(directory).into_iter().flatten().flatten();
-    let mut names: Vec<String> = listed.filter_map(|entry| entry.file_name().into_string().ok()).collect();
-    names.retain(|name| Path::new(name).extension().is_some_and(|extension| extension == "toml"));
-    names.sort();
-    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
-    match nearest(&wanted, names.iter().map(String::as_str)) {
-        Some(name) => format!("did you mean `{}`?", directory.join(name).display()),
-        None => "check the path and the working directory".to_owned(),
-    }
 }
 
 /// The commonest slip: `length = 110 mm` without quotes.
