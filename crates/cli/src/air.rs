@@ -162,7 +162,7 @@ impl AirCommand {
 
 impl Common {
     fn muscle(&self) -> Result<(String, Extended), Failure> {
-        let (muscle, extended) = extended(&self.muscle, self.effects.as_deref())?;
+        let (muscle, extended) = extended(&self.muscle, self.effects.as_deref(), None)?;
         Ok((muscle.name().to_owned(), extended))
     }
 

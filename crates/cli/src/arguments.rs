@@ -2,9 +2,10 @@
 
 use bulge_effects::{Catalogue, Effect, known};
 use bulge_fibre::{Approach, FibreError};
-use bulge_model::{Extended, ExtendedError};
+use bulge_model::{Extended, ExtendedError, specimen};
+use bulge_muscles::settings::nearest;
 use bulge_muscles::units::Quantity;
-use bulge_muscles::{Muscle, PRESETS, Pressure, preset, read, units};
+use bulge_muscles::{Muscle, PRESETS, Pressure, Specimen, preset, read, units};
 use clap::ValueEnum;
 use std::path::Path;
 use std::sync::Arc;
@@ -48,12 +49,36 @@ pub(crate) fn muscle(name: &str) -> Result<Muscle, Failure> {
     Ok(read(name)?)
 }
 
-/// A muscle with the effects that its file states, from the built-in ones and the user's own.
-pub(crate) fn extended(name: &str, own: Option<&Path>) -> Result<(Muscle, Extended), Failure> {
-    let muscle = muscle(name)?;
-    let known = known(&muscle, &catalogue(own)?)?;
+/// A muscle, or one of its specimens, with the effects that its file states, from the built-in ones and the user's own.
+pub(crate) fn extended(
+    name: &str,
+    own: Option<&Path>,
+    of: Option<&str>,
+) -> Result<(Muscle, Extended), Failure> {
+    let mut muscle = muscle(name)?;
+    let mut known = known(&muscle, &catalogue(own)?)?;
+    if let Some(of) = of {
+        check_specimen(&muscle, of)?;
+        (muscle, known) = specimen(&muscle, of, &known)?;
+    }
     let extended = Extended::new(&muscle, &known)?;
     Ok((muscle, extended))
+}
+
+/// Refuses the name of a specimen that the muscle doesn't state.
+fn check_specimen(muscle: &Muscle, name: &str) -> Result<(), Failure> {
+    let names: Vec<&str> = muscle.specimens().iter().map(Specimen::name).collect();
+    if names.contains(&name) {
+        return Ok(());
+    }
+    let stated = match (nearest(name, names.iter().copied()), names.join(", ")) {
+        (Some(near), _) => format!("did you mean `{near}`?"),
+        (None, all) if all.is_empty() => {
+            format!("{} states none, such as `[specimens.short]` with `length = \"60 mm\"`", muscle.name())
+        }
+        (None, all) => format!("{} states {all}", muscle.name()),
+    };
+    Err(Failure::Value { option: "--specimen", what: format!("there is no specimen `{name}`: {stated}") })
 }
 
 /// A quantity with its unit.

@@ -50,6 +50,9 @@ pub(crate) struct CurveCommand {
     /// Number of frames of the time series
     #[arg(long, default_value_t = 41)]
     frames: usize,
+    /// Specimen of the muscle file, where `[specimens.NAME]` gives it numbers of its own
+    #[arg(long, value_name = "NAME")]
+    specimen: Option<String>,
     /// Your own effects, where the muscle file states them
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
@@ -64,7 +67,7 @@ impl CurveCommand {
             let what = "characteristics come from the closed form and from shooting: write a case for `bulge membrane`".to_owned();
             return Err(Failure::Value { option: "--method", what });
         }
-        let (_, extended) = extended(&self.muscle, self.effects.as_deref())?;
+        let (_, extended) = extended(&self.muscle, self.effects.as_deref(), self.specimen.as_deref())?;
         let muscle = extended.muscle().clone();
         let pressures: Vec<Pressure> = list("--pressure", &self.pressure)?;
         self.check()?;

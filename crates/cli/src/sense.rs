@@ -79,7 +79,7 @@ pub(crate) struct SenseCommand {
 
 impl SenseCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        let (muscle, extended) = extended(&self.muscle, self.effects.as_deref())?;
+        let (muscle, extended) = extended(&self.muscle, self.effects.as_deref(), None)?;
         let pressure = quantity::<Pressure>("--pressure", &self.pressure)?;
         let [from, to] = range::<Ratio>("--contraction", &self.contraction)?;
         let range = Range { from, to, points: self.points };

@@ -53,6 +53,9 @@ pub(crate) struct ShapeCommand {
     /// Circumference of the unfolded cloth for the pleats, such as "300 mm" [default: just unfolded at the largest radius]
     #[arg(long, requires = "vtk")]
     cloth: Option<String>,
+    /// Specimen of the muscle file, where `[specimens.NAME]` gives it numbers of its own
+    #[arg(long, value_name = "NAME")]
+    specimen: Option<String>,
     /// Your own effects, where the muscle file states them
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
@@ -75,7 +78,7 @@ pub(crate) enum Surface {
 
 impl ShapeCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        let (stated, extended) = extended(&self.muscle, self.effects.as_deref())?;
+        let (stated, extended) = extended(&self.muscle, self.effects.as_deref(), self.specimen.as_deref())?;
         let muscle = extended.muscle().clone();
         let pressure: Pressure = quantity("--pressure", &self.pressure)?;
         let given = self.given()?;

@@ -279,6 +279,11 @@ pub trait Effect: Debug + Send + Sync {
     /// With the parameters at their `off` values nothing may change, bit for bit.
     fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>);
 
+    /// Whether it comes anew with each mounting, so that specimens that differ have each their own numbers: the zero of an instrument.
+    fn is_of_mounting(&self) -> bool {
+        false
+    }
+
     /// How many numbers it keeps along a sweep.
     fn memory(&self) -> usize {
         0

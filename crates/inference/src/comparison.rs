@@ -12,4 +12,5 @@ pub(crate) mod requirements;
 pub(crate) mod residuals;
 pub(crate) mod rivals;
 pub(crate) mod rows;
+pub(crate) mod specimens;
 pub(crate) mod stack;

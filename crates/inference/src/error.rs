@@ -1,7 +1,7 @@
 //! Why a comparison or a fit can't be made.
 
 use bulge_model::ModelError;
-use bulge_muscles::Fault;
+use bulge_muscles::{Fault, FileError};
 
 /// What went wrong.
 #[derive(Debug, thiserror::Error)]
@@ -12,6 +12,9 @@ pub enum InferenceError {
         /// Why they were left out.
         left_out: String,
     },
+    /// The muscle states other specimens than were measured.
+    #[error(transparent)]
+    Specimens(Box<FileError>),
     /// More numbers than rows.
     #[error("{numbers} numbers can't be fitted to {rows} rows; measure more, or fit fewer effects at once")]
     TooFewRows {

@@ -9,6 +9,7 @@ use bulge_inference::{
 use bulge_measurements::Data;
 use bulge_model::Model;
 use bulge_muscles::{Muscle, from_toml};
+use std::fmt::Write;
 
 const BRAID: &str = r#"
 name = "braid"
@@ -217,4 +218,53 @@ fn more_rows_and_cycles_never_hurt_the_law_of_the_noise() {
         assert!((0.8..1.2).contains(&ratio), "{rows} rows, {cycles} cycles: {:?}", found.noise);
         assert_eq!(names(&found), hidden.iter().map(|(name, _)| *name).collect::<Vec<_>>());
     }
+}
+
+/// Clamped braids of some lengths \[mm\], diagnosed as cylinders.
+fn end_taper_of(lengths: &[u32]) -> Diagnosis {
+    let catalogue = Catalogue::builtin();
+    let file = |length: u32| BRAID.replace("250 mm", &format!("{length} mm"));
+    let mut text = String::new();
+    let mut tables = file(lengths[0]).replace("clamped", "cylinder");
+    let loops =
+        Block { path: Path::Triangle, rows: 24, ..Block::loops(vec![2e5, 3e5, 4e5], [0.02, 0.14], 40.0) };
+    for (i, length) in lengths.iter().enumerate() {
+        let model = Model::new(&from_toml(&file(*length), "b").unwrap());
+        let model = model.with(catalogue.find("coulomb-friction").unwrap(), None).unwrap();
+        let noise = ReadingNoise { force_n: 2.0, ..ReadingNoise::default() };
+        let found =
+            simulate(&model, &[3.0], &Protocol { noise, ..Protocol::new(vec![loops.clone()]) }, 5).unwrap();
+        for (row, line) in found.csv.lines().filter(|line| !line.starts_with('#')).enumerate() {
+            let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+            match row {
+                0 if i > 0 => continue,
+                0 => fields.push("specimen".to_owned()),
+                _ => {
+                    fields[1] = format!("{i}-{}", fields[1]);
+                    fields.push(format!("l{length}"));
+                }
+            }
+            text.push_str(&(fields.join(",") + "\n"));
+        }
+        let _ = write!(tables, "[specimens.l{length}]\nlength = \"{length} mm\"\n");
+    }
+    let data = Data::from_csv(&text, "lengths.csv").unwrap();
+    let muscle = from_toml(&tables, "braids.toml").unwrap();
+    let known = vec![(std::sync::Arc::clone(catalogue.find("coulomb-friction").unwrap()), vec![3.0])];
+    let base = Options { known, ..Options::new(catalogue, Vec::new()) };
+    diagnose(&data, &muscle, &DiagnoseOptions::new(base)).unwrap()
+}
+
+#[test]
+fn end_effects_show_in_several_lengths() {
+    // The nearest rival is nearer than by the square root of the number of rows: a factor of force suits one length, and none suits three.
+    let separation = |lengths: &[u32]| {
+        let diagnosis = end_taper_of(lengths);
+        assert_eq!(names(&diagnosis), ["end-taper"], "{lengths:?}");
+        let nearest = diagnosis.missing[0].rivals.iter().map(|rival| rival.separation);
+        nearest.fold(f64::INFINITY, f64::min)
+    };
+    let (one, three) = (separation(&[250]), separation(&[250, 120, 60]));
+    println!("the nearest rival of end-taper: {one:.1} sigma away with one length, {three:.1} with three");
+    assert!(three > 2.0 * one, "{three} sigma with three lengths, {one} with one");
 }

@@ -255,3 +255,99 @@ fn an_effect_that_follows_the_noise_does_not_lower_the_held_out_error() {
     let floor = comparison.noise_floor.unwrap();
     assert!((floor.sd_n / 3.0 - 1.0).abs() < 0.15, "{floor:?}");
 }
+
+/// Three lengths of one hose, each simulated as a muscle of its own: zeros of length \[m\] and force \[N\] of each mounting.
+const HOSES: [(&str, f64, f64, f64); 3] =
+    [("short", 0.06, 3e-4, 1.5), ("middle", 0.12, -4e-4, -2.0), ("long", 0.25, 2e-4, 0.5)];
+
+fn hose(ends: &str) -> Muscle {
+    let mut text = BRAIDED.replace("cylinder", ends);
+    text.push_str(
+        "[instruments]\nforce = { noise = \"1 N\", zero = \"2 N\" }\nlength = { zero = \"0.5 mm\" }\n",
+    );
+    for (name, length, ..) in HOSES {
+        let _ = write!(text, "[specimens.{name}]\nlength = \"{} mm\"\n", 1e3 * length);
+    }
+    muscle(&text)
+}
+
+/// Lengths and forces of the hoses, clamped, with rubber of 0.2 MPa.
+fn of_hoses(which: &[&str], ends: &str, sd: f64) -> Data {
+    let stated = hose(ends);
+    let mut csv = String::from("time [s],sweep,specimen,pressure [Pa],length [m],force [N]\n");
+    let (mut noise, mut sweep) = (Noise(7), 0);
+    for (name, length, zero, offset) in HOSES.iter().filter(|(name, ..)| which.contains(name)) {
+        let mut model = Model::new(&stated.of_specimen(name).unwrap());
+        let truth = [("bladder-elasticity", 2e5), ("length-zero-error", *zero), ("force-offset", *offset)];
+        for (effect, value) in truth {
+            model = model.with(&effects(&[effect])[0], Some(&[value])).unwrap();
+        }
+        for bar in [3.0, 4.0, 5.0] {
+            sweep += 1;
+            let moment = |i: i32| {
+                let (back, direction) = if i < 12 { (i, 1.0) } else { (23 - i, -1.0) };
+                let moment = Moment::at_rest(bar * 1e5, 0.01 + 0.01 * f64::from(back));
+                Moment { direction, begins: i == 0, ..moment }
+            };
+            let moments: Vec<Moment> = (0..24).map(moment).collect();
+            let record =
+                Record::from_moments(moments.clone(), vec![0.0; 24], std::iter::once(0..24).collect())
+                    .unwrap();
+            let force = model.evaluate(&record, &model.start(), &Wanted::default()).unwrap().force;
+            for (i, (moment, force)) in moments.iter().zip(force).enumerate() {
+                let (time, l) = (100 * sweep + i, length * (1.0 - moment.contraction));
+                let force = force + sd * noise.normal();
+                let _ = writeln!(csv, "{time},{sweep},{name},{},{l},{force}", moment.pressure);
+            }
+        }
+    }
+    Data::from_csv(&csv, "hoses.csv").unwrap()
+}
+
+#[test]
+fn three_lengths_share_their_rubber_and_have_zeros_of_their_own() {
+    let data = of_hoses(&["short", "middle", "long"], "clamped", 1.0);
+    let muscle = hose("clamped");
+    let found = fitted(&data, &muscle, &["bladder-elasticity"]);
+    let (modulus, [low, high]) = value(&found.fit, "bladder-elasticity");
+    assert!(low <= 0.2 && 0.2 <= high && (modulus / 0.2 - 1.0).abs() < 0.03, "{modulus} in {low} to {high}");
+    assert!((found.rmse_n - 1.0).abs() < 0.15, "{}", found.rmse_n);
+    for (name, _, zero, offset) in HOSES {
+        for (effect, truth) in [("length-zero-error", 1e3 * zero), ("force-offset", offset)] {
+            let own =
+                |p: &&bulge_inference::Fitted| p.effect == effect && p.specimen.as_deref() == Some(name);
+            let p = found.fit.parameters.iter().find(own).unwrap();
+            let sd = (p.high - p.low) / 3.92;
+            assert!(p.nuisance && (p.value - truth).abs() < 3.5 * sd, "{name} {effect}: {truth} {p:?}");
+        }
+    }
+    // What is learnt keeps the specimens.
+    let extension = extended(&found.model, &found.fit).unwrap();
+    assert_eq!(extension.muscle.specimens(), muscle.specimens());
+    let back = from_toml(&to_toml(&extension.muscle), "learnt.toml").unwrap();
+    assert_eq!(back, extension.muscle);
+    let comparison = compare(&data, &back, &options(&[])).unwrap();
+    assert!((comparison.ladder[0].rmse_n - found.rmse_n).abs() < 0.01, "{}", comparison.ladder[0].rmse_n);
+    assert!(comparison.by.iter().any(|by| by.variable == "specimen"));
+    // Without their lengths they are no hoses of 250 mm.
+    assert!(compare(&data, &muscle.without_specimens(), &options(&[])).is_err());
+}
+
+#[test]
+fn specimens_of_the_muscle_and_of_the_data_must_be_the_same() {
+    let data = of_hoses(&["short", "middle"], "clamped", 1.0);
+    let message = compare(&data, &hose("clamped"), &options(&[])).unwrap_err().to_string();
+    assert!(
+        message.contains("muscle.toml:") && message.contains("no row of the data is of the specimen `long`")
+    );
+    assert!(message.contains("the data have `short`, `middle`"), "{message}");
+    let of = |name: &str, length: f64| {
+        let numbers = vec![(bulge_muscles::Parameter::Length, length)];
+        muscle(&BRAIDED.replace("cylinder", "clamped").replace("250 mm", "120 mm"))
+            .with_specimen(name, numbers)
+    };
+    let comparison = compare(&data, &of("short", 0.06).unwrap(), &options(&[])).unwrap();
+    assert!(comparison.warnings[0].contains("stands for the specimen `middle`"), "{:?}", comparison.warnings);
+    let message = compare(&data, &of("short", 0.02).unwrap(), &options(&[])).unwrap_err().to_string();
+    assert!(message.contains("of the 20.0 mm of the specimen `short` of trial"), "{message}");
+}

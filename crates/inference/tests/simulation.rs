@@ -3,7 +3,9 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use bulge_effects::Catalogue;
-use bulge_inference::{Block, Path, Protocol, ReadingNoise, ReadingSteps, RigErrors, Simulation, simulate};
+use bulge_inference::{
+    Block, Path, Protocol, ReadingNoise, ReadingSteps, RigErrors, Simulation, simulate, simulate_with,
+};
 use bulge_model::Model;
 use bulge_muscles::{Muscle, Quantity, from_toml, to_toml};
 
@@ -228,4 +230,26 @@ fn an_effect_that_a_protocol_can_not_show_is_refused() {
     let map = Protocol::new(vec![Block::map(vec![2e5], [0.01, 0.2], 20)]);
     let message = simulate(&model, &theta, &map, 1).unwrap_err().to_string();
     assert!(message.contains("`coulomb-friction` needs a path"), "{message}");
+}
+
+#[test]
+fn specimens_of_the_muscle_are_simulated_by_their_names() {
+    let muscle = muscle("[specimens.wide]\nradius = \"11 mm\"\n[specimens.short]\nlength = \"100 mm\"\n");
+    let block = |specimens| Block { specimens, ..loops(30, 1) };
+    let of = |specimens| {
+        simulate_with(&muscle, &Catalogue::builtin(), &Protocol::new(vec![block(specimens)]), &[], 1)
+    };
+    let both = of(2).unwrap();
+    assert_eq!(both.data.specimens(), ["wide", "short"]);
+    assert_eq!(both.muscle.specimens(), muscle.specimens());
+    for (row, moment) in both.exact.moments().iter().enumerate() {
+        let factor = if moment.specimen == 0 { 1.21 } else { 1.0 };
+        let expected = factor * force(moment.pressure, moment.contraction);
+        assert!((both.exact.force()[row] - expected).abs() < 1e-9 * expected, "{row}");
+    }
+    // As stated, where the protocol has one specimen.
+    let one = of(1).unwrap();
+    assert!(one.muscle.specimens().is_empty() && one.data.specimens() == ["1"]);
+    let message = of(3).err().unwrap().to_string();
+    assert!(message.contains("has 3 specimens, but trial states 2; write `specimens = 2`"), "{message}");
 }

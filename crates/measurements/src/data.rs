@@ -48,6 +48,8 @@ pub struct Data {
     lines: Vec<u32>,
     specimen: Vec<u32>,
     specimens: Vec<String>,
+    /// Unpressurised length of each specimen \[m\], where it is not the muscle's; empty if none has its own.
+    lengths: Vec<Option<f64>>,
     sweeps: Vec<Sweep>,
     pub(crate) structure: Structure,
 }
@@ -110,6 +112,7 @@ impl Data {
             lines: source.table.lines,
             specimen: Vec::new(),
             specimens: Vec::new(),
+            lengths: Vec::new(),
             sweeps: Vec::new(),
             structure: Structure {
                 stretches: Vec::new(),
@@ -207,11 +210,32 @@ impl Data {
         }
     }
 
-    /// What a shortening of 1 is as a contraction, for a muscle of length `l0`.
-    pub(crate) fn contraction_per_shortening(&self, l0: f64) -> f64 {
+    /// The same of specimens that have unpressurised lengths of their own \[m\]: where a length `l0` is asked for below, it is that of the others.
+    ///
+    /// ```
+    /// use bulge_measurements::Data;
+    /// let text = "pressure [bar], length [mm], force [N], specimen\n2, 60, 900, short\n2, 250, 900, long\n";
+    /// let data = Data::from_csv(text, "pull.csv")?.with_lengths(|name| (name == "short").then_some(0.06));
+    /// assert_eq!(data.contraction(0.25), [0.0, 0.0]);
+    /// # Ok::<(), bulge_measurements::MeasurementError>(())
+    /// ```
+    #[must_use]
+    pub fn with_lengths(mut self, of: impl Fn(&str) -> Option<f64>) -> Self {
+        self.lengths = self.specimens.iter().map(|name| of(name)).collect();
+        self
+    }
+
+    /// Unpressurised length of a specimen \[m\], by its place in [`Data::specimens`]; `l0` where it has none of its own.
+    #[must_use]
+    pub fn length_of(&self, specimen: u32, l0: f64) -> f64 {
+        self.lengths.get(specimen as usize).copied().flatten().unwrap_or(l0)
+    }
+
+    /// What a shortening of 1 is as a contraction, for a specimen of a muscle of length `l0`.
+    pub(crate) fn contraction_per_shortening(&self, specimen: u32, l0: f64) -> f64 {
         match &self.columns.motion {
             Trace::Contraction(_) => 1.0,
-            Trace::Length(_) => 1.0 / l0,
+            Trace::Length(_) => 1.0 / self.length_of(specimen, l0),
         }
     }
 
@@ -247,7 +271,11 @@ impl Data {
     pub fn contraction(&self, l0: f64) -> Vec<f64> {
         match &self.columns.motion {
             Trace::Contraction(values) => values.clone(),
-            Trace::Length(values) => values.iter().map(|length| 1.0 - length / l0).collect(),
+            Trace::Length(values) => {
+                let contraction =
+                    |(length, specimen): (&f64, &u32)| 1.0 - length / self.length_of(*specimen, l0);
+                values.iter().zip(&self.specimen).map(contraction).collect()
+            }
         }
     }
 

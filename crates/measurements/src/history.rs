@@ -80,7 +80,6 @@ impl Data {
         if history.is_path {
             let shortening = self.shortening();
             let mut loops: Vec<Loops> = vec![Loops::default(); self.specimens().len()];
-            let per_shortening = self.contraction_per_shortening(l0);
             for ((sweep, stretches), filling) in self.paths().zip(self.pressure_paths()) {
                 let is_isometric = sweep.kind == SweepKind::Isometric;
                 // What goes to and fro: the length, or the pressure where the length is held.
@@ -89,7 +88,8 @@ impl Data {
                 } else {
                     (stretches, &shortening[..], self.structure.band)
                 };
-                self.follow(sweep, driven, &shortening, per_shortening, &mut history);
+                let contraction = self.contraction_per_shortening(sweep.specimen, l0);
+                self.follow(sweep, driven, &shortening, contraction, &mut history);
                 if is_isometric {
                     history.direction[sweep.rows.clone()].fill(0.0);
                     history.rate[sweep.rows.clone()].fill(0.0);

@@ -35,6 +35,14 @@ pub enum ModelError {
         /// Why.
         source: Box<MuscleError>,
     },
+    /// The muscle can't have the numbers of a specimen.
+    #[error("specimen `{specimen}`: {source}")]
+    Specimen {
+        /// The specimen.
+        specimen: String,
+        /// Why.
+        source: Box<MuscleError>,
+    },
     /// An effect of the other kind of muscle.
     #[error("`{effect}` is an effect of {owner} muscles, and this one is {kind}; leave it out")]
     OtherKind {

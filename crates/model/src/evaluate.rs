@@ -34,9 +34,11 @@ const CHUNK: [usize; 2] = [256, 8];
 /// Evaluations that a lattice serves at least, where it is held.
 const HELD_FOR: usize = 4;
 
-/// Everything that stays the same for all rows of one evaluation.
+/// Everything that stays the same for all rows of one evaluation that are of one muscle.
 pub(crate) struct Run<'a> {
     pub(crate) model: &'a Model,
+    /// Whose equilibria it solves, of the model's muscles.
+    pub(crate) body: usize,
     pub(crate) theta: &'a [f64],
     pub(crate) setting: Setting,
     pub(crate) strands: Strands,
@@ -143,14 +145,16 @@ impl Model {
         slots: &mut Slots,
     ) -> Result<(Prediction, Vec<(usize, RowError)>), ModelError> {
         let counts = |row: usize| warm.is_none_or(|warm| warm.counts(row));
-        let mut run = self.run(record, theta, &wanted.parameters, &counts, slots)?;
-        run.within_fit = warm.is_some();
-        run.all_or_none = warm.is_some() && all_or_none;
-        let segments = run.segments(record);
+        let mut runs = self.runs(record, theta, &wanted.parameters, &counts, slots)?;
+        for run in &mut runs {
+            run.within_fit = warm.is_some();
+            run.all_or_none = warm.is_some() && all_or_none;
+        }
+        let segments = runs.iter().map(|run| run.segments(record)).max_by_key(Vec::len).unwrap_or_default();
         slots.fit(segments.iter().map(Range::len));
         let task = Task {
             record,
-            passes: Self::passes(theta, wanted, &run.shapes),
+            passes: Self::passes(theta, wanted, &runs[0].shapes),
             columns: wanted.parameters.len(),
             counts: &counts,
         };
@@ -159,13 +163,31 @@ impl Model {
             .par_iter()
             .zip(all.parts(&segments, task.columns))
             .zip(&mut slots.rows)
-            .map(|((rows, part), slots)| run.segment(&task, rows.clone(), part, slots))
+            .map(|((rows, part), slots)| segment(&runs, &task, rows.clone(), part, slots))
             .collect();
         Ok((all, failed.into_iter().flatten().collect()))
     }
 
+    /// One run for each of the muscles that the specimens are.
+    fn runs<'a>(
+        &'a self,
+        record: &Record,
+        theta: &'a [f64],
+        wanted: &[usize],
+        counts: &dyn Fn(usize) -> bool,
+        slots: &mut Slots,
+    ) -> Result<Vec<Run<'a>>, ModelError> {
+        slots.for_bodies(self.bodies.len());
+        let of_body = |body: usize| {
+            let own = |row: usize| self.body_of(record.moments()[row].specimen) == body;
+            self.run(body, record, theta, wanted, &|row| own(row) && counts(row), slots)
+        };
+        (0..self.bodies.len()).map(of_body).collect()
+    }
+
     fn run<'a>(
         &'a self,
+        body: usize,
         record: &Record,
         theta: &'a [f64],
         wanted: &[usize],
@@ -177,9 +199,10 @@ impl Model {
         }
         let mut run = Run {
             model: self,
+            body,
             theta,
-            setting: self.setting,
-            strands: Strands::of(self.muscle()),
+            setting: self.bodies[body].setting,
+            strands: Strands::of(&self.bodies[body].muscle),
             shapes: Vec::new(),
             equilibrium: None,
             lattice: None,
@@ -189,12 +212,13 @@ impl Model {
         if let Base::Law { .. } = self.base {
             return Ok(run);
         }
-        let (muscle, variables) = self.reshape(theta, wanted)?;
+        let (muscle, variables) = self.reshape(body, theta, wanted)?;
         if variables.len() > SHAPE {
             return Err(ModelError::TooManyShapes { count: variables.len(), most: SHAPE });
         }
-        let all = || (0..record.len()).collect();
-        let first = record.moments().first();
+        let own = |moment: &Moment| self.body_of(moment.specimen) == body;
+        let all = || (0..record.len()).filter(|row| own(&record.moments()[*row])).collect();
+        let first = record.moments().iter().find(|moment| own(moment));
         let no_problem = |source| ModelError::NoEquilibrium {
             rows: all(),
             pressure_pa: first.map_or(0.0, |m| m.pressure),
@@ -204,12 +228,12 @@ impl Model {
         let equilibrium = Self::equilibrium(&muscle, &variables).map_err(no_problem)?;
         // Lengths stay those stated: what an effect takes from them would else move without a derivative.
         let found = Setting::of(&muscle);
-        run.setting = Setting { fibres: found.fibres, has_bladder: found.has_bladder, ..self.setting };
+        run.setting = Setting { fibres: found.fibres, has_bladder: found.has_bladder, ..run.setting };
         run.strands = Strands::of(&muscle);
         run.shapes = variables.iter().map(|(index, _)| *index).collect();
         if equilibrium.is_costly() && record.len() > FEWEST_NODES {
-            let shape = |theta: &[f64]| self.reshape(theta, &[]).ok().map(|(muscle, _)| muscle);
-            run.lattice = slots.held_at(&muscle, theta, &run.shapes, shape);
+            let shape = |theta: &[f64]| self.reshape(body, theta, &[]).ok().map(|(muscle, _)| muscle);
+            run.lattice = slots.held_at(body, &muscle, theta, &run.shapes, shape);
             if run.lattice.is_none() {
                 run.lattice = run.solved(record, &muscle, &equilibrium, counts, slots);
             }
@@ -252,7 +276,9 @@ impl Model {
     pub(crate) fn rest(&self, theta: &[f64], moment: &Moment) -> Result<AtRest, ModelError> {
         let record = Record::from_moments(vec![*moment], vec![0.0], std::iter::once(0..1).collect());
         let Some(record) = record else { return Err(ModelError::Values { given: 0, expected: 1 }) };
-        let run = self.run(&record, theta, &[], &|_| true, &mut Slots::default())?;
+        let mut slots = Slots::default();
+        slots.for_bodies(self.bodies.len());
+        let run = self.run(self.body_of(moment.specimen), &record, theta, &[], &|_| true, &mut slots)?;
         let pass = Pass {
             theta: theta.iter().map(|v| Jet::from(*v)).collect(),
             pressure_lane: None,
@@ -301,10 +327,10 @@ impl Run<'_> {
         if lattice.needed() >= evaluations * counted().count() {
             return None;
         }
-        let lattice = lattice.solved(equilibrium, &mut slots.nodes);
+        let lattice = lattice.solved(equilibrium, &mut slots.nodes[self.body]);
         if slots.holds {
             let (shapes, theta) = (self.shapes.clone(), self.theta.to_vec());
-            slots.held =
+            slots.held[self.body] =
                 Some(Arc::new(Held { shapes, theta, muscle: muscle.clone(), lattice: lattice.clone() }));
         }
         Some(lattice)
@@ -381,7 +407,7 @@ impl Run<'_> {
             let pressure = (input.pressure * input.area / input.wall).value();
             let e = input.contraction.value();
             // The force is not known yet: p pi (3 r0)^2 is more than any muscle has at usable contractions.
-            let most = pressure * std::f64::consts::PI * (3.0 * self.model.setting.radius).powi(2);
+            let most = pressure * std::f64::consts::PI * (3.0 * self.setting.radius).powi(2);
             let give = (input.give_force.value() + input.give_tension.value()) * most;
             let spread = NORMAL[1].0 * input.spread.value().abs();
             (pressure, [e - spread + give.min(0.0), e + spread + give.max(0.0)])
@@ -398,46 +424,48 @@ impl Run<'_> {
     fn walks(&self) -> bool {
         self.within_fit && self.equilibrium.as_ref().is_some_and(|equilibrium| !equilibrium.is_costly())
     }
+}
 
-    fn segment(
-        &self,
-        task: &Task<'_>,
-        rows: Range<usize>,
-        mut part: Part<'_>,
-        slots: &mut [Option<Start>],
-    ) -> Vec<(usize, RowError)> {
-        let mut failed = Vec::new();
-        // Rows that don't count matter only for what they leave in the memory.
-        let (remembers, walks) = (self.remembers(), self.walks());
-        for (number, pass) in task.passes.iter().enumerate() {
-            let mut memory = self.memory();
-            let mut before: Option<usize> = None;
-            for (i, row) in rows.clone().enumerate() {
-                let (moment, counts) = (&task.record.moments()[row], (task.counts)(row));
-                if moment.begins {
-                    memory.iter_mut().flatten().for_each(|m| *m = Jet::from(0.0));
-                }
-                if !(counts || remembers) {
-                    continue;
-                }
-                if walks && slots[i].is_none() {
-                    slots[i] = before.and_then(|before| slots[before].clone());
-                }
-                before = Some(i);
-                match self.row(moment, pass, &mut memory, &mut slots[i]) {
-                    Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
-                    Err(error) if counts && number == 0 => {
-                        failed.push((row, error));
-                        if self.all_or_none {
-                            return failed;
-                        }
+fn segment(
+    runs: &[Run<'_>],
+    task: &Task<'_>,
+    rows: Range<usize>,
+    mut part: Part<'_>,
+    slots: &mut [Option<Start>],
+) -> Vec<(usize, RowError)> {
+    let mut failed = Vec::new();
+    // Rows that don't count matter only for what they leave in the memory.
+    let remembers = runs[0].remembers();
+    for (number, pass) in task.passes.iter().enumerate() {
+        let mut memory = runs[0].memory();
+        let mut before: Option<(usize, usize)> = None;
+        for (i, row) in rows.clone().enumerate() {
+            let (moment, counts) = (&task.record.moments()[row], (task.counts)(row));
+            let run = &runs[runs[0].model.body_of(moment.specimen)];
+            if moment.begins {
+                memory.iter_mut().flatten().for_each(|m| *m = Jet::from(0.0));
+            }
+            if !(counts || remembers) {
+                continue;
+            }
+            if slots[i].is_none() && run.walks() {
+                let same = before.filter(|(_, body)| *body == run.body);
+                slots[i] = same.and_then(|(before, _)| slots[before].clone());
+            }
+            before = Some((i, run.body));
+            match run.row(moment, pass, &mut memory, &mut slots[i]) {
+                Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
+                Err(error) if counts && number == 0 => {
+                    failed.push((row, error));
+                    if run.all_or_none {
+                        return failed;
                     }
-                    Ok(_) | Err(_) => {}
                 }
+                Ok(_) | Err(_) => {}
             }
         }
-        failed
     }
+    failed
 }
 
 fn failure(failed: Vec<(usize, RowError)>) -> ModelError {

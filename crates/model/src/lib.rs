@@ -21,6 +21,7 @@ mod parameter;
 mod prediction;
 mod record;
 mod row;
+mod specimen;
 mod strands;
 mod warm;
 
@@ -32,4 +33,5 @@ pub use model::{AtRest, Chosen, Model};
 pub use parameter::ModelParameter;
 pub use prediction::{Partly, Prediction};
 pub use record::Record;
+pub use specimen::specimen;
 pub use warm::Warm;

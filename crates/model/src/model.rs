@@ -1,8 +1,8 @@
 //! A model: a muscle (or a force law) with chosen effects, and the list of its numbers.
 
 use bulge_effects::law::{Coefficient, Law, LawGeometry, Role};
-use bulge_effects::{Effect, Group, Moment, Setting, Stage};
-use bulge_muscles::{Muscle, Parameter};
+use bulge_effects::{Effect, Group, Moment, Reshaped, Setting, Stage};
+use bulge_muscles::{Muscle, MuscleError, Parameter};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -36,15 +36,34 @@ pub struct Chosen {
 #[derive(Debug, Clone)]
 pub(crate) enum Base {
     Equilibrium,
-    Law { law: &'static Law, geometry: LawGeometry },
+    Law { law: &'static Law },
+}
+
+/// One of the muscles that the specimens are.
+#[derive(Debug, Clone)]
+pub(crate) struct Body {
+    pub(crate) muscle: Muscle,
+    /// Numbers that are not those of the muscle as stated.
+    own: Vec<Parameter>,
+    pub(crate) setting: Setting,
+    pub(crate) geometry: LawGeometry,
+}
+
+impl Body {
+    fn of(muscle: Muscle, own: Vec<Parameter>) -> Self {
+        let (setting, geometry) = (Setting::of(&muscle), LawGeometry::from(&muscle));
+        Self { muscle, own, setting, geometry }
+    }
 }
 
 /// A base law with effects.
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(crate) muscle: Muscle,
-    pub(crate) setting: Setting,
     pub(crate) base: Base,
+    /// The muscles that the specimens are, each once, and which of them each specimen is.
+    pub(crate) bodies: Vec<Body>,
+    pub(crate) body_of: Vec<usize>,
     pub(crate) effects: Vec<Chosen>,
     pub(crate) specimens: Vec<String>,
     parameters: Vec<ModelParameter>,
@@ -69,8 +88,9 @@ impl Model {
     pub fn new(muscle: &Muscle) -> Self {
         Self {
             muscle: muscle.clone(),
-            setting: Setting::of(muscle),
             base: Base::Equilibrium,
+            bodies: vec![Body::of(muscle.clone().without_specimens(), Vec::new())],
+            body_of: vec![0],
             effects: Vec::new(),
             specimens: vec!["1".to_owned()],
             parameters: Vec::new(),
@@ -85,7 +105,7 @@ impl Model {
         let mut model = Self::new(muscle);
         let geometry = LawGeometry::from(muscle);
         model.parameters = law_parameters(law, &geometry, values, free);
-        model.base = Base::Law { law, geometry };
+        model.base = Base::Law { law };
         model
     }
 
@@ -95,26 +115,26 @@ impl Model {
     /// If the muscle is of the other kind, or the effect is there already.
     pub fn with(&self, effect: &Arc<dyn Effect>, values: Option<&[f64]>) -> Result<Self, ModelError> {
         let card = effect.card();
-        if let Some(owner) = card.kind.filter(|kind| *kind != self.setting.kind) {
-            let kind = self.setting.kind.name();
+        if let Some(owner) = card.kind.filter(|kind| *kind != self.muscle.kind()) {
+            let kind = self.muscle.kind().name();
             return Err(ModelError::OtherKind { effect: card.name.to_owned(), owner: owner.name(), kind });
         }
         if self.effects.iter().any(|other| other.effect.card().name == card.name) {
             return Err(ModelError::Twice { effect: card.name.to_owned() });
         }
         let mut model = self.clone();
-        let cards: Vec<_> = effect.parameters().into_iter().map(|card| card.of(&self.muscle)).collect();
-        let each_specimen = card.group == Group::Specimen;
-        let copies = if each_specimen { self.specimens.len() } else { 1 };
+        let each_specimen = self.is_of_each_specimen(effect.as_ref());
+        let copies = self.copies(effect.as_ref());
         model.effects.push(Chosen {
             effect: Arc::clone(effect),
             fixed: values.is_some(),
             place: model.parameters.len(),
-            count: cards.len(),
+            count: effect.parameters().len(),
             each_specimen,
         });
         for copy in 0..copies {
-            for (i, number) in cards.iter().enumerate() {
+            let muscle = if each_specimen { &self.bodies[self.body_of[copy]].muscle } else { &self.muscle };
+            for (i, number) in effect.parameters().into_iter().map(|card| card.of(muscle)).enumerate() {
                 model.parameters.push(ModelParameter {
                     effect: card.name.to_owned(),
                     name: number.name.to_owned(),
@@ -137,13 +157,46 @@ impl Model {
         Ok(model)
     }
 
-    /// The same for several specimens, by name; to be called before effects are added.
-    #[must_use]
-    pub fn for_specimens(mut self, specimens: &[String]) -> Self {
-        if !specimens.is_empty() {
-            self.specimens = specimens.to_vec();
+    /// The same for several specimens, by name; to be called before effects are added. Each is the muscle with the numbers that are stated for it.
+    ///
+    /// # Errors
+    /// If the muscle can't have the numbers of a specimen.
+    pub fn for_specimens(mut self, specimens: &[String]) -> Result<Self, ModelError> {
+        if specimens.is_empty() {
+            return Ok(self);
         }
-        self
+        self.specimens = specimens.to_vec();
+        (self.bodies, self.body_of) = (Vec::new(), Vec::new());
+        for name in specimens {
+            let about = |source| ModelError::Specimen { specimen: name.clone(), source: Box::new(source) };
+            let muscle = self.muscle.of_specimen(name).map_err(about)?;
+            let same = self.bodies.iter().position(|body| body.muscle == muscle);
+            self.body_of.push(same.unwrap_or(self.bodies.len()));
+            if same.is_none() {
+                let differs = |p: &Parameter| muscle.get(*p) != self.muscle.get(*p);
+                let own = Parameter::ALL.into_iter().filter(differs).collect();
+                self.bodies.push(Body::of(muscle, own));
+            }
+        }
+        Ok(self)
+    }
+
+    /// Whether each specimen has its own numbers of an effect: it differs from specimen to specimen, or comes with the mounting of specimens that
+    /// differ.
+    fn is_of_each_specimen(&self, effect: &dyn Effect) -> bool {
+        effect.card().group == Group::Specimen
+            || effect.is_of_mounting() && self.specimens.len() > 1 && !self.muscle.specimens().is_empty()
+    }
+
+    /// How many times the numbers of an effect are there: once, or for each specimen.
+    #[must_use]
+    pub fn copies(&self, effect: &dyn Effect) -> usize {
+        if self.is_of_each_specimen(effect) { self.specimens.len() } else { 1 }
+    }
+
+    /// Which of the muscles that the specimens are a specimen is.
+    pub(crate) fn body_of(&self, specimen: u32) -> usize {
+        self.body_of[(specimen as usize).min(self.body_of.len() - 1)]
     }
 
     /// Names of the specimens.
@@ -208,16 +261,19 @@ impl Model {
     /// # Errors
     /// If the muscle can't have an effect, or not with these values.
     pub fn reshaped(&self, theta: &[f64]) -> Result<Muscle, ModelError> {
-        self.reshape(theta, &[]).map(|(muscle, _)| muscle)
+        let stated = Body::of(self.muscle.clone().without_specimens(), Vec::new());
+        self.moves(&stated, theta, &[]).map(|(muscle, _)| muscle)
     }
 
-    /// The muscle to solve, and for each of the `wanted` parameters that change it how they do.
+    /// The muscle to solve for one of the bodies, and for each of the `wanted` parameters that change it how they do.
     pub(crate) fn reshape(
         &self,
+        body: usize,
         theta: &[f64],
         wanted: &[usize],
     ) -> Result<(Muscle, Vec<(usize, ShapeVariable)>), ModelError> {
-        let (muscle, moves) = self.moves(theta, wanted)?;
+        let body = &self.bodies[body];
+        let (muscle, moves) = self.moves(body, theta, wanted)?;
         let exists = |moved: &[(Parameter, f64)], muscle: &Muscle| {
             let has = |p| muscle.is_stated(p) || muscle.get(p).is_some_and(|v| v != 0.0);
             !moved.is_empty() && moved.iter().all(|(p, _)| has(*p))
@@ -232,7 +288,7 @@ impl Model {
             let at = |step: f64| {
                 let mut nudged = theta.to_vec();
                 nudged[index] += step;
-                self.moves(&nudged, &[index])
+                self.moves(body, &nudged, &[index])
             };
             let (beside, moves) = at(BESIDE * usual)?;
             let moved =
@@ -252,12 +308,25 @@ impl Model {
     }
 
     /// The muscle to solve, and for each of the `wanted` parameters which of its numbers they move, as far as the effects say.
-    fn moves(&self, theta: &[f64], wanted: &[usize]) -> Result<(Muscle, Vec<Moved>), ModelError> {
-        let mut muscle = self.muscle.clone();
+    fn moves(
+        &self,
+        body: &Body,
+        theta: &[f64],
+        wanted: &[usize],
+    ) -> Result<(Muscle, Vec<Moved>), ModelError> {
+        let mut muscle = body.muscle.clone();
+        let mut stated = self.muscle.clone();
         let mut moved = Vec::new();
         for chosen in self.effects.iter().filter(|c| c.effect.card().stage == Stage::Shape) {
             let range = self.range(chosen, 0);
-            let reshaped = chosen.effect.reshape(&muscle, &theta[range.clone()]).map_err(about(chosen))?;
+            let reshape = |muscle: &Muscle| chosen.effect.reshape(muscle, &theta[range.clone()]);
+            let mut reshaped = reshape(&muscle).map_err(about(chosen))?;
+            if !body.own.is_empty() {
+                let of_stated = reshape(&stated).map_err(about(chosen))?.muscle;
+                let own = [&stated, &of_stated, &muscle];
+                reshaped = in_proportion(reshaped, &body.own, own).map_err(about(chosen))?;
+                stated = of_stated;
+            }
             muscle = reshaped.muscle;
             for index in range.clone().filter(|index| wanted.contains(index)) {
                 let of_index = reshaped.moves.iter().filter(|(i, _, _)| range.start + i == index);
@@ -275,8 +344,13 @@ impl Model {
         if self.law().is_some() {
             return Ok(false);
         }
-        let (muscle, _) = self.reshape(theta, &[])?;
-        Ok(Self::equilibrium(&muscle, &[]).is_ok_and(|equilibrium| equilibrium.is_costly()))
+        for body in 0..self.bodies.len() {
+            let (muscle, _) = self.reshape(body, theta, &[])?;
+            if Self::equilibrium(&muscle, &[]).is_ok_and(|equilibrium| equilibrium.is_costly()) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     pub(crate) fn equilibrium(
@@ -301,6 +375,37 @@ impl ModelParameter {
         let usual = (self.value - self.off).abs();
         if usual > 0.0 { usual } else { 1e-2 * (self.high - self.low) }
     }
+}
+
+/// An effect that says what a number of the muscle is (a radius, not its error) says so of the muscle as stated. A specimen that has another such
+/// number keeps its ratio to that of the muscle: `[stated, changed, own]` are the muscle as stated before and after the effect, and the specimen before.
+fn in_proportion(
+    mut reshaped: Reshaped,
+    numbers: &[Parameter],
+    [stated, changed, own]: [&Muscle; 3],
+) -> Result<Reshaped, MuscleError> {
+    for &parameter in numbers {
+        let both = stated.get(parameter).filter(|v| *v != 0.0).zip(own.get(parameter));
+        let Some((stated, own)) = both.filter(|(stated, own)| stated.to_bits() != own.to_bits()) else {
+            continue;
+        };
+        let (Some(set), Some(found)) = (changed.get(parameter), reshaped.muscle.get(parameter)) else {
+            continue;
+        };
+        if set.to_bits() != found.to_bits() {
+            continue;
+        }
+        reshaped.muscle = reshaped.muscle.with(parameter, own * (set / stated))?;
+        // Of a pleated muscle both are the radius that acts.
+        let radius =
+            |p| reshaped.muscle.is_pleated() && matches!(p, Parameter::Radius | Parameter::FittingRadius);
+        for (_, other, factor) in &mut reshaped.moves {
+            if *other == parameter || radius(*other) && radius(parameter) {
+                *factor *= own / stated;
+            }
+        }
+    }
+    Ok(reshaped)
 }
 
 pub(crate) fn about(chosen: &Chosen) -> impl Fn(bulge_muscles::MuscleError) -> ModelError {

@@ -10,6 +10,8 @@ pub struct Record {
     moments: Vec<Moment>,
     sweeps: Vec<Range<usize>>,
     specimens: Vec<String>,
+    /// Length of the muscle over that of each specimen; empty if all are of one length.
+    shortness: Vec<f64>,
     force: Vec<f64>,
     force_sd: Option<Vec<f64>>,
     is_path: bool,
@@ -23,6 +25,7 @@ impl Record {
         let history = data.history(l0);
         let sweeps: Vec<Range<usize>> = data.sweeps().iter().map(|sweep| sweep.rows.clone()).collect();
         let contraction = data.contraction(l0);
+        let shortness = (0_u32..).zip(data.specimens()).map(|(i, _)| l0 / data.length_of(i, l0)).collect();
         let mut moments = Vec::with_capacity(data.len());
         for sweep in &sweeps {
             append(&mut moments, data, &history, &contraction, sweep.clone());
@@ -31,6 +34,7 @@ impl Record {
             moments,
             sweeps,
             specimens: data.specimens().to_vec(),
+            shortness,
             force: data.force().to_vec(),
             force_sd: data.force_sd().map(<[f64]>::to_vec),
             is_path: history.is_path,
@@ -57,6 +61,7 @@ impl Record {
             moments,
             sweeps,
             specimens: (1..=specimens).map(|i| i.to_string()).collect(),
+            shortness: Vec::new(),
             force,
             force_sd: None,
         })
@@ -102,6 +107,13 @@ impl Record {
     #[must_use]
     pub fn specimens(&self) -> &[String] {
         &self.specimens
+    }
+
+    /// How much shorter than the muscle the specimen of a row is, unpressurised: an error of length is so many times as much contraction.
+    #[must_use]
+    pub fn shortness(&self, row: usize) -> f64 {
+        let specimen = self.moments.get(row).map_or(0, |moment| moment.specimen as usize);
+        self.shortness.get(specimen).copied().unwrap_or(1.0)
     }
 
     /// Whether the rows are a path (not a static map).
@@ -202,6 +214,7 @@ impl Record {
             moments,
             sweeps,
             specimens: self.specimens.clone(),
+            shortness: self.shortness.clone(),
             force: kept.iter().map(|row| self.force[*row]).collect(),
             force_sd: self.force_sd.as_ref().map(|sd| kept.iter().map(|row| sd[*row]).collect()),
             is_path: self.is_path,
@@ -280,6 +293,7 @@ impl Record {
             moments,
             sweeps,
             specimens: self.specimens.clone(),
+            shortness: self.shortness.clone(),
             force,
             force_sd: self.force_sd.as_ref().map(sd),
             is_path: self.is_path,

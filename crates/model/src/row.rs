@@ -129,7 +129,8 @@ impl Run<'_> {
         slot: &mut Option<Start>,
     ) -> Result<Carried, RowError> {
         match (&self.model.base, &self.equilibrium) {
-            (Base::Law { law, geometry }, _) => {
+            (Base::Law { law }, _) => {
+                let geometry = &self.model.bodies[self.body].geometry;
                 let point = LawPoint { pressure, contraction: e, direction: moment.direction };
                 let count = law.coefficients.len();
                 let force = law.force(point, geometry, &pass.theta[..count]);
@@ -170,7 +171,8 @@ impl Run<'_> {
     }
 
     fn law_slope(&self, moment: &Moment, pressure: f64, e: f64) -> f64 {
-        let Base::Law { law, geometry } = &self.model.base else { return 0.0 };
+        let Base::Law { law } = &self.model.base else { return 0.0 };
+        let geometry = &self.model.bodies[self.body].geometry;
         let constant = |v: f64| Dual::<1>::from(v);
         let point = LawPoint {
             pressure: constant(pressure),

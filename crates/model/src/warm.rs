@@ -26,10 +26,11 @@ pub struct Warm {
 #[derive(Debug, Default)]
 pub(crate) struct Slots {
     pub(crate) rows: Vec<Vec<Option<Start>>>,
-    pub(crate) nodes: HashMap<[i64; 2], Start>,
+    /// Of each of the model's muscles.
+    pub(crate) nodes: Vec<HashMap<[i64; 2], Start>>,
     /// Whether the next lattice that is solved is held.
     pub(crate) holds: bool,
-    pub(crate) held: Option<Arc<Held>>,
+    pub(crate) held: Vec<Option<Arc<Held>>>,
     /// Whether what is held comes from another model: it then serves for the same muscle only.
     is_shared: bool,
 }
@@ -47,7 +48,7 @@ pub(crate) struct Held {
 }
 
 impl Held {
-    /// The lattice of a muscle with other parameters, to first order in what changes the shape; none if it lacks the derivatives asked for, or if a
+    /// The lattice of one of the model's muscles with other parameters, to first order in what changes the shape; none if it lacks the derivatives asked for, or if a
     /// parameter without derivatives has changed the shape too. `shape` makes the muscle of parameters.
     fn near(
         &self,
@@ -94,19 +95,19 @@ impl Warm {
     /// Only where equilibria are shot for and interpolated; elsewhere nothing is held, see [`Warm::is_held`].
     pub fn hold(&self) {
         let mut slots = self.lock();
-        (slots.holds, slots.held) = (true, None);
+        (slots.holds, slots.held) = (true, Vec::new());
     }
 
     /// Solves the equilibria of each evaluation again.
     pub fn release(&self) {
         let mut slots = self.lock();
-        (slots.holds, slots.held) = (false, None);
+        (slots.holds, slots.held) = (false, Vec::new());
     }
 
     /// Whether evaluations are to first order from one that was solved.
     #[must_use]
     pub fn is_held(&self) -> bool {
-        self.lock().held.is_some()
+        self.lock().held.iter().any(Option::is_some)
     }
 
     /// A memory of its own that has what is held here: for evaluations at the same time, of this model or
@@ -142,13 +143,20 @@ impl Slots {
     /// The lattice of a muscle with the parameters `theta` from what is held.
     pub(crate) fn held_at(
         &self,
+        body: usize,
         muscle: &Muscle,
         theta: &[f64],
         shapes: &[usize],
         shape: impl Fn(&[f64]) -> Option<Muscle>,
     ) -> Option<Lattice> {
-        let held = self.held.as_ref()?;
+        let held = self.held.get(body)?.as_ref()?;
         if self.is_shared { held.of(muscle, shapes) } else { held.near(theta, shapes, shape) }
+    }
+
+    /// Slots for so many muscles.
+    pub(crate) fn for_bodies(&mut self, count: usize) {
+        self.nodes.resize_with(count, HashMap::new);
+        self.held.resize(count, None);
     }
 
     /// One slot for each row of each segment, kept if there are as many as before.

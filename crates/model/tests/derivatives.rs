@@ -8,7 +8,7 @@
 use bulge_effects::law::{LAWS, LawGeometry};
 use bulge_effects::{Catalogue, Group, Moment};
 use bulge_model::{Model, Record, Wanted};
-use bulge_muscles::{Kind, Muscle, preset};
+use bulge_muscles::{Kind, Muscle, Parameter, preset};
 
 /// A random sequence (Knuth's MMIX constants), in (0, 1).
 struct Random(u64);
@@ -187,6 +187,116 @@ fn laws_are_models() {
                 direction: moment.direction,
             };
             assert!((force - law.force(point, &geometry, &model.start())).abs() < 1e-9, "{}", law.name);
+        }
+    }
+}
+
+/// A braid of which a second specimen has another length, radius and angle, and loops on both.
+fn specimens(ends: &str) -> (Muscle, Record) {
+    let braid = format!(
+        "name = \"b\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nwall = \"2 mm\"\nbraid_angle = \"25 deg\"\nends = \"{ends}\"\n\n\
+         [specimens.2]\nlength = \"80 mm\"\nradius = \"9 mm\"\nbraid_angle = \"24 deg\"\n"
+    );
+    let record = path(3);
+    let moments = record.moments().iter().enumerate();
+    let moments = moments.map(|(row, m)| Moment { specimen: u32::from(row >= 24), ..*m }).collect();
+    let record = Record::from_moments(moments, vec![0.0; 48], record.sweeps().to_vec()).unwrap();
+    (bulge_muscles::from_toml(&braid, "braid").unwrap(), record)
+}
+
+fn of_both(muscle: &Muscle) -> Model {
+    Model::new(muscle).for_specimens(&["1".to_owned(), "2".to_owned()]).unwrap()
+}
+
+#[test]
+fn derivatives_across_specimens_agree_with_differences() {
+    let mut tried = 0;
+    for ends in ["cylinder", "clamped"] {
+        let (muscle, record) = specimens(ends);
+        let costly = ["bladder-elasticity", "radius-error", "length-zero-error", "fibre-length"];
+        for effect in Catalogue::builtin().iter() {
+            let Ok(model) = of_both(&muscle).with(effect, None) else { continue };
+            let is_costly = model.is_costly(&model.start()).unwrap_or(true);
+            if is_costly && (ends == "cylinder" || !costly.contains(&effect.card().name)) {
+                continue;
+            }
+            let mut theta = model.start();
+            for (value, p) in theta.iter_mut().zip(model.parameters()) {
+                if (*value - p.off).abs() < 1e-3 * (p.high - p.low) {
+                    *value += 0.02 * (p.high - p.low);
+                }
+            }
+            for (j, p) in model.parameters().iter().enumerate() {
+                let h = 1e-5 * (theta[j] - p.off).abs().max(1e-4 * theta[j].abs());
+                check(&model, &record, &theta, j, h);
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 60, "{tried}");
+}
+
+#[test]
+fn each_specimen_is_its_own_muscle_and_shares_the_effects() {
+    let (muscle, record) = specimens("clamped");
+    let catalogue = Catalogue::builtin();
+    let with = |model: Model, name: &str, values: &[f64]| {
+        model.with(catalogue.find(name).unwrap(), Some(values)).unwrap()
+    };
+    let own = |moments: &[Moment]| {
+        let moments = moments.iter().map(|m| Moment { specimen: 0, ..*m }).collect::<Vec<_>>();
+        Record::from_moments(moments, vec![0.0; 24], std::iter::once(0..24).collect()).unwrap()
+    };
+    let full = |model: Model| with(with(model, "bladder-elasticity", &[2e5]), "coulomb-friction", &[7.0]);
+    let both = full(of_both(&muscle));
+    assert_eq!(both.parameters().len(), 2);
+    let force = both.evaluate(&record, &both.start(), &Wanted::default()).unwrap().force;
+    for (specimen, rows) in [("1", 0..24), ("2", 24..48)] {
+        let alone = full(Model::new(&muscle.of_specimen(specimen).unwrap()));
+        let record = own(&record.moments()[rows.clone()]);
+        let found = alone.evaluate(&record, &alone.start(), &Wanted::default()).unwrap().force;
+        for (a, b) in force[rows].iter().zip(found) {
+            // A lattice for 48 rows, and none for 24.
+            assert!((a - b).abs() < 1e-5 * b.abs().max(100.0), "{specimen}: {a} {b}");
+        }
+    }
+    // A radius of 10.5 instead of 10 mm is one of 9.45 instead of 9 mm.
+    let wide = with(of_both(&muscle), "radius-error", &[0.0105]);
+    let force = wide.evaluate(&record, &wide.start(), &Wanted::default()).unwrap().force;
+    let second = muscle.of_specimen("2").unwrap().with(Parameter::Radius, 0.00945).unwrap();
+    let found = Model::new(&second).evaluate(&own(&record.moments()[24..]), &[], &Wanted::default()).unwrap();
+    for (a, b) in force[24..].iter().zip(found.force) {
+        assert!((a - b).abs() < 1e-5 * b.abs().max(100.0), "{a} {b}");
+    }
+    // Zeros come with the mounting: each specimen has its own.
+    for (effect, numbers) in [("force-offset", 2), ("length-zero-error", 2), ("force-gain", 1)] {
+        let model = of_both(&muscle).with(catalogue.find(effect).unwrap(), None).unwrap();
+        assert_eq!(model.parameters().len(), numbers, "{effect}");
+        let plain = of_both(&muscle.clone().without_specimens());
+        assert_eq!(plain.with(catalogue.find(effect).unwrap(), None).unwrap().parameters().len(), 1);
+    }
+}
+
+#[test]
+fn a_specimen_like_the_muscle_changes_nothing() {
+    let record = path(5);
+    for muscle in muscles() {
+        let length = muscle.get(Parameter::Length).unwrap();
+        let same = muscle.clone().with_specimen("1", vec![(Parameter::Length, length)]).unwrap();
+        for effect in Catalogue::builtin().iter() {
+            let names = ["1".to_owned()];
+            let model = |muscle| Model::new(muscle).for_specimens(&names).unwrap().with(effect, None);
+            let (Ok(one), Ok(other)) = (model(&muscle), model(&same)) else { continue };
+            if one.is_costly(&one.start()).unwrap_or(true) {
+                continue;
+            }
+            let wanted = Wanted { parameters: (0..one.parameters().len()).collect(), readings: true };
+            let found = [one, other].map(|m| m.evaluate(&record, &m.start(), &wanted).unwrap());
+            let bits = |p: &bulge_model::Prediction| {
+                [&p.force, &p.jacobian, &p.by_contraction]
+                    .map(|v| v.iter().map(|x| x.to_bits()).collect::<Vec<_>>())
+            };
+            assert_eq!(bits(&found[0]), bits(&found[1]), "{}", effect.card().name);
         }
     }
 }

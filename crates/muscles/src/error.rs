@@ -119,6 +119,14 @@ pub enum MuscleError {
         /// What is wrong with it.
         what: String,
     },
+    /// A specimen whose name can't stand in a file.
+    #[error(
+        "`{name}` can't name a specimen: a name has letters, digits or other signs, but no quotes, backslashes or control characters"
+    )]
+    SpecimenName {
+        /// The name.
+        name: String,
+    },
     /// An instrument without any standard deviation.
     #[error("an instrument needs at least one of `noise`, `zero` and `gain` greater than 0")]
     NoSpread,
@@ -144,6 +152,7 @@ impl MuscleError {
             | Self::NoWidth { parameter }
             | Self::WidthNotPositive { parameter, .. } => parameter.key(),
             Self::Learnt { .. } => "effects",
+            Self::SpecimenName { .. } => "specimens",
             Self::NoSpread => "instruments",
         }
     }

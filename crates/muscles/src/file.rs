@@ -7,17 +7,14 @@ use crate::instrument::{Instrument, Instruments};
 use crate::keys;
 use crate::material::{Bladder, Fibre, Unfolding};
 use crate::muscle::Muscle;
+use crate::parameter::Parameter;
 use crate::quantity::{Angle, Area, Force, Length, LineStiffness, Pressure, Ratio};
-use crate::table::{Document, Table};
-use crate::units::{Quantity, shortened};
-use std::cell::RefCell;
-use std::fs::File;
-use std::io::{ErrorKind, Read};
+use crate::settings::{Document, FileKind, Settings, nearest};
+use crate::specimen::specimens_in;
+use crate::units::{self, Quantity, shortened};
 use std::path::Path;
-use toml::de::DeTable;
 
-/// A muscle file has ten lines; what is larger than this is something else.
-const MAX_BYTES: usize = 1 << 20;
+const KIND: FileKind = FileKind { name: "muscle", file: "muscle.toml", line: "length = \"110 mm\"" };
 
 /// Reads a muscle file.
 ///
@@ -25,16 +22,7 @@ const MAX_BYTES: usize = 1 << 20;
 /// If the file cannot be read, is larger than 1 MiB, is not UTF-8 or is not a valid muscle. The message is complete.
 pub fn read(path: impl AsRef<Path>) -> Result<Muscle, FileError> {
     let path = path.as_ref();
-    let origin = path.display().to_string();
-    let bytes = read_bytes(path).map_err(|(what, instead)| FileError::whole(&origin, what, instead))?;
-    let not_utf8 = |error: std::string::FromUtf8Error| {
-        let at = error.utf8_error().valid_up_to();
-        let text = String::from_utf8_lossy(error.as_bytes());
-        // Up to `at` the bytes are valid, so the replacement character stands exactly there.
-        let what = format!("byte {at} is not UTF-8 text");
-        FileError::at(&origin, &text, at..at + 1, what, "save the file as plain text with the encoding UTF-8")
-    };
-    from_toml(&String::from_utf8(bytes).map_err(not_utf8)?, &origin)
+    from_toml(&KIND.read(path)?, &path.display().to_string())
 }
 
 /// Reads a muscle from TOML text; `origin` is what messages call the text, usually a file name.
@@ -48,115 +36,72 @@ pub fn read(path: impl AsRef<Path>) -> Result<Muscle, FileError> {
 /// # Errors
 /// If the text is not a valid muscle.
 pub fn from_toml(text: &str, origin: &str) -> Result<Muscle, FileError> {
-    if text.len() > MAX_BYTES {
-        let (what, instead) = too_large();
-        return Err(FileError::whole(origin, what, instead));
-    }
-    let root = DeTable::parse(text).map_err(|error| syntax_error(text, origin, &error))?;
-    if root.get_ref().is_empty() {
+    let document = Document::parse(KIND, text, origin)?;
+    let root = document.settings("the muscle", keys::of(""));
+    if root.names().is_empty() {
         let instead = format!("a muscle file looks like this:\n{}", keys::EXAMPLE);
         let what = "the file states nothing: a muscle needs `name`, `kind`, `length` and `radius`";
-        return Err(FileError::at(origin, text, 0..0, what, instead));
+        return Err(root.error(0..0, what, instead));
     }
-    Document { text, origin, root: root.get_ref(), widths: RefCell::default() }.muscle()
+    Reader { root, widths: Vec::new() }.muscle()
 }
 
-type Complaint = (String, String);
+/// A muscle file, with the widths found so far.
+struct Reader<'a> {
+    root: Settings<'a>,
+    widths: Vec<(Parameter, f64)>,
+}
 
-fn read_bytes(path: &Path) -> Result<Vec<u8>, Complaint> {
-    let failed = |error: std::io::Error| match error.kind() {
-        ErrorKind::NotFound => ("there is no such file".to_owned(), similar_file(path)),
-        ErrorKind::PermissionDenied => {
-            ("the file may not be read".to_owned(), "check its permissions, or copy it".to_owned())
+/// A table within another, called by its path; its keys are checked.
+fn table<'a>(parent: &Settings<'a>, within: &str, name: &str) -> Result<Option<Settings<'a>>, FileError> {
+    let path = keys::join(within, name);
+    let table = parent.table(name, format!("`[{path}]`"), keys::of(&path))?;
+    // Other effects are learnt ones.
+    table.as_ref().filter(|_| path != "effects").map_or(Ok(()), Settings::check_keys)?;
+    Ok(table)
+}
+
+fn needed<T>(table: &Settings<'_>, name: &str, found: Option<T>) -> Result<T, FileError> {
+    found.ok_or_else(|| table.missing(name))
+}
+
+/// Refuses keys of the other family.
+fn check_owner(table: &Settings<'_>, path: &str, kind: Kind) -> Result<(), FileError> {
+    for (name, span) in table.names() {
+        if let Some(owner) = keys::owner(&keys::join(path, name)).filter(|owner| *owner != kind) {
+            let (owner, kind) = (owner.name(), kind.name());
+            let what = format!("`{name}` belongs to a {owner} muscle, but this one is {kind}");
+            let instead = format!("delete `{name}`, or write `kind = \"{owner}\"`");
+            return Err(table.error(span, what, instead));
         }
-        _ => (
-            format!("the file cannot be read: {error}"),
-            "name a muscle file, such as `muscle.toml`".to_owned(),
-        ),
-    };
-    let is_directory = || {
-        let instead = format!("name a file in it, such as `{}`", path.join("muscle.toml").display());
-        ("this is a directory, not a muscle file".to_owned(), instead)
-    };
-    if path.is_dir() {
-        return Err(is_directory());
     }
-    let limit = u64::try_from(MAX_BYTES).unwrap_or(u64::MAX).saturating_add(1);
-    let mut bytes = Vec::new();
-    File::open(path).map_err(failed)?.take(limit).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() > MAX_BYTES { Err(too_large()) } else { Ok(bytes) }
+    Ok(())
 }
 
-fn too_large() -> Complaint {
-    let what = format!("the file is larger than {} KiB, so it is no muscle file", MAX_BYTES >> 10);
-    (what, "name a muscle file: about ten lines of TOML (measured data go into a CSV file)".to_owned())
-}
-
-/// The TOML file beside the missing one whose name is nearest.
-fn similar_file(path: &Path) -> String {
-    let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let listed = std::fs::read_dir(directory).into_iter().flatten().flatten();
-    let mut names: Vec<String> = listed.filter_map(|entry| entry.file_name().into_string().ok()).collect();
-    names.retain(|name| Path::new(name).extension().is_some_and(|extension| extension == "toml"));
-    names.sort();
-    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
-    let known: Vec<&str> = names.iter().map(String::as_str).collect();
-    match keys::nearest(&wanted, &known) {
-        Some(name) => format!("did you mean `{}`?", directory.join(name).display()),
-        None => "check the path and the working directory".to_owned(),
-    }
-}
-
-fn syntax_error(text: &str, origin: &str, error: &toml::de::Error) -> FileError {
-    let span = error.span().unwrap_or(0..0);
-    let message = error.message().lines().collect::<Vec<_>>().join(", ");
-    let start = text.floor_char_boundary(span.start.min(text.len()));
-    let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
-    let line = text[line_start..].lines().next().unwrap_or("");
-    let instead = if message.contains("duplicate key") {
-        "state each key once: delete one of the two, or put `#` before it".to_owned()
-    } else {
-        unquoted(line).unwrap_or_else(|| {
-            "each line is `key = value`, a `[table]` or a `# comment`, such as `length = \"110 mm\"`"
-                .to_owned()
-        })
-    };
-    FileError::at(origin, text, span, format!("this is not TOML: {message}"), instead)
-}
-
-/// The commonest slip: `length = 110 mm` without quotes.
-fn unquoted(line: &str) -> Option<String> {
-    let (key, value) = line.split_once('=')?;
-    let (key, value) = (key.trim(), value.split('#').next()?.trim());
-    let is_bare = !value.is_empty() && !value.contains(['"', '\'', '{', '[', '=']);
-    let is_word = !key.is_empty() && key.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | '.'));
-    (is_bare && is_word).then(|| format!("put text in quotes: `{key} = \"{}\"`", shortened(value)))
-}
-
-impl<'a> Document<'a> {
-    fn muscle(&'a self) -> Result<Muscle, FileError> {
-        let root = Table { document: self, path: String::new(), span: 0..0, entries: self.root };
-        root.check_names()?;
-        let kind = self.kind(&root)?;
-        let (effects, instruments, fibre) =
-            (root.table("effects")?, root.table("instruments")?, root.table("fibre")?);
-        root.check_owner(kind)?;
+impl<'a> Reader<'a> {
+    fn muscle(mut self) -> Result<Muscle, FileError> {
+        self.root.check_keys_or(keys::elsewhere)?;
+        let kind = self.kind()?;
+        self.root = self.root.called(format!("a muscle with `kind = \"{}\"`", kind.name()), "kind");
+        let [effects, instruments, fibre] = ["effects", "instruments", "fibre"].map(|name| self.table(name));
+        let (effects, instruments, fibre) = (effects?, instruments?, fibre?);
+        check_owner(&self.root, "", kind)?;
         if let Some(effects) = &effects {
-            effects.check_owner(kind)?;
+            check_owner(effects, "effects", kind)?;
         }
         // Wrong values come before missing ones: a file is usually right but for one slip.
-        let name = root.text("name")?;
-        let length = root.quantity::<Length>("length")?;
+        let name = self.root.text("name")?;
+        let length = self.of_muscle::<Length>(Parameter::Length)?;
         let construction = match kind {
-            Kind::Pleated => Construction::Pleated(self.pleated(&root, effects.as_ref())?),
-            Kind::Braided => Construction::Braided(self.braided(&root, effects.as_ref())?),
+            Kind::Pleated => Construction::Pleated(self.pleated(effects.as_ref())?),
+            Kind::Braided => Construction::Braided(self.braided(effects.as_ref())?),
         };
-        let name = name.ok_or_else(|| root.missing("name"))?;
-        let length = length.ok_or_else(|| root.missing("length"))?;
-        let invalid = |error: MuscleError| self.invalid(&error);
-        let mut muscle = Muscle::new(name, length, construction).map_err(invalid)?;
+        let name = needed(&self.root, "name", name)?;
+        let length = needed(&self.root, "length", length)?;
+        let mut muscle = Muscle::new(name, length, construction).map_err(|error| self.invalid(&error))?;
         if let Some(fibre) = fibre {
-            muscle = muscle.with_fibre(self.fibre(&fibre)?).map_err(invalid)?;
+            let fibre = self.fibre(&fibre)?;
+            muscle = muscle.with_fibre(fibre).map_err(|error| self.invalid(&error))?;
         }
         if let Some(effects) = &effects {
             muscle = self.materials(muscle, effects)?;
@@ -167,118 +112,212 @@ impl<'a> Document<'a> {
         if let Some(instruments) = instruments {
             muscle = muscle.with_instruments(instruments_in(&instruments)?);
         }
-        for (parameter, width) in self.widths.take() {
-            muscle = muscle.with_width(parameter, width).map_err(invalid)?;
+        if let Some(specimens) = self.root.table("specimens", "`[specimens]`", &[])? {
+            muscle = specimens_in(&specimens, muscle)?;
+        }
+        for (parameter, width) in &self.widths {
+            muscle = muscle.with_width(*parameter, *width).map_err(|error| self.invalid(&error))?;
         }
         Ok(muscle)
     }
 
-    fn kind(&self, root: &Table<'a>) -> Result<Kind, FileError> {
-        let known = [(Kind::Pleated.name(), Kind::Pleated), (Kind::Braided.name(), Kind::Braided)];
-        let also = [("ppam", Kind::Pleated), ("mckibben", Kind::Braided), ("braid", Kind::Braided)];
-        root.word("kind", &known, &also)?.ok_or_else(|| {
+    /// A value out of range, at its place.
+    fn invalid(&self, error: &MuscleError) -> FileError {
+        let instead = match error {
+            MuscleError::NoFibreCount => {
+                "add a line such as `fibres = 60`: the fibres of the braid, both families together".to_owned()
+            }
+            MuscleError::NoWall | MuscleError::NoGasWall => "add a line such as `wall = \"2 mm\"`".to_owned(),
+            MuscleError::LobesOfContinuous => "write a number of fibres, such as `fibres = 40`".to_owned(),
+            _ => format!("write {}", keys::example(error.key())),
+        };
+        self.root.error(self.root.place(error.key()), error.to_string(), instead)
+    }
+
+    fn table(&self, name: &str) -> Result<Option<Settings<'a>>, FileError> {
+        table(&self.root, "", name)
+    }
+
+    /// A quantity, whose width is noted as that of a parameter.
+    fn wide<Q: Quantity>(
+        &mut self,
+        table: &Settings<'_>,
+        name: &str,
+        parameter: Parameter,
+    ) -> Result<Option<Q>, FileError> {
+        let Some((value, width)) = table.parsed(name, units::parse_with_width::<Q>)? else { return Ok(None) };
+        self.widths.extend(width.map(|width| (parameter, width.si())));
+        Ok(Some(value))
+    }
+
+    /// A parameter at the top of the file.
+    fn of_muscle<Q: Quantity>(&mut self, parameter: Parameter) -> Result<Option<Q>, FileError> {
+        let root = self.root.clone();
+        self.wide(&root, parameter.name(), parameter)
+    }
+
+    /// The number of an effect that has one, if the effect is stated.
+    fn of_effect<Q: Quantity>(
+        &mut self,
+        effects: Option<&Settings<'_>>,
+        parameter: Parameter,
+    ) -> Result<Option<Q>, FileError> {
+        let mut path = parameter.key().split('.').skip(1);
+        let (Some(effect), Some(key)) = (path.next(), path.next()) else { return Ok(None) };
+        let Some(effects) = effects else { return Ok(None) };
+        let Some(table) = table(effects, "effects", effect)? else { return Ok(None) };
+        let value = self.wide(&table, key, parameter)?;
+        needed(&table, key, value).map(Some)
+    }
+
+    fn kind(&self) -> Result<Kind, FileError> {
+        let [pleated, braided] = [Kind::Pleated, Kind::Braided].map(|kind| (kind.name(), kind));
+        let also = [("ppam", pleated.0), ("mckibben", braided.0), ("braid", braided.0)];
+        self.root.word_or("kind", &[pleated, braided], &also)?.ok_or_else(|| {
             let instead = "write `kind = \"pleated\"` or `kind = \"braided\"`";
-            self.error(0..0, "`kind` is missing: it says which keys the muscle needs", instead)
+            self.root.error(0..0, "`kind` is missing: it says which keys the muscle needs", instead)
         })
     }
 
-    fn pleated(&self, root: &Table<'a>, effects: Option<&Table<'a>>) -> Result<Pleated, FileError> {
-        let invalid = |error: MuscleError| self.invalid(&error);
-        let (radius, fibres) = (root.quantity::<Length>("radius")?, root.fibres(Kind::Pleated)?);
-        let radius = radius.ok_or_else(|| root.missing("radius"))?;
-        let fibres = fibres.ok_or_else(|| root.missing("fibres"))?;
-        let mut pleated = Pleated::new(radius, fibres).map_err(invalid)?;
-        let Some(effects) = effects else { return Ok(pleated) };
-        if let Some(table) = effects.checked_table("end-radius")? {
-            pleated = pleated.with_end_radius(table.required("radius")?).map_err(invalid)?;
+    fn pleated(&mut self, effects: Option<&Settings<'_>>) -> Result<Pleated, FileError> {
+        let (radius, fibres) = (self.of_muscle(Parameter::Radius)?, self.fibres(Kind::Pleated)?);
+        let radius = needed(&self.root, "radius", radius)?;
+        let fibres = needed(&self.root, "fibres", fibres)?;
+        let mut pleated = Pleated::new(radius, fibres).map_err(|error| self.invalid(&error))?;
+        if let Some(radius) = self.of_effect(effects, Parameter::FittingRadius)? {
+            pleated = pleated.with_end_radius(radius).map_err(|error| self.invalid(&error))?;
         }
-        if let Some(table) = effects.checked_table("pleat-depth")? {
-            pleated = pleated.with_pleat_depth(table.required("depth")?).map_err(invalid)?;
+        if let Some(depth) = self.of_effect(effects, Parameter::PleatDepth)? {
+            pleated = pleated.with_pleat_depth(depth).map_err(|error| self.invalid(&error))?;
         }
-        if let Some(table) = effects.checked_table("fibre-misalignment")? {
-            pleated = pleated.with_misalignment(table.required("angle")?).map_err(invalid)?;
+        if let Some(angle) = self.of_effect(effects, Parameter::Misalignment)? {
+            pleated = pleated.with_misalignment(angle).map_err(|error| self.invalid(&error))?;
         }
-        if let Some(table) = effects.checked_table("lobes")? {
-            let circumference = table.required("circumference")?;
-            pleated = pleated.with_cloth_circumference(circumference).map_err(invalid)?;
+        if let Some(circumference) = self.of_effect(effects, Parameter::ClothCircumference)? {
+            pleated =
+                pleated.with_cloth_circumference(circumference).map_err(|error| self.invalid(&error))?;
         }
         Ok(pleated)
     }
 
-    fn braided(&self, root: &Table<'a>, effects: Option<&Table<'a>>) -> Result<Braided, FileError> {
-        let invalid = |error: MuscleError| self.invalid(&error);
-        let (radius, angle) = (root.quantity::<Length>("radius")?, root.quantity::<Angle>("braid_angle")?);
-        let radius = radius.ok_or_else(|| root.missing("radius"))?;
-        let angle = angle.ok_or_else(|| root.missing("braid_angle"))?;
-        let mut braided = Braided::new(radius, angle).map_err(invalid)?;
-        let known = [(Ends::Clamped.name(), Ends::Clamped), (Ends::Cylinder.name(), Ends::Cylinder)];
-        if let Some(ends) =
-            root.word("ends", &known, &[("exact", Ends::Clamped), ("free", Ends::Cylinder)])?
-        {
+    fn braided(&mut self, effects: Option<&Settings<'_>>) -> Result<Braided, FileError> {
+        let radius = self.of_muscle(Parameter::Radius)?;
+        let angle = self.of_muscle::<Angle>(Parameter::BraidAngle)?;
+        let radius = needed(&self.root, "radius", radius)?;
+        let angle = needed(&self.root, "braid_angle", angle)?;
+        let mut braided = Braided::new(radius, angle).map_err(|error| self.invalid(&error))?;
+        let known = [Ends::Clamped, Ends::Cylinder].map(|ends| (ends.name(), ends));
+        let also = [("exact", known[0].0), ("free", known[1].0)];
+        if let Some(ends) = self.root.word_or("ends", &known, &also)? {
             braided = braided.with_ends(ends);
         }
-        if let Some(FibreCount::Discrete(count)) = root.fibres(Kind::Braided)? {
-            braided = braided.with_fibres(count).map_err(invalid)?;
+        if let Some(FibreCount::Discrete(count)) = self.fibres(Kind::Braided)? {
+            braided = braided.with_fibres(count).map_err(|error| self.invalid(&error))?;
         }
-        if let Some(wall) = root.quantity("wall")? {
-            braided = braided.with_wall(wall).map_err(invalid)?;
+        if let Some(wall) = self.of_muscle(Parameter::Wall)? {
+            braided = braided.with_wall(wall).map_err(|error| self.invalid(&error))?;
         }
-        if let Some(table) = effects.map(|effects| effects.checked_table("end-radius")).transpose()?.flatten()
-        {
-            braided = braided.with_fitting_radius(table.required("radius")?).map_err(invalid)?;
+        if let Some(radius) = self.of_effect(effects, Parameter::FittingRadius)? {
+            braided = braided.with_fitting_radius(radius).map_err(|error| self.invalid(&error))?;
         }
         Ok(braided)
     }
 
-    fn fibre(&self, table: &Table<'a>) -> Result<Fibre, FileError> {
-        table.check_names()?;
-        let invalid = |error: MuscleError| self.invalid(&error);
-        let section = table.quantity::<Area>("section")?;
-        let fibre = Fibre::new(table.required::<Force>("stiffness")?).map_err(invalid)?;
-        section.map_or(Ok(fibre), |section| fibre.with_section(section).map_err(invalid))
+    fn fibres(&self, kind: Kind) -> Result<Option<FibreCount>, FileError> {
+        let Some(value) = self.root.get("fibres") else { return Ok(None) };
+        let count = |number: u64| u32::try_from(number).ok().filter(|count| *count >= 3);
+        if let Some(count) = value.whole().and_then(count) {
+            return Ok(Some(FibreCount::Discrete(count)));
+        }
+        let is_pleated = kind == Kind::Pleated;
+        if is_pleated && value.text() == Some("continuous") {
+            return Ok(Some(FibreCount::Continuous));
+        }
+        let or = if is_pleated { ", or \"continuous\"" } else { "" };
+        let wanted = format!("a whole number of at least 3{or}");
+        let Some(found) = value.number() else { return Err(self.root.wrong_type("fibres", value, &wanted)) };
+        let (quotes, instead) = match (value.text(), found.trim().parse::<f64>()) {
+            (Some(_), Ok(number)) if number.fract() == 0.0 && number >= 3.0 => {
+                ("\"", format!("write the number without quotes: `fibres = {number}`"))
+            }
+            (Some(text), _) if is_pleated && nearest(text, ["continuous"].into_iter()).is_some() => {
+                ("\"", "write `fibres = \"continuous\"`".to_owned())
+            }
+            (None, Ok(number)) if (3.0..=1e6).contains(&number) => {
+                ("", format!("write a whole number, such as `fibres = {}`", number.trunc()))
+            }
+            (text, _) => {
+                let quotes = if text.is_some() { "\"" } else { "" };
+                (quotes, "write the number of fibres, such as `fibres = 40`".to_owned())
+            }
+        };
+        let what = format!("`fibres` is {quotes}{}{quotes}, but must be {wanted}", shortened(found));
+        Err(self.root.error(value.span(), what, instead))
+    }
+
+    fn fibre(&mut self, table: &Settings<'_>) -> Result<Fibre, FileError> {
+        let section = table.parsed("section", units::parse::<Area>)?;
+        let stiffness = self.wide::<Force>(table, "stiffness", Parameter::FibreStiffness)?;
+        let fibre =
+            Fibre::new(needed(table, "stiffness", stiffness)?).map_err(|error| self.invalid(&error))?;
+        section.map_or(Ok(fibre), |section| fibre.with_section(section).map_err(|error| self.invalid(&error)))
     }
 
     /// The effects that are materials.
-    fn materials(&self, mut muscle: Muscle, effects: &Table<'a>) -> Result<Muscle, FileError> {
-        let invalid = |error: MuscleError| self.invalid(&error);
-        if let Some(table) = effects.checked_table("bladder-elasticity")? {
+    fn materials(&mut self, mut muscle: Muscle, effects: &Settings<'a>) -> Result<Muscle, FileError> {
+        if let Some(table) = table(effects, "effects", "bladder-elasticity")? {
             let own = muscle.own_wall();
-            let c01 = table.quantity("c01")?.unwrap_or(Pressure::pa(0.0));
-            let c10 = table.required("c10")?;
+            let c01 = self.wide(&table, "c01", Parameter::C01)?.unwrap_or(Pressure::pa(0.0));
+            let c10 = self.wide(&table, "c10", Parameter::C10)?;
+            let c10 = needed(&table, "c10", c10)?;
             // Beside a wall of the muscle there is no second one that could have a width.
-            let stated = if own.is_some() { table.plain("wall")? } else { table.quantity("wall")? };
-            let wall = stated.or(own).ok_or_else(|| invalid(MuscleError::NoWall))?;
-            muscle = muscle.with_bladder(Bladder::new(c10, c01, wall).map_err(invalid)?).map_err(invalid)?;
+            let stated = match own {
+                Some(_) => table.parsed("wall", units::parse::<Length>)?,
+                None => self.wide(&table, "wall", Parameter::Wall)?,
+            };
+            let wall = stated.or(own).ok_or_else(|| self.invalid(&MuscleError::NoWall))?;
+            let bladder = Bladder::new(c10, c01, wall).map_err(|error| self.invalid(&error))?;
+            muscle = muscle.with_bladder(bladder).map_err(|error| self.invalid(&error))?;
         }
-        if let Some(table) = effects.checked_table("wall-thickness")? {
-            muscle = muscle.with_gas_wall(table.quantity("thickness")?).map_err(invalid)?;
+        if let Some(table) = table(effects, "effects", "wall-thickness")? {
+            let thickness = self.wide(&table, "thickness", Parameter::GasWall)?;
+            muscle = muscle.with_gas_wall(thickness).map_err(|error| self.invalid(&error))?;
         }
-        if let Some(table) = effects.checked_table("limited-unfolding")? {
-            let hoop_stiffness = table.required::<LineStiffness>("hoop_stiffness")?;
-            let limit =
-                Unfolding::new(hoop_stiffness, table.required("unfolded_radius")?).map_err(invalid)?;
-            muscle = muscle.with_unfolding(limit);
+        if let Some(table) = table(effects, "effects", "limited-unfolding")? {
+            let hoop = self.wide::<LineStiffness>(&table, "hoop_stiffness", Parameter::HoopStiffness)?;
+            let radius = self.wide(&table, "unfolded_radius", Parameter::UnfoldedRadius)?;
+            let hoop = needed(&table, "hoop_stiffness", hoop)?;
+            let radius = needed(&table, "unfolded_radius", radius)?;
+            muscle =
+                muscle.with_unfolding(Unfolding::new(hoop, radius).map_err(|error| self.invalid(&error))?);
         }
         Ok(muscle)
     }
 }
 
-fn instruments_in(table: &Table<'_>) -> Result<Instruments, FileError> {
-    fn one<Q: Quantity>(table: &Table<'_>, name: &str) -> Result<Option<Instrument>, FileError> {
-        let Some(table) = table.checked_table(name)? else { return Ok(None) };
-        let noise = table.spread::<Q>("noise")?;
-        let zero = table.spread::<Q>("zero")?;
-        let gain = table.spread::<Ratio>("gain")?;
-        let invalid = |error: MuscleError| {
-            let instead = format!("write {}", keys::example(&keys::join(&table.path, "noise")));
-            table.document.error(table.span.clone(), error.to_string(), instead)
-        };
-        Ok(Some(Instrument::new(noise, zero, Ratio::one(gain)).map_err(invalid)?))
+fn instruments_in(all: &Settings<'_>) -> Result<Instruments, FileError> {
+    /// A standard deviation in SI, which must be > 0; 0 if it is absent.
+    fn spread<Q: Quantity>(table: &Settings<'_>, name: &str) -> Result<f64, FileError> {
+        let value = table.size::<Q>(name)?;
+        if value > 0.0 || table.get(name).is_none() {
+            return Ok(value);
+        }
+        let what = format!("`{name}` is {value} in SI units: a standard deviation must be greater than 0");
+        let instead = format!("write such as `{}`, or leave it out", table.example(name));
+        Err(table.error(table.value_span(name), what, instead))
     }
-    table.check_names()?;
+    fn one<Q: Quantity>(all: &Settings<'_>, name: &str) -> Result<Option<Instrument>, FileError> {
+        let Some(table) = table(all, "instruments", name)? else { return Ok(None) };
+        let (noise, zero) = (spread::<Q>(&table, "noise")?, spread::<Q>(&table, "zero")?);
+        let gain = spread::<Ratio>(&table, "gain")?;
+        let instead = format!("write such as `{}`", table.example("noise"));
+        Instrument::new(noise, zero, Ratio::one(gain))
+            .map(Some)
+            .map_err(|error| all.error(all.value_span(name), error.to_string(), instead))
+    }
     Ok(Instruments {
-        force: one::<Force>(table, "force")?,
-        pressure: one::<Pressure>(table, "pressure")?,
-        length: one::<Length>(table, "length")?,
+        force: one::<Force>(all, "force")?,
+        pressure: one::<Pressure>(all, "pressure")?,
+        length: one::<Length>(all, "length")?,
     })
 }

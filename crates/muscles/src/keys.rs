@@ -1,52 +1,92 @@
 //! Every key of a muscle file, once: checks, suggestions and examples in messages come from this list.
 
 use crate::construction::Kind;
+use crate::settings::Keys;
 
-/// One key: its dotted path, a value as it is written, and the family it belongs to (none: both).
-struct Key {
-    path: &'static str,
-    example: &'static str,
-    kind: Option<Kind>,
-}
+/// The table of a specimen, and that of its fibres.
+pub(crate) const SPECIMEN: &str = "specimens.*";
+pub(crate) const SPECIMEN_FIBRE: &str = "specimens.*.fibre";
 
-const fn both(path: &'static str, example: &'static str) -> Key {
-    Key { path, example, kind: None }
-}
+/// The tables by their dotted paths, "" for the top of the file.
+const TABLES: &[(&str, Keys)] = &[
+    (
+        "",
+        &[
+            ("name", "name = \"second-generation PPAM\""),
+            ("kind", "kind = \"pleated\""),
+            ("length", "length = \"110 mm\""),
+            ("radius", "radius = \"16 mm\""),
+            ("fibres", "fibres = 40"),
+            ("braid_angle", "braid_angle = \"25 deg\""),
+            ("ends", "ends = \"clamped\""),
+            ("wall", "wall = \"2 mm\""),
+            ("fibre", "fibre = { stiffness = \"12 kN\" }"),
+            ("effects", "effects.end-radius = { radius = \"16 mm\" }"),
+            ("instruments", "instruments.force = { noise = \"4 N\" }"),
+            ("specimens", "specimens.short = { length = \"60 mm\" }"),
+            // Of who reads measurements.
+            ("data", "data.columns = { force = \"F1 [N]\" }"),
+        ],
+    ),
+    (
+        SPECIMEN,
+        &[
+            ("length", "length = \"60 mm\""),
+            ("radius", "radius = \"16 mm\""),
+            ("fibres", "fibres = 40"),
+            ("braid_angle", "braid_angle = \"25 deg\""),
+            ("wall", "wall = \"2 mm\""),
+            ("fibre", "fibre = { stiffness = \"12 kN\" }"),
+            ("effects", "effects.end-radius = { radius = \"16 mm\" }"),
+        ],
+    ),
+    (SPECIMEN_FIBRE, &[("stiffness", "stiffness = \"12 kN\"")]),
+    ("fibre", &[("stiffness", "stiffness = \"12 kN\""), ("section", "section = \"0.3 mm^2\"")]),
+    (
+        "effects",
+        &[
+            ("bladder-elasticity", "bladder-elasticity = { c10 = \"0.2 MPa\" }"),
+            (
+                "limited-unfolding",
+                "limited-unfolding = { hoop_stiffness = \"81 kN/m\", unfolded_radius = \"52.6 mm\" }",
+            ),
+            ("end-radius", "end-radius = { radius = \"16 mm\" }"),
+            ("wall-thickness", "wall-thickness = { thickness = \"2 mm\" }"),
+            ("pleat-depth", "pleat-depth = { depth = \"4.5 mm\" }"),
+            ("fibre-misalignment", "fibre-misalignment = { angle = \"2 deg\" }"),
+            ("lobes", "lobes = { circumference = \"330 mm\" }"),
+        ],
+    ),
+    (
+        "effects.bladder-elasticity",
+        &[("c10", "c10 = \"0.2 MPa\""), ("c01", "c01 = \"0.05 MPa\""), ("wall", "wall = \"2 mm\"")],
+    ),
+    (
+        "effects.limited-unfolding",
+        &[
+            ("hoop_stiffness", "hoop_stiffness = \"81 kN/m\""),
+            ("unfolded_radius", "unfolded_radius = \"52.6 mm\""),
+        ],
+    ),
+    ("effects.end-radius", &[("radius", "radius = \"16 mm\"")]),
+    ("effects.wall-thickness", &[("thickness", "thickness = \"2 mm\"")]),
+    ("effects.pleat-depth", &[("depth", "depth = \"4.5 mm\"")]),
+    ("effects.fibre-misalignment", &[("angle", "angle = \"2 deg\"")]),
+    ("effects.lobes", &[("circumference", "circumference = \"330 mm\"")]),
+    ("instruments", &[("force", "force = { noise = \"4 N\" }"), PRESSURE, LENGTH]),
+    ("instruments.force", &[("noise", "noise = \"4 N\""), ("zero", "zero = \"1 N\""), GAIN]),
+    ("instruments.pressure", &[("noise", "noise = \"30 Pa\""), ("zero", "zero = \"200 Pa\""), GAIN]),
+    ("instruments.length", &[("noise", "noise = \"5 um\""), ("zero", "zero = \"0.05 mm\""), GAIN]),
+];
 
-const fn only(kind: Kind, path: &'static str, example: &'static str) -> Key {
-    Key { path, example, kind: Some(kind) }
-}
+const PRESSURE: (&str, &str) = ("pressure", "pressure = { noise = \"30 Pa\" }");
+const LENGTH: (&str, &str) = ("length", "length = { noise = \"5 um\" }");
+const GAIN: (&str, &str) = ("gain", "gain = \"0.1 %\"");
 
-const KEYS: &[Key] = &[
-    both("name", "\"second-generation PPAM\""),
-    both("kind", "\"pleated\""),
-    both("length", "\"110 mm\""),
-    both("radius", "\"16 mm\""),
-    both("fibres", "40"),
-    only(Kind::Braided, "braid_angle", "\"25 deg\""),
-    only(Kind::Braided, "ends", "\"clamped\""),
-    only(Kind::Braided, "wall", "\"2 mm\""),
-    both("fibre.stiffness", "\"12 kN\""),
-    both("fibre.section", "\"0.3 mm^2\""),
-    only(Kind::Braided, "effects.bladder-elasticity.c10", "\"0.2 MPa\""),
-    only(Kind::Braided, "effects.bladder-elasticity.c01", "\"0.05 MPa\""),
-    only(Kind::Braided, "effects.bladder-elasticity.wall", "\"2 mm\""),
-    both("effects.limited-unfolding.hoop_stiffness", "\"81 kN/m\""),
-    both("effects.limited-unfolding.unfolded_radius", "\"52.6 mm\""),
-    both("effects.end-radius.radius", "\"16 mm\""),
-    only(Kind::Braided, "effects.wall-thickness.thickness", "\"2 mm\""),
-    only(Kind::Pleated, "effects.pleat-depth.depth", "\"4.5 mm\""),
-    only(Kind::Pleated, "effects.fibre-misalignment.angle", "\"2 deg\""),
-    only(Kind::Pleated, "effects.lobes.circumference", "\"330 mm\""),
-    both("instruments.force.noise", "\"4 N\""),
-    both("instruments.force.zero", "\"1 N\""),
-    both("instruments.force.gain", "\"0.1 %\""),
-    both("instruments.pressure.noise", "\"30 Pa\""),
-    both("instruments.pressure.zero", "\"200 Pa\""),
-    both("instruments.pressure.gain", "\"0.1 %\""),
-    both("instruments.length.noise", "\"5 um\""),
-    both("instruments.length.zero", "\"0.05 mm\""),
-    both("instruments.length.gain", "\"0.1 %\""),
+/// Keys and tables that one family alone has.
+const OWNED: &[(Kind, &[&str])] = &[
+    (Kind::Braided, &["braid_angle", "ends", "wall", "effects.bladder-elasticity", "effects.wall-thickness"]),
+    (Kind::Pleated, &["effects.pleat-depth", "effects.fibre-misalignment", "effects.lobes"]),
 ];
 
 /// Other words for a key: not accepted, but answered.
@@ -83,26 +123,14 @@ fibres = 40             # pleated; or \"continuous\"
 # pressure = { noise = \"30 Pa\" }
 ";
 
-/// The part of `path` below `parent`, if it is below it ("" is the whole file).
-fn below<'p>(path: &'p str, parent: &str) -> Option<&'p str> {
-    if parent.is_empty() { Some(path) } else { path.strip_prefix(parent)?.strip_prefix('.') }
-}
-
-/// The names that may stand in the table `parent`, in the order of the list.
-pub(crate) fn children(parent: &str) -> Vec<&'static str> {
-    let mut names = Vec::new();
-    for key in KEYS {
-        let name = below(key.path, parent).and_then(|rest| rest.split('.').next()).unwrap_or("");
-        if !name.is_empty() && !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    names
+/// The keys of a table, in the order of the list.
+pub(crate) fn of(path: &str) -> Keys {
+    TABLES.iter().find(|(table, _)| *table == path).map_or(&[], |(_, keys)| *keys)
 }
 
 /// The family that alone has this key, or this table.
 pub(crate) fn owner(path: &str) -> Option<Kind> {
-    KEYS.iter().find(|key| key.path == path || below(key.path, path).is_some())?.kind
+    OWNED.iter().find(|(_, paths)| paths.contains(&path)).map(|(kind, _)| *kind)
 }
 
 /// The path of a child.
@@ -110,47 +138,27 @@ pub(crate) fn join(parent: &str, name: &str) -> String {
     if parent.is_empty() { name.to_owned() } else { format!("{parent}.{name}") }
 }
 
-/// How a key, or a whole table, is written: `length = "110 mm"`, or `c10 = "0.2 MPa"` in `[effects.bladder-elasticity]`.
+/// How a key is written: `length = "110 mm"`, or `c10 = "0.2 MPa"` in `[effects.bladder-elasticity]`.
 pub(crate) fn example(path: &str) -> String {
-    let Some(key) = KEYS.iter().find(|key| key.path == path || below(key.path, path).is_some()) else {
-        return String::new();
+    let (table, name) = path.rsplit_once('.').unwrap_or(("", path));
+    let line = of(table).iter().find(|(key, _)| *key == name).map_or("", |(_, line)| *line);
+    if table.is_empty() { format!("`{line}`") } else { format!("`{line}` in `[{table}]`") }
+}
+
+/// How a key is written that stands at the top of the file under another name, or belongs into a table.
+pub(crate) fn elsewhere(unknown: &str) -> Option<String> {
+    let plain = |text: &str| text.to_lowercase().replace('-', "_");
+    let is_it = |name: &str| plain(name) == plain(unknown);
+    if let Some((_, path)) = SYNONYMS.iter().find(|(other, _)| is_it(other)) {
+        return Some(format!("write {}", example(path)));
+    }
+    let of_muscle = |(table, _): &&(&str, Keys)| !table.contains('*');
+    let of_table = |(table, keys): &(&str, Keys)| {
+        keys.iter()
+            .find(|(key, _)| is_it(key))
+            .map(|(key, _)| format!("write {}", example(&join(table, key))))
     };
-    match key.path.rsplit_once('.') {
-        None => format!("`{} = {}`", key.path, key.example),
-        // Short tables are written on one line.
-        Some(("fibre", name)) if path == "fibre" => format!("`fibre = {{ {name} = {} }}`", key.example),
-        Some((table, name)) => format!("`{name} = {}` in the table `[{table}]`", key.example),
-    }
-}
-
-/// What to write instead of a name that the table `parent` does not know.
-pub(crate) fn instead_of(unknown: &str, parent: &str) -> String {
-    let known = children(parent);
-    if let Some(name) = nearest(unknown, &known) {
-        return format!("did you mean `{name}`?");
-    }
-    match elsewhere(unknown).filter(|_| parent.is_empty()) {
-        Some(path) => format!("write {}", example(path)),
-        None => format!("known here: {}; leave the rest out, or write it behind a `#`", known.join(", ")),
-    }
-}
-
-/// The path of a key that was written at the top of the file, or under another name.
-fn elsewhere(unknown: &str) -> Option<&'static str> {
-    let word = unknown.to_lowercase().replace('-', "_");
-    let is_it = |part: &str| part.replace('-', "_") == word;
-    let synonym = SYNONYMS.iter().find(|(other, _)| *other == word).map(|(_, path)| *path);
-    synonym.or_else(|| KEYS.iter().map(|key| key.path).find(|path| path.split('.').any(is_it)))
-}
-
-/// The name that was probably meant: the same but for case and hyphens, its beginning, or a slip or two away.
-pub(crate) fn nearest<'n>(word: &str, names: &[&'n str]) -> Option<&'n str> {
-    let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
-    let word = plain(word);
-    let length = word.chars().count();
-    let slips = |name: &str| strsim::damerau_levenshtein(&plain(name), &word);
-    let closest = names.iter().min_by_key(|name| slips(name)).filter(|name| slips(name) <= length / 3);
-    closest.or_else(|| names.iter().find(|name| length >= 4 && plain(name).starts_with(&word))).copied()
+    TABLES.iter().filter(of_muscle).find_map(of_table)
 }
 
 #[cfg(test)]
@@ -158,39 +166,37 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_list_is_a_tree() {
-        assert_eq!(children("fibre"), ["stiffness", "section"]);
-        assert_eq!(children("instruments"), ["force", "pressure", "length"]);
-        assert!(children("").contains(&"effects") && !children("").contains(&"effects.end-radius"));
+    fn every_table_is_a_key_and_every_example_is_one_line_of_it() {
+        for (table, keys) in TABLES.iter().filter(|(table, _)| !table.contains('*')) {
+            let (parent, name) = table.rsplit_once('.').unwrap_or(("", table));
+            assert!(table.is_empty() || of(parent).iter().any(|(key, _)| *key == name), "{table}");
+            for (key, line) in *keys {
+                assert!(line.starts_with(key) && line.parse::<toml::Table>().is_ok(), "{table}: {line}");
+            }
+        }
+        for path in OWNED.iter().flat_map(|(_, paths)| *paths).chain(SYNONYMS.iter().map(|(_, path)| path)) {
+            assert!(!example(path).starts_with("``"), "{path}");
+        }
         assert_eq!(owner("effects.pleat-depth"), Some(Kind::Pleated));
-        assert_eq!(owner("wall"), Some(Kind::Braided));
         assert_eq!(
-            (owner("effects"), owner("length"), owner("effects.end-radius")),
+            (owner("wall"), owner("length"), owner("effects.end-radius")),
             (Some(Kind::Braided), None, None)
         );
     }
 
     #[test]
     fn what_was_meant() {
-        for (unknown, parent, part) in [
-            ("lenght", "", "`length`"),
-            ("Radius", "", "`radius`"),
-            ("braid-angle", "", "`braid_angle`"),
-            ("fibers", "", "`fibres`"),
-            ("l0", "", "`length = \"110 mm\"`"),
-            ("c10", "", "`c10 = \"0.2 MPa\"` in the table `[effects.bladder-elasticity]`"),
-            ("end_radius", "", "[effects.end-radius]"),
-            ("fitting_radius", "", "[effects.end-radius]"),
-            ("pleat_depth", "", "[effects.pleat-depth]"),
-            ("stiffness", "", "[fibre]"),
-            ("colour", "", "known here: name, kind, length"),
-            ("bladder", "effects", "`bladder-elasticity`"),
-            ("creep", "effects", "known here: bladder-elasticity, limited-unfolding, end-radius"),
-            ("radius", "effects.pleat-depth", "known here: depth;"),
-            ("", "", "known here"),
+        for (unknown, part) in [
+            ("l0", "`length = \"110 mm\"`"),
+            ("c10", "`c10 = \"0.2 MPa\"` in `[effects.bladder-elasticity]`"),
+            ("end_radius", "`end-radius = { radius = \"16 mm\" }` in `[effects]`"),
+            ("fitting_radius", "`[effects.end-radius]`"),
+            ("pleat_depth", "pleat-depth = "),
+            ("stiffness", "`[fibre]`"),
         ] {
-            let instead = instead_of(unknown, parent);
-            assert!(instead.contains(part), "{unknown}: {instead}");
+            let found = elsewhere(unknown).unwrap();
+            assert!(found.contains(part), "{unknown}: {found}");
         }
+        assert_eq!((elsewhere("colour"), elsewhere("lenght"), elsewhere("")), (None, None, None));
     }
 }

@@ -3,7 +3,7 @@
 use crate::dimension::Dimension;
 use crate::error::MuscleError;
 use crate::file_error::FileError;
-use crate::keys;
+use crate::settings::nearest;
 use crate::units::{any_with_width, exact_any_text, shortened, unit};
 use serde::Serialize;
 use std::ops::Range;
@@ -96,6 +96,12 @@ impl PartialEq for Place {
 impl Place {
     pub(crate) fn new(file: Arc<SourceFile>, name: Range<usize>, values: Vec<Range<usize>>) -> Self {
         Self { file: Some(file), name, values }
+    }
+
+    /// What is wrong at the name; none without a file.
+    pub(crate) fn error(&self, what: String, instead: String) -> Option<FileError> {
+        let file = self.file.as_ref()?;
+        Some(FileError::at(&file.origin, &file.text, self.name.clone(), what, instead))
     }
 }
 
@@ -202,7 +208,7 @@ impl Learnt {
             return Ok(());
         }
         let all: Vec<&'n str> = SHAPE_EFFECTS.into_iter().chain(known.iter().copied()).collect();
-        let instead = match keys::nearest(&self.name, &all) {
+        let instead = match nearest(&self.name, all.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "`bulge effects` lists the effects that are known; a file for `--effects` adds your own"
                 .to_owned(),
@@ -244,7 +250,7 @@ mod tests {
     #[test]
     fn the_shape_effects_are_those_of_the_keys() {
         let mut names = SHAPE_EFFECTS;
-        let mut known = keys::children("effects");
+        let mut known: Vec<&str> = crate::keys::of("effects").iter().map(|(key, _)| *key).collect();
         names.sort_unstable();
         known.sort_unstable();
         assert_eq!(names.as_slice(), known);

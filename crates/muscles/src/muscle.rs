@@ -1,6 +1,6 @@
 //! One muscle: its construction, its materials and the instruments it is measured with, always valid.
 
-use crate::construction::{Braided, Construction, FibreCount, Kind, Pleated};
+use crate::construction::{Braided, Construction, Ends, FibreCount, Kind, Pleated};
 use crate::error::{MuscleError, check};
 use crate::file_error::FileError;
 use crate::instrument::Instruments;
@@ -8,6 +8,7 @@ use crate::learnt::Learnt;
 use crate::material::{Bladder, Fibre, Unfolding};
 use crate::parameter::Parameter;
 use crate::quantity::{Angle, Force, Length, LineStiffness, Pressure};
+use crate::specimen::Specimen;
 use crate::units::Quantity;
 use serde::Serialize;
 
@@ -44,6 +45,8 @@ pub struct Muscle {
     learnt: Vec<Learnt>,
     instruments: Instruments,
     widths: Vec<(Parameter, f64)>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) specimens: Vec<Specimen>,
 }
 
 impl Muscle {
@@ -68,6 +71,7 @@ impl Muscle {
             learnt: Vec::new(),
             instruments: Instruments::default(),
             widths: Vec::new(),
+            specimens: Vec::new(),
         };
         muscle.with_name(name)
     }
@@ -134,6 +138,15 @@ impl Muscle {
             None => return Err(MuscleError::NoGasWall),
         });
         Ok(self)
+    }
+
+    /// The same with other ends, if it is a braid: clamped in fittings, or a cylinder to the end.
+    #[must_use]
+    pub fn with_ends(mut self, ends: Ends) -> Self {
+        if let Construction::Braided(braided) = &self.construction {
+            self.construction = Construction::Braided(braided.with_ends(ends));
+        }
+        self
     }
 
     /// The same with one more learnt effect, or with other values of one that it has.
@@ -488,7 +501,6 @@ fn whole(value: f64) -> Result<u32, MuscleError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::construction::Ends;
     use crate::quantity::Area;
 
     fn pleated() -> Muscle {

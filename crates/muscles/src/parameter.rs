@@ -137,6 +137,34 @@ impl Parameter {
         }
     }
 
+    /// Reads one value of this parameter, such as "100 mm" for `Length`, into SI.
+    ///
+    /// # Errors
+    /// If the text is not a quantity of the parameter's dimension.
+    pub fn parse(self, text: &str) -> Result<f64, UnitError> {
+        match self.unit() {
+            "rad" => units::parse::<Angle>(text).map(Quantity::si),
+            "N" => units::parse::<Force>(text).map(Quantity::si),
+            "Pa" => units::parse::<Pressure>(text).map(Quantity::si),
+            "N/m" => units::parse::<LineStiffness>(text).map(Quantity::si),
+            "1" => units::parse::<crate::quantity::Ratio>(text).map(Quantity::si),
+            _ => units::parse::<Length>(text).map(Quantity::si),
+        }
+    }
+
+    /// A value in SI as it is written in a muscle file, with its unit and quotes, so that reading gives exactly the same number.
+    pub(crate) fn text(self, value: f64) -> String {
+        let text = match self.unit() {
+            "rad" => units::exact_text(Angle::from_si(value)),
+            "N" => units::exact_text_in(Force::from_si(value), "kN"),
+            "Pa" => units::exact_text_in(Pressure::from_si(value), "MPa"),
+            "N/m" => units::exact_text(LineStiffness::from_si(value)),
+            "1" => return value.to_string(),
+            _ => units::exact_text(Length::from_si(value)),
+        };
+        format!("\"{text}\"")
+    }
+
     /// Reads values of this parameter, such as "100,110,120 mm" for `Length` or "20,40" for `Fibres`, into SI.
     ///
     /// # Errors

@@ -2,8 +2,8 @@
 
 use crate::file::from_toml;
 use crate::file_error::FileError;
-use crate::keys::nearest;
 use crate::muscle::Muscle;
+use crate::settings::nearest;
 use crate::units::shortened;
 use thiserror::Error;
 
@@ -65,8 +65,9 @@ pub fn preset(name: &str) -> Result<Muscle, PresetError> {
         return Ok(from_toml(preset.text, preset.name)?);
     }
     let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
-    let question =
-        nearest(name, &names).map(|near| format!("did you mean `{near}`? otherwise ")).unwrap_or_default();
+    let question = nearest(name, names.iter().copied())
+        .map(|near| format!("did you mean `{near}`? otherwise "))
+        .unwrap_or_default();
     let instead = format!("{question}there are {}", names.join(", "));
     Err(PresetError::Unknown { name: shortened(name), instead })
 }

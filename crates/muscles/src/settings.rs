@@ -3,33 +3,18 @@
 use crate::dimension::Dimension;
 use crate::file::read;
 use crate::file_error::FileError;
+pub use crate::file_kind::FileKind;
+use crate::file_kind::MOST_BYTES;
 use crate::muscle::Muscle;
 use crate::presets::{PRESETS, PresetError, preset};
-use crate::units::{self, Quantity};
+pub use crate::units::shortened;
+use crate::units::{self, Quantity, UnitError};
 use std::borrow::Cow;
 use std::fmt::Display;
-use std::fs::File;
-use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// Most bytes of a settings file.
-const MOST_BYTES: usize = 1 << 20;
-/// How many characters of a mistaken text are shown.
-const MOST_SHOWN: usize = 40;
-
-/// What messages call a kind of settings file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FileKind {
-    /// What the file is, such as "protocol".
-    pub name: &'static str,
-    /// What such a file may be called, such as "protocol.toml".
-    pub file: &'static str,
-    /// A line of it with a unit, such as `period = "50 s"`.
-    pub line: &'static str,
-}
 
 /// The keys of a table, each with a line that shows how it is written.
 pub type Keys = &'static [(&'static str, &'static str)];
@@ -54,7 +39,7 @@ pub struct Document<'t> {
 }
 
 /// One table of a settings file.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Settings<'a> {
     origin: &'a str,
     text: &'a str,
@@ -70,40 +55,6 @@ pub struct Setting<'a> {
     value: &'a Spanned<DeValue<'a>>,
 }
 
-impl FileKind {
-    /// The text of such a file.
-    ///
-    /// # Errors
-    /// If the file can't be read, is a folder, is larger than 1 MiB or is not UTF-8. The message is complete.
-    pub fn read(self, path: &Path) -> Result<String, FileError> {
-        let origin = path.display().to_string();
-        let failed = |what: String| {
-            FileError::whole(&origin, what, format!("name a {} file, such as `{}`", self.name, self.file))
-        };
-        if path.is_dir() {
-            return Err(failed(format!("this is a folder, not a {} file", self.name)));
-        }
-        let unreadable = |error: std::io::Error| failed(format!("the file cannot be read: {error}"));
-        let mut bytes = Vec::new();
-        let file = File::open(path).map_err(unreadable)?;
-        file.take(MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-        // Before the encoding: what is cut off may end within a character.
-        if bytes.len() > MOST_BYTES {
-            return Err(self.too_large(&origin));
-        }
-        String::from_utf8(bytes).map_err(|error| {
-            let instead = "save the file as plain text with the encoding UTF-8";
-            let what = format!("byte {} is not UTF-8 text", error.utf8_error().valid_up_to());
-            FileError::whole(&origin, what, instead)
-        })
-    }
-
-    fn too_large(self, origin: &str) -> FileError {
-        let what = format!("the file is larger than 1 MiB, so it is no {}", self.name);
-        FileError::whole(origin, what, format!("name a {} file: some ten lines of TOML", self.name))
-    }
-}
-
 impl<'t> Document<'t> {
     /// Parses TOML text; `origin` is what messages call the text, usually a file name.
     ///
@@ -115,12 +66,18 @@ impl<'t> Document<'t> {
         }
         let root = DeTable::parse(text).map_err(|error| {
             let message = error.message().lines().collect::<Vec<_>>().join(", ");
-            let instead = format!(
-                "each line is `key = value`, a `[table]` or a `# comment`; numbers with a unit stand in quotes: `{}`",
-                kind.line
-            );
-            let what = format!("this is not TOML: {message}");
-            FileError::at(origin, text, error.span().unwrap_or(0..0), what, instead)
+            let span = error.span().unwrap_or(0..0);
+            let instead = if message.contains("duplicate key") {
+                "state each key once: delete one of the two, or put `#` before it".to_owned()
+            } else {
+                unquoted(text, span.start).unwrap_or_else(|| {
+                    format!(
+                        "each line is `key = value`, a `[table]` or a `# comment`; numbers with a unit stand in quotes: `{}`",
+                        kind.line
+                    )
+                })
+            };
+            FileError::at(origin, text, span, format!("this is not TOML: {message}"), instead)
         })?;
         Ok(Self { origin, text, root })
     }
@@ -140,6 +97,22 @@ impl<'t> Document<'t> {
 }
 
 impl<'a> Settings<'a> {
+    /// The same under another name, with the place of a key as its own.
+    #[must_use]
+    pub(crate) fn called(self, title: String, key: &str) -> Self {
+        Settings { span: self.value_span(key), title: title.into(), ..self }
+    }
+
+    /// What messages call it.
+    pub(crate) fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The name and the text of the file.
+    pub(crate) fn source(&self) -> (&'a str, &'a str) {
+        (self.origin, self.text)
+    }
+
     /// The value of a key.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<Setting<'a>> {
@@ -160,18 +133,19 @@ impl<'a> Settings<'a> {
     /// # Errors
     /// Names the first one in the file, with the nearest key that there is.
     pub fn check_keys(&self) -> Result<(), FileError> {
+        self.check_keys_or(|_| None)
+    }
+
+    /// The same; `elsewhere` may know what to write instead of a key that is like none of the table.
+    pub(crate) fn check_keys_or(&self, elsewhere: fn(&str) -> Option<String>) -> Result<(), FileError> {
         let known = || self.keys.iter().map(|(key, _)| *key);
         let stranger = self.names().into_iter().find(|(name, _)| known().all(|key| key != *name));
         let Some((name, span)) = stranger else { return Ok(()) };
-        let instead = nearest(name, known()).map_or_else(
-            || {
-                format!(
-                    "known here: {}; leave the rest out, or write it behind a `#`",
-                    known().collect::<Vec<_>>().join(", ")
-                )
-            },
-            |near| format!("did you mean `{near}`?"),
-        );
+        let near = nearest(name, known()).map(|near| format!("did you mean `{near}`?"));
+        let instead = near.or_else(|| elsewhere(name)).unwrap_or_else(|| {
+            let known = known().collect::<Vec<_>>().join(", ");
+            format!("known here: {known}; leave the rest out, or write it behind a `#`")
+        });
         Err(self.error(span, format!("unknown key `{}` in {}", shortened(name), self.title), instead))
     }
 
@@ -180,9 +154,18 @@ impl<'a> Settings<'a> {
     /// # Errors
     /// If the value is no such quantity.
     pub fn size<Q: Quantity>(&self, name: &str) -> Result<f64, FileError> {
-        let Some(value) = self.get(name) else { return Ok(0.0) };
+        Ok(self.parsed(name, units::parse::<Q>)?.map_or(0.0, Quantity::si))
+    }
+
+    /// What `parse` makes of a number with its unit.
+    pub(crate) fn parsed<T>(
+        &self,
+        name: &str,
+        parse: impl Fn(&str) -> Result<T, UnitError>,
+    ) -> Result<Option<T>, FileError> {
+        let Some(value) = self.get(name) else { return Ok(None) };
         let text = self.number(name, value)?;
-        units::parse::<Q>(text).map(Quantity::si).map_err(|error| self.unreadable(name, value, error))
+        parse(text).map(Some).map_err(|error| self.unreadable(name, value, error))
     }
 
     /// A quantity of a dimension, in SI.
@@ -249,19 +232,32 @@ impl<'a> Settings<'a> {
         value.text().map(Some).ok_or_else(|| self.wrong_type(name, value, "text in quotes"))
     }
 
-    /// One word of a list, which must not be empty.
+    /// One word of a list.
     ///
     /// # Errors
-    /// If the value is another one; the nearest word is named.
+    /// If the value is another one; the nearest word is named, else all of them.
     pub fn word<T: Copy>(&self, name: &str, known: &[(&'static str, T)]) -> Result<Option<T>, FileError> {
+        self.word_or(name, known, &[])
+    }
+
+    /// The same; words in `also` are not accepted, but answered with the right one.
+    pub(crate) fn word_or<T: Copy>(
+        &self,
+        name: &str,
+        known: &[(&'static str, T)],
+        also: &[(&str, &'static str)],
+    ) -> Result<Option<T>, FileError> {
         let (Some(value), Some(text)) = (self.get(name), self.text(name)?) else { return Ok(None) };
         if let Some((_, found)) = known.iter().find(|(word, _)| *word == text) {
             return Ok(Some(*found));
         }
         let words: Vec<&'static str> = known.iter().map(|(word, _)| *word).collect();
-        let near = nearest(text, words.iter().copied()).or(words.first().copied()).unwrap_or_default();
+        let meant = also.iter().find(|(word, _)| text.eq_ignore_ascii_case(word)).map(|(_, word)| *word);
+        let likely =
+            meant.or_else(|| nearest(text, words.iter().copied())).map_or(words.clone(), |w| vec![w]);
+        let lines: Vec<String> = likely.iter().map(|word| format!("`{name} = \"{word}\"`")).collect();
         let what = format!("`{name}` is \"{}\", but must be one of: {}", shortened(text), words.join(", "));
-        Err(self.error(value.span(), what, format!("write `{name} = \"{near}\"`")))
+        Err(self.error(value.span(), what, format!("write {}", lines.join(" or "))))
     }
 
     /// The muscle that a key names: a muscle file in `folder`, or a shipped muscle where no file of that name exists.
@@ -339,6 +335,18 @@ impl<'a> Settings<'a> {
         self.get(name).map_or_else(|| self.span.clone(), Setting::span)
     }
 
+    /// The place of a dotted path, or of the last table on the way to it.
+    pub(crate) fn place(&self, path: &str) -> Range<usize> {
+        let (mut table, mut span) = (self.entries, self.span.clone());
+        for name in path.split('.') {
+            let Some((_, value)) = table.iter().find(|(key, _)| key.get_ref() == name) else { break };
+            span = value.span();
+            let DeValue::Table(inner) = value.get_ref() else { break };
+            table = inner;
+        }
+        span
+    }
+
     /// What is wrong at a place, and what to write instead.
     #[must_use]
     pub fn error(
@@ -370,7 +378,8 @@ impl<'a> Settings<'a> {
     }
 
     fn write(&self, name: &str) -> String {
-        format!("write such as `{}`", self.example(name))
+        let table = if self.title.starts_with("`[") { format!(" in {}", self.title) } else { String::new() };
+        format!("write such as `{}`{table}", self.example(name))
     }
 
     /// The line that shows how a key is written.
@@ -437,22 +446,36 @@ impl<'a> Setting<'a> {
     /// What it is in words, such as "a number".
     #[must_use]
     pub fn type_name(self) -> &'static str {
-        crate::table::type_of(self.value.get_ref())
+        match self.value.get_ref() {
+            DeValue::String(_) => "text",
+            DeValue::Integer(_) | DeValue::Float(_) => "a number",
+            DeValue::Boolean(_) => "true or false",
+            DeValue::Datetime(_) => "a date",
+            DeValue::Array(_) => "a list",
+            DeValue::Table(_) => "a table",
+        }
     }
 }
 
-/// A quotation for a message, of at most 40 characters.
-#[must_use]
-pub fn shortened(text: &str) -> String {
-    text.chars().take(MOST_SHOWN).collect()
-}
-
-/// The name that was probably meant: a slip or two away.
+/// The name that was probably meant: a slip or two away but for case and hyphens, or of which the word is the beginning.
 pub fn nearest<'n>(word: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
-    let word = plain(word);
+    let (word, names) = (plain(word), names.collect::<Vec<_>>());
+    let length = word.chars().count();
     let slips = |name: &str| strsim::damerau_levenshtein(&plain(name), &word);
-    names.min_by_key(|name| slips(name)).filter(|name| slips(name) <= word.chars().count().div_ceil(3))
+    let closest = names.iter().min_by_key(|name| slips(name)).filter(|name| slips(name) <= length / 3);
+    closest.or_else(|| names.iter().find(|name| length >= 4 && plain(name).starts_with(&word))).copied()
+}
+
+/// The commonest slip: `length = 110 mm` without quotes.
+fn unquoted(text: &str, at: usize) -> Option<String> {
+    let start = text.floor_char_boundary(at.min(text.len()));
+    let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
+    let (key, value) = text[line_start..].lines().next()?.split_once('=')?;
+    let (key, value) = (key.trim(), value.split('#').next()?.trim());
+    let is_bare = !value.is_empty() && !value.contains(['"', '\'', '{', '[', '=']);
+    let is_word = !key.is_empty() && key.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | '.'));
+    (is_bare && is_word).then(|| format!("put text in quotes: `{key} = \"{}\"`", shortened(value)))
 }
 
 #[cfg(test)]
@@ -551,8 +574,8 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("bulge-settings-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let path = folder.join("r.toml");
-        refused(KIND.read(&folder), &["a folder, not a recipe file", "such as `recipe.toml`"]);
-        refused(KIND.read(&path), &["cannot be read"]);
+        refused(KIND.read(&folder), &["a directory, not a recipe file", "recipe.toml`"]);
+        refused(KIND.read(&path), &["no such file", "check the path"]);
         std::fs::write(&path, b"a\xff").unwrap();
         refused(KIND.read(&path), &["byte 1 is not UTF-8"]);
         std::fs::write(&path, "\u{e9}".repeat(MOST_BYTES)).unwrap();
@@ -571,6 +594,6 @@ mod tests {
         assert_eq!(nearest("Fibre-Stifness", names()), Some("fibre_stiffness"));
         assert_eq!(nearest("coulomb friction.force", names()), Some("coulomb-friction.force"));
         assert_eq!(nearest("pressure", names()), None);
-        assert_eq!(shortened(&"x".repeat(50)).len(), 40);
+        assert_eq!(shortened(&"x".repeat(50)).chars().count(), 41);
     }
 }

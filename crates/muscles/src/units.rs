@@ -293,7 +293,8 @@ fn not_a_number<Q: Quantity>(text: &str) -> UnitError {
 }
 
 /// A quotation for a message: at most 40 characters, on one line, without control characters.
-pub(crate) fn shortened(text: &str) -> String {
+#[must_use]
+pub fn shortened(text: &str) -> String {
     let printable = |c: char| if c.is_control() { '\u{fffd}' } else { c };
     let trimmed = text.trim();
     let mut out: String = trimmed.chars().take(40).map(printable).collect();

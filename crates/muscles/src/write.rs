@@ -5,6 +5,7 @@ use crate::instrument::Instrument;
 use crate::muscle::Muscle;
 use crate::parameter::Parameter;
 use crate::quantity::{Force, Length, Pressure};
+use crate::specimen::toml_key;
 use crate::units::{Quantity, exact_text, exact_text_in};
 
 /// Writes a muscle file. Reading it with `from_toml` gives an equal muscle, bit for bit.
@@ -39,6 +40,13 @@ pub fn to_toml(muscle: &Muscle) -> String {
         lines.extend(effect.values().iter().map(|value| format!("{} = {}", value.key, value.text())));
     }
     instrument_lines(&mut lines, muscle);
+    for specimen in muscle.specimens() {
+        lines.push(format!("\n[specimens.{}]", toml_key(specimen.name())));
+        let number = |(parameter, value): &(Parameter, f64)| {
+            format!("{} = {}", parameter.key(), parameter.text(*value))
+        };
+        lines.extend(specimen.numbers().iter().map(number));
+    }
     lines.push(String::new());
     lines.join("\n")
 }

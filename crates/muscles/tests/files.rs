@@ -5,7 +5,7 @@
 use bulge_muscles::{
     Angle, Area, Bladder, Braided, Construction, Dimension, Ends, Fibre, FibreCount, FileError, Force,
     Instrument, Instruments, Learnt, LearntValue, Length, LineStiffness, Muscle, PRESETS, Parameter, Pleated,
-    Pressure, Ratio, Unfolding, from_toml, read, to_toml, units,
+    Pressure, Ratio, Specimen, Unfolding, from_toml, read, to_toml, units,
 };
 
 const PLEATED: &str =
@@ -252,7 +252,11 @@ fn keys_that_are_missing_or_unknown() {
         let kind = text.lines().nth(1).unwrap();
         let short: Vec<&str> = text.lines().filter(|line| !line.starts_with(missing)).collect();
         let line = short.iter().position(|line| *line == kind).unwrap() + 1;
-        refused(&short.join("\n"), (line, 8), &[&format!("`{missing}` is missing"), kind, example]);
+        refused(
+            &short.join("\n"),
+            (line, 8),
+            &[&format!("needs `{missing}`, which is missing"), kind, example],
+        );
     }
     refused(
         &with_line(PLEATED, 2, ""),
@@ -433,6 +437,81 @@ fn learnt_effects_that_are_wrong() {
 }
 
 #[test]
+fn specimens_have_numbers_of_their_own() {
+    let text = format!(
+        "{BRAIDED}wall = \"2 mm\"\n[effects.bladder-elasticity]\nc10 = \"0.2 MPa\"\n\n[specimens.short]\nlength = \"60 mm\"\n\
+         [specimens.\"no. 3\"]\nbraid_angle = \"24 deg\"\nfibres = 64\neffects.bladder-elasticity.c10 = \"0.3 MPa\"\n\
+         effects.end-radius.radius = \"9 mm\"\nwall = \"1.5 mm\"\n[specimens.same]\n"
+    );
+    let muscle = from_toml(&text, "m.toml").unwrap();
+    let names: Vec<&str> = muscle.specimens().iter().map(Specimen::name).collect();
+    assert_eq!(names, ["short", "no. 3", "same"]);
+    let short = muscle.of_specimen("short").unwrap();
+    assert_eq!(
+        (short.length(), short.radius(), short.specimens().len()),
+        (Length::mm(60.0), Length::mm(10.0), 0)
+    );
+    let third = muscle.of_specimen("no. 3").unwrap();
+    assert_eq!(
+        (third.end_radius(), third.fibres(), third.wall()),
+        (Length::mm(9.0), Some(64), Some(Length::mm(1.5)))
+    );
+    assert_eq!(third.bladder().unwrap().wall(), Length::mm(1.5));
+    assert_eq!(third.get(Parameter::C10), Some(3e5));
+    let base = muscle.clone().without_specimens();
+    for name in ["same", "unknown"] {
+        assert_eq!(muscle.of_specimen(name).unwrap(), base);
+    }
+    assert_eq!(from_toml(&to_toml(&muscle), "copy").unwrap(), muscle);
+    // What is stated for all is that of all that don't state it.
+    let wide = muscle.with(Parameter::Radius, 0.012).unwrap();
+    assert_eq!(wide.of_specimen("short").unwrap().radius(), Length::mm(12.0));
+    let longer = muscle.with(Parameter::Length, 0.275).unwrap().with_specimens_following(&muscle);
+    assert!((longer.of_specimen("short").unwrap().length().to_mm() - 66.0).abs() < 1e-9);
+    assert!((longer.of_specimen("no. 3").unwrap().length().to_mm() - 275.0).abs() < 1e-9);
+}
+
+#[test]
+fn specimens_that_are_wrong() {
+    let of = |body: &str| format!("{BRAIDED}[specimens.short]\n{body}");
+    refused(&of("lenght = \"60 mm\""), (7, 1), &["in `[specimens.short]`", "did you mean `length`?"]);
+    refused(&of("kind = \"pleated\""), (7, 1), &["unknown key `kind`", "known here: length, radius"]);
+    refused(&of("length = 60"), (7, 10), &["`60` has no unit", "length = \"60 mm\"", "[specimens.short]"]);
+    refused(&of("length = \"-60 mm\""), (7, 10), &["greater than 0", "110 mm"]);
+    refused(&of("length = \"60 mm +- 1 mm\""), (7, 10), &["no width of its own", "of all specimens"]);
+    refused(&of("fibres = \"40\""), (7, 10), &["a whole number"]);
+    refused(&of("fibres = 2"), (7, 10), &["at least 3"]);
+    refused(&of("fibre.stiffness = \"1 kN\""), (7, 1), &["how many the braid has"]);
+    refused(&of("effects.pleat-depth.depth = \"1 mm\""), (7, 29), &["belongs to a pleated muscle"]);
+    refused(&of("effects.creep.rate = \"1 %\""), (7, 9), &["`creep` can't differ", "[effects.creep]"]);
+    refused(&of("effects = 1"), (7, 11), &["must be a table"]);
+    refused(&format!("{BRAIDED}[specimens]\nshort = 60"), (7, 9), &["must be a table", "[specimens.short]"]);
+    refused(&format!("{BRAIDED}[specimens.'a\"b']\n"), (6, 12), &["without quotes"]);
+    refused(&format!("{BRAIDED}specimens = 3"), (6, 13), &["must be a table"]);
+}
+
+#[test]
+fn specimens_and_data_must_agree() {
+    let muscle = from_toml(&format!("{BRAIDED}[specimens.short]\n[specimens.hose-2]\n"), "m.toml").unwrap();
+    let check = |names: &[&str]| {
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        let found = muscle.check_specimens(&names);
+        found.map(|others| others.join(",")).map_err(|error| error.to_string())
+    };
+    assert_eq!(check(&["hose-2", "short"]).as_deref(), Ok(""));
+    assert_eq!(check(&["hose-2", "hose-1", "short", "x"]).as_deref(), Ok("hose-1,x"));
+    let message = check(&["hose-2", "shrot"]).unwrap_err();
+    assert!(message.starts_with("m.toml:6:12: no row of the data is of the specimen `short`"), "{message}");
+    assert!(message.contains("`[specimens.shrot]`"), "{message}");
+    let message = check(&["1"]).unwrap_err();
+    assert!(message.contains("the data have `1`"), "{message}");
+    let message = check(&["short", "hose-2", "Shorrt"]).unwrap_err();
+    assert!(message.contains("rows of `Shorrt` and of the specimen `short`"), "{message}");
+    let plain = from_toml(BRAIDED, "m.toml").unwrap();
+    assert_eq!(plain.check_specimens(&["any".to_owned()]), Ok(vec![]));
+}
+
+#[test]
 fn text_that_is_not_toml() {
     refused(&with_line(PLEATED, 3, "length = 110 mm"), (3, 10), &["not TOML", "`length = \"110 mm\"`"]);
     refused(&with_line(PLEATED, 2, "kind = pleated # x"), (2, 8), &["`kind = \"pleated\"`"]);
@@ -456,7 +535,7 @@ fn text_that_is_not_toml() {
     // Depth, size and width of a file are bounded.
     let deep = format!("{PLEATED}a = {}", "[".repeat(100_000));
     assert!(complaint(&deep).to_string().len() < 1000);
-    assert!(complaint(&" ".repeat((1 << 20) + 1)).to_string().contains("larger than 1024 KiB"));
+    assert!(complaint(&" ".repeat((1 << 20) + 1)).to_string().contains("larger than 1 MiB"));
     let wide = format!("{PLEATED}x = \"{}\"", "y".repeat(500_000));
     assert!(complaint(&wide).to_string().len() < 1000);
 }
@@ -486,7 +565,7 @@ fn files_that_cannot_be_read() {
         "{latin}"
     );
     let huge = message(&file("huge.toml", &vec![b'#'; (1 << 20) + 1]));
-    assert!(huge.contains("larger than 1024 KiB"), "{huge}");
+    assert!(huge.contains("larger than 1 MiB"), "{huge}");
     let empty = message(&file("empty.toml", b""));
     assert!(empty.contains("empty.toml:1:1") && empty.contains("kind = \"pleated\""), "{empty}");
     let wrong = read(file("wrong.toml", b"kind = \"pleated\"\nlength = 110\n")).unwrap_err();

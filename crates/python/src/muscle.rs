@@ -111,6 +111,24 @@ impl Muscle {
         text.lines().filter_map(named).collect()
     }
 
+    /// Names of the specimens that have numbers of their own.
+    #[getter]
+    fn specimens(&self) -> Vec<String> {
+        self.muscle.specimens().iter().map(|specimen| specimen.name().to_owned()).collect()
+    }
+
+    /// The muscle that a specimen is.
+    fn specimen(&self, name: &str) -> PyResult<Self> {
+        let names = self.specimens();
+        if !names.iter().any(|own| own == name) {
+            let stated = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            return Err(input(format!("there is no specimen `{name}`: {} states {stated}", self.name())));
+        }
+        let known = known(&self.muscle, &catalogue(&self.own)?).or_raise()?;
+        let (muscle, _) = bulge_model::specimen(&self.muscle, name, &known).or_raise()?;
+        Ok(Self { muscle, own: self.own.clone() })
+    }
+
     /// A number of the muscle in SI, if it has it.
     fn get(&self, parameter: &str) -> PyResult<Option<f64>> {
         Ok(self.muscle.get(parameter_named(parameter)?))
@@ -120,6 +138,14 @@ impl Muscle {
     fn with_number(&self, parameter: &str, value: f64) -> PyResult<Self> {
         let parameter = parameter_named(parameter)?;
         let muscle = self.muscle.clone().with(parameter, value).or_raise()?;
+        Ok(Self { muscle, own: self.own.clone() })
+    }
+
+    /// The muscle with a specimen that has other numbers, in SI.
+    fn with_specimen(&self, name: &str, numbers: Vec<(String, f64)>) -> PyResult<Self> {
+        let number = |(name, value): (String, f64)| Ok((parameter_named(&name)?, value));
+        let numbers = numbers.into_iter().map(number).collect::<PyResult<_>>()?;
+        let muscle = self.muscle.clone().with_specimen(name, numbers).or_raise()?;
         Ok(Self { muscle, own: self.own.clone() })
     }
 

@@ -42,6 +42,20 @@ def test_clamped_braid_against_integration_of_its_equilibrium(braid, braid_refer
         assert found[name] == pytest.approx(value, rel=1e-9), name
 
 
+def test_specimens_are_muscles_of_their_own():
+    numbers = {"kind": "braided", "radius": "10 mm", "braid_angle": "25 deg", "ends": "clamped"}
+    hose = bulge.Muscle(length="250 mm", specimens={"short": {"length": "60 mm"}, "no. 2": {}}, **numbers)
+    assert hose.specimens == ["short", "no. 2"]
+    assert bulge.Muscle.from_toml(hose.to_toml()).specimens == hose.specimens
+    short = bulge.Muscle(length="60 mm", **numbers)
+    for name, muscle in [("short", short), ("no. 2", hose)]:
+        assert hose.specimen(name).force(0.1, pressure=2 * BAR) == muscle.force(0.1, pressure=2 * BAR)
+    with pytest.raises(bulge.InputError, match="there is no specimen `long`"):
+        hose.specimen("long")
+    with pytest.raises(bulge.InputError, match="greater than 0"):
+        bulge.Muscle(length="250 mm", specimens={"short": {"length": "-60 mm"}}, **numbers)
+
+
 def test_cylinder_formula(cylinder):
     contraction, pressure = np.linspace(-0.05, 0.3, 8)[:, None], np.array([1.0, 4.0]) * BAR
     a, b = 3 / np.tan(np.radians(25)) ** 2, 1 / np.sin(np.radians(25)) ** 2

@@ -41,6 +41,10 @@ impl Effect for ForceOffset {
         ]
     }
 
+    fn is_of_mounting(&self) -> bool {
+        true
+    }
+
     fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
         if let Place::Output(_, reading) = place {
             *reading += theta[0];

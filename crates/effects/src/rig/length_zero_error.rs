@@ -47,6 +47,10 @@ impl Effect for LengthZeroError {
         ]
     }
 
+    fn is_of_mounting(&self) -> bool {
+        true
+    }
+
     fn act(&self, _: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
         if let Place::Input(input) = place {
             input.contraction += theta[0] / setting.length;

@@ -13,6 +13,7 @@ use crate::comparison::floor::noise_floor;
 use crate::comparison::levels::{Folds, Levels};
 use crate::comparison::requirements::{check_needs, check_size};
 use crate::comparison::rows::{Used, full_scale, lines, used};
+use crate::comparison::specimens::note;
 use crate::comparison::{loops, residuals};
 use crate::error::InferenceError;
 use crate::fit::carry_over::carry_over;
@@ -119,7 +120,7 @@ impl<'a> Analysis<'a> {
             Some((law, values, free)) => Model::from_law(self.muscle, law, values, *free),
             None => Model::new(self.muscle),
         }
-        .for_specimens(self.record.specimens());
+        .for_specimens(self.record.specimens())?;
         for (effect, values) in &self.options.known {
             let is_asked = |other: &Arc<dyn Effect>| other.card().name == effect.card().name;
             if !self.options.effects[..count].iter().any(is_asked) {
@@ -395,7 +396,7 @@ impl<'a> Analysis<'a> {
     }
 
     pub(crate) fn warnings(&self, ladder: &[Rung]) -> Vec<String> {
-        let mut warnings = Vec::new();
+        let mut warnings: Vec<String> = note(self.data, self.muscle).into_iter().collect();
         if self.folds.is_none() && self.options.held_out {
             warnings.push(
                 "nothing could be held out: there are fewer than three pressures, two specimens and three sweeps".to_owned(),

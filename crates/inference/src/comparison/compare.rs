@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use crate::comparison::analysis::{Analysis, Climbed, Options, without_state};
 use crate::comparison::document::{Comparison, DataSummary, NoiseFloor};
+use crate::comparison::specimens::{note, of_specimens};
 use crate::comparison::{loops, residuals, rivals, stack};
 use crate::error::InferenceError;
 use crate::fit::document::Fit;
@@ -18,7 +19,8 @@ use crate::fit::document::Fit;
 /// See [`InferenceError`]: too few rows, a muscle that doesn't match, an effect that doesn't fit the muscle or the data.
 pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
     // On a thread of the pool: small evaluations aren't handed over to it one by one.
-    rayon::scope(|_| compared(Analysis::new(data, muscle, options)?))
+    let data = of_specimens(data, muscle)?;
+    rayon::scope(|_| compared(Analysis::new(&data, muscle, options)?))
 }
 
 /// The same with the numbers of the last rung about known, of a model with the same effects, and the record that another analysis has.
@@ -118,7 +120,8 @@ pub struct Fitting {
 /// # Errors
 /// As [`compare`].
 pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
-    rayon::scope(|_| fitted(data, muscle, options))
+    let data = of_specimens(data, muscle)?;
+    rayon::scope(|_| fitted(&data, muscle, options))
 }
 
 fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
@@ -133,6 +136,7 @@ fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, In
     let mut fit = fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force));
     fit.warnings.extend(failed.map(|error| not_fitted("the fit", &error)));
     fit.warnings.extend(left.map(|left| without_state("the fit", &left)));
+    fit.warnings.extend(note(data, muscle));
     Ok(Fitting {
         model: prepared.model,
         fit,

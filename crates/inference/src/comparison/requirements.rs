@@ -25,11 +25,18 @@ pub(crate) fn check_size(
     let outside = |row: &usize| mask[*row] && !POSSIBLE.contains(&contraction(*row));
     let rows: Vec<usize> = (0..record.len()).filter(outside).collect();
     let Some(&row) = rows.first() else { return Ok(()) };
+    let specimen = record.specimens().get(record.moments()[row].specimen as usize);
+    let own = specimen.and_then(|name| Some((name, muscle.of_specimen(name).ok()?)));
+    let own = own.filter(|(name, _)| muscle.specimens().iter().any(|stated| stated.name() == *name));
+    let (name, length) = own.map_or_else(
+        || (muscle.name().to_owned(), muscle.length()),
+        |(name, own)| (format!("the specimen `{name}` of {}", muscle.name()), own.length()),
+    );
     Err(InferenceError::OtherSize {
-        muscle: muscle.name().to_owned(),
+        muscle: name,
         lines: format!("line {}", lines(data, &rows)),
         contraction: contraction(row),
-        length_m: muscle.length().si(),
+        length_m: length.si(),
     })
 }
 

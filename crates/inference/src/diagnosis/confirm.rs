@@ -290,8 +290,7 @@ pub(crate) fn starts(
     if showing.whole {
         return vec![showing.values.clone()];
     }
-    let copies =
-        if effect.card().group == bulge_effects::Group::Specimen { model.specimens().len() } else { 1 };
+    let copies = model.copies(effect.as_ref());
     let mut all: Vec<Vec<f64>> = Vec::new();
     let quadratic = showing.sizes.iter().any(|size| size.secant.is_some());
     for variant in if quadratic { &[0, 1][..] } else { &[0][..] } {

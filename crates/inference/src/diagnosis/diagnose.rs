@@ -9,6 +9,7 @@ use crate::comparison::analysis::{Analysis, Climbed, Options};
 use crate::comparison::compare::compare_near;
 use crate::comparison::mismatch::check_scale;
 use crate::comparison::rows::lines;
+use crate::comparison::specimens::of_specimens;
 use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
 use crate::diagnosis::document::Diagnosis;
@@ -67,9 +68,10 @@ pub fn diagnose(
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis, InferenceError> {
     // On a thread of the pool: small evaluations aren't handed over to it one by one.
-    rayon::scope(|_| match diagnosed(data, muscle, options) {
+    let data = of_specimens(data, muscle)?;
+    rayon::scope(|_| match diagnosed(&data, muscle, options) {
         Err(error @ (InferenceError::TooFewRows { .. } | InferenceError::Identical { .. })) => {
-            Ok(cannot_tell(data, muscle, &error.to_string()))
+            Ok(cannot_tell(&data, muscle, &error.to_string()))
         }
         found => found,
     })

@@ -138,7 +138,11 @@ pub(crate) fn ground(
     let slopes = at_means.by_pressure.iter().zip(&at_means.by_contraction);
     let input_variances: Vec<f64> = slopes
         .zip(averaged.counts())
-        .map(|((p, e), count)| ((p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)) / count)
+        .enumerate()
+        .map(|(row, ((p, e), count))| {
+            let contraction = noise.contraction * record.shortness(row);
+            ((p * noise.pressure_pa).powi(2) + (e * contraction).powi(2)) / count
+        })
         .collect();
     let counts: Vec<f64> = averaged.counts().collect();
     let stated = mean_of_rows(&input_variances, &counts);

@@ -114,7 +114,8 @@ pub fn plan(
     catalogue: &Catalogue,
     protocol: &Protocol,
 ) -> Result<Plan, InferenceError> {
-    let model = known_model(muscle, known, &protocol.specimens())?;
+    let (muscle, specimens) = &protocol.specimens_of(muscle)?;
+    let model = known_model(muscle, known, specimens)?;
     let prepared = with_nuisances(&model, catalogue)?;
     let theta = prepared.model.start();
     let planned = Planned::of(&prepared.model, &theta, protocol)?;
@@ -152,7 +153,7 @@ pub(crate) fn known_model(
     known: &[(Arc<dyn Effect>, Vec<f64>)],
     specimens: &[String],
 ) -> Result<Model, InferenceError> {
-    let mut model = Model::new(muscle).for_specimens(specimens);
+    let mut model = Model::new(muscle).for_specimens(specimens)?;
     for (effect, values) in known {
         model = model.with(effect, Some(values))?;
     }

@@ -229,9 +229,8 @@ impl Given<'_> {
 
     /// A part of the way from `off` to the usual numbers of effects.
     pub(crate) fn usual(base: &Model, effects: &[Arc<dyn Effect>], part: f64) -> Vec<f64> {
-        let specimens = base.specimens().len();
         let of = |effect: &Arc<dyn Effect>| {
-            let copies = if effect.card().group == bulge_effects::Group::Specimen { specimens } else { 1 };
+            let copies = base.copies(effect.as_ref());
             let own: Vec<f64> = effect
                 .parameters()
                 .into_iter()

@@ -38,7 +38,7 @@ pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
             // In the muscle already, with its widths.
             continue;
         }
-        if card.group == Group::Specimen {
+        if model.copies(chosen.effect.as_ref()) > 1 || card.group == Group::Specimen {
             extension.left_out.push((name, "it belongs to single specimens, not to the muscle"));
             continue;
         }
@@ -103,7 +103,9 @@ fn put(
     let card = chosen.effect.card();
     let about = |source| ModelError::Reshape { effect: card.name.to_owned(), source: Box::new(source) };
     if SHAPE_EFFECTS.contains(&card.name) {
-        return Ok(chosen.effect.reshape(muscle, numbers).map_err(about)?.muscle);
+        let reshaped = chosen.effect.reshape(muscle, numbers).map_err(about)?.muscle;
+        // In the ratio in which they were while it was fitted.
+        return Ok(reshaped.with_specimens_following(muscle));
     }
     let table = learnt(chosen.effect.as_ref(), numbers, widths).map_err(about)?;
     Ok(muscle.clone().with_learnt(table))

@@ -52,8 +52,11 @@ pub(crate) fn with_nuisances(model: &Model, catalogue: &Catalogue) -> Result<Pre
         prepared.priors.extend(std::iter::repeat_n(None, added));
         prepared.nuisance.extend(std::iter::repeat_n(true, added));
         let is_it = |p: &bulge_model::ModelParameter| p.effect == width.effect && p.name == width.parameter;
-        if let Some(place) = prepared.model.parameters().iter().position(is_it) {
-            prepared.priors[place] = Some(width.prior);
+        // Specimens that differ have each their own.
+        for (prior, _) in
+            prepared.priors.iter_mut().zip(prepared.model.parameters()).filter(|(_, p)| is_it(p))
+        {
+            *prior = Some(width.prior);
         }
     }
     Ok(prepared)

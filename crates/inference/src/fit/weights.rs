@@ -17,7 +17,7 @@ pub struct Noise {
     pub force_n: f64,
     /// Of the pressure \[Pa\].
     pub pressure_pa: f64,
-    /// Of the contraction.
+    /// Of the contraction of the muscle as stated; of shorter specimens it is more, see [`Record::shortness`].
     pub contraction: f64,
 }
 
@@ -46,7 +46,8 @@ impl Noise {
             .map(|row| {
                 let force = record.force_sd().map_or(self.force_n, |sd| sd[row].max(1e-3 * self.force_n));
                 let by_pressure = slope(&prediction.by_pressure, row) * self.pressure_pa;
-                let by_contraction = slope(&prediction.by_contraction, row) * self.contraction;
+                let by_contraction =
+                    slope(&prediction.by_contraction, row) * self.contraction * record.shortness(row);
                 (force * force + by_pressure * by_pressure + by_contraction * by_contraction).sqrt()
             })
             .collect()

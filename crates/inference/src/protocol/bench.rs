@@ -3,6 +3,8 @@
 use serde::Serialize;
 use std::ops::RangeInclusive;
 
+use bulge_muscles::Muscle;
+
 use crate::error::InferenceError;
 
 /// Most rows of a protocol.
@@ -401,6 +403,25 @@ impl Protocol {
     pub fn specimens(&self) -> Vec<String> {
         let count = self.blocks.iter().map(|block| block.specimens).max().unwrap_or(1);
         (1..=count).map(|specimen| specimen.to_string()).collect()
+    }
+
+    /// The muscle to try and the names of its specimens: those that it states, where there are as many; as stated, where the protocol has one specimen.
+    ///
+    /// # Errors
+    /// If the muscle states another number of specimens.
+    pub(crate) fn specimens_of(&self, muscle: &Muscle) -> Result<(Muscle, Vec<String>), InferenceError> {
+        let (own, stated) = (self.specimens(), muscle.specimens());
+        if own.len() == 1 || stated.is_empty() {
+            return Ok((muscle.clone().without_specimens(), own));
+        }
+        if own.len() == stated.len() {
+            return Ok((muscle.clone(), stated.iter().map(|specimen| specimen.name().to_owned()).collect()));
+        }
+        let count = stated.len();
+        Err(InferenceError::Protocol {
+            what: format!("the protocol has {} specimens, but {} states {count}", own.len(), muscle.name()),
+            instead: format!("write `specimens = {count}`, or 1 for the muscle as stated"),
+        })
     }
 
     /// What must hold for all: of a protocol that a program made.

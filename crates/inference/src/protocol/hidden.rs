@@ -60,7 +60,8 @@ pub fn simulate_with(
 ) -> Result<Simulation, HideError> {
     let find = |name: &str| Ok(Arc::clone(catalogue.find(name)?));
     let stated = stated(with, find, muscle)?;
-    let mut model = Model::new(muscle).for_specimens(&protocol.specimens());
+    let (muscle, specimens) = &protocol.specimens_of(muscle)?;
+    let mut model = Model::new(muscle).for_specimens(specimens)?;
     for (effect, numbers) in known(muscle, catalogue)? {
         model = model.with(&effect, Some(&numbers))?;
     }

@@ -80,7 +80,12 @@ pub fn simulate(
         check_needs(&chosen.effect, &done.record)?;
     }
     let rig = rig(model.muscle(), protocol, seed)?;
-    let csv = Readings { protocol, done: &done, rig, l0: model.muscle().length().si(), seed }.csv();
+    let names: Vec<&str> = (0..done.data.specimens().len())
+        .map(|i| model.specimens().get(i).unwrap_or(&done.data.specimens()[i]).as_str())
+        .collect();
+    let length = |name: &&str| model.muscle().of_specimen(name).unwrap_or(model.muscle().clone()).length();
+    let lengths = names.iter().map(|name| length(name).si()).collect();
+    let csv = Readings { protocol, done: &done, rig, names, lengths, seed }.csv();
     let data = Data::from_csv(&csv, "data.csv").map_err(|error| InferenceError::Protocol {
         what: format!("the simulated readings make no data: {error}"),
         instead: "check the noise of the protocol".to_owned(),
@@ -257,7 +262,9 @@ struct Readings<'a> {
     protocol: &'a Protocol,
     done: &'a Done,
     rig: RigReadings,
-    l0: f64,
+    /// Of the specimens, and their lengths \[m\].
+    names: Vec<&'a str>,
+    lengths: Vec<f64>,
     seed: u64,
 }
 
@@ -282,7 +289,7 @@ impl Readings<'_> {
                 }
                 if several {
                     let specimen = self.done.data.specimen()[row] as usize;
-                    let _ = write!(text, "{},", self.done.data.specimens()[specimen]);
+                    let _ = write!(text, "{},", self.names[specimen]);
                 }
                 let _ = write!(text, "{},", decimal(pressure / 1e5, DECIMALS[1]));
                 let _ = write!(text, "{},", decimal(100.0 * contraction, DECIMALS[2]));
@@ -307,10 +314,11 @@ impl Readings<'_> {
         let pressure = moment.pressure * (1.0 + self.rig.pressure_gain)
             + self.rig.pressure_zero_pa
             + sd.pressure_pa * noise[0];
-        let way = self.l0 * moment.contraction * (1.0 + self.rig.length_gain)
+        let l0 = self.lengths[moment.specimen as usize];
+        let way = l0 * moment.contraction * (1.0 + self.rig.length_gain)
             - self.rig.length_zero_m
             - sd.length_m * noise[1];
-        [stepped(pressure, steps.pressure_pa), stepped(way, steps.length_m) / self.l0]
+        [stepped(pressure, steps.pressure_pa), stepped(way, steps.length_m) / l0]
     }
 
     /// What the load cell reads in one sweep.

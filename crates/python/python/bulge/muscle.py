@@ -28,6 +28,13 @@ _STATE_UNITS = {"contraction": "1", "pressure": "Pa", "slenderness": "1", "elast
 _GIVEN = {"contraction": "1", "length": "m", "force": "N", "volume": "m^3"}
 
 
+def _of_muscle(native: _bulge.Muscle, name: str, value: Quantity) -> float:
+    """A number of a muscle in SI."""
+    # An unknown name is refused before its value is looked at.
+    native.get(name)
+    return si(value, effect_units("").get(name, "1"), name)
+
+
 class Muscle:
     """A pleated or braided muscle, with the effects that its file states.
 
@@ -43,7 +50,8 @@ class Muscle:
       "cylinder"), ``fibre`` ({"stiffness": [N], "section": [m^2]}), ``wall`` [m],
     - ``effects``: ``{"bladder-elasticity": {"c10": "0.2 MPa"}}``, each with the keys of its card (:func:`bulge.effects`),
     - ``instruments``: ``{"force": {"noise": "4 N", "zero": "1 N", "gain": "0.1 %"}}``,
-    - ``own``: effects of one's own that ``effects`` may name.
+    - ``own``: effects of one's own that ``effects`` may name,
+    - ``specimens``: what is measured together and differs, ``{"short": {"length": "60 mm"}}``, by the names of :meth:`number`.
     """
 
     __slots__ = ("_native",)
@@ -63,6 +71,7 @@ class Muscle:
         effects: Mapping[str, Mapping[str, Quantity]] | None = None,
         instruments: Mapping[str, Mapping[str, Quantity]] | None = None,
         own: OwnEffects = None,
+        specimens: Mapping[str, Mapping[str, Quantity]] | None = None,
     ) -> None:
         own_effects = own_text(own)
         lines = [f"name = {quoted(name)}", f"kind = {quoted(kind)}"]
@@ -86,7 +95,10 @@ class Muscle:
                 unit = _INSTRUMENT_UNITS.get(instrument, "1")
                 entries = {key: _written(value, "1" if key == "gain" else unit) for key, value in widths.items()}
                 lines.append(f"{quoted(instrument)} = {_inline(entries)}")
-        self._native = _bulge.Muscle.from_text("\n".join(lines) + "\n", name, own_effects)
+        native = _bulge.Muscle.from_text("\n".join(lines) + "\n", name, own_effects)
+        for specimen, numbers in (specimens or {}).items():
+            native = native.with_specimen(specimen, [(key, _of_muscle(native, key, value)) for key, value in numbers.items()])
+        self._native = native
 
     @classmethod
     def _of(cls, native: _bulge.Muscle) -> Muscle:
@@ -123,6 +135,15 @@ class Muscle:
         """Names of the effects that it states."""
         return self._native.effects
 
+    @property
+    def specimens(self) -> list[str]:
+        """Names of the specimens that have numbers of their own: ``[specimens.NAME]`` in the muscle file."""
+        return self._native.specimens
+
+    def specimen(self, name: str) -> Muscle:
+        """The muscle that a specimen is, with the effects of the muscle; any name that is not one of ``specimens`` raises :class:`bulge.InputError`."""
+        return Muscle._of(self._native.specimen(name))
+
     def number(self, name: str) -> float | None:
         """A number of the muscle in SI; None if this muscle has none of that name.
 
@@ -133,11 +154,9 @@ class Muscle:
 
     def replace(self, **numbers: Quantity) -> Muscle:
         """The muscle with other numbers, by the names of :meth:`number`: ``muscle.replace(radius="17 mm", fibres=36)``."""
-        native, units = self._native, effect_units("")
+        native = self._native
         for name, value in numbers.items():
-            # An unknown name is refused before its value is looked at.
-            native.get(name)
-            native = native.with_number(name, si(value, units.get(name, "1"), name))
+            native = native.with_number(name, _of_muscle(native, name, value))
         return Muscle._of(native)
 
     def to_toml(self, path: str | os.PathLike[str] | None = None) -> str:

@@ -59,7 +59,7 @@ fn every_key_is_read() {
     let path = folder.path().join("joint.toml");
     std::fs::write(&path, JOINT_EXAMPLE).unwrap();
     assert_eq!(Joint::read(&path).unwrap().name, "knee");
-    assert!(Joint::read(folder.path()).unwrap_err().to_string().contains("a folder, not a joint file"));
+    assert!(Joint::read(folder.path()).unwrap_err().to_string().contains("a directory, not a joint file"));
 }
 
 #[test]

@@ -1,0 +1,32 @@
+//! Specimens that differ: the data with the lengths of their specimens, as the muscle states them.
+
+use bulge_measurements::Data;
+use bulge_muscles::{Muscle, Quantity};
+use std::borrow::Cow;
+
+use crate::error::InferenceError;
+
+/// The data with the unpressurised lengths of specimens that have their own.
+///
+/// # Errors
+/// If nothing is measured on a specimen that the muscle states, or one of the data looks like a slip in its name.
+pub(crate) fn of_specimens<'d>(data: &'d Data, muscle: &Muscle) -> Result<Cow<'d, Data>, InferenceError> {
+    muscle.check_specimens(data.specimens()).map_err(|error| InferenceError::Specimens(Box::new(error)))?;
+    if muscle.specimens().is_empty() {
+        return Ok(Cow::Borrowed(data));
+    }
+    let length = |name: &str| muscle.of_specimen(name).ok().map(|own| own.length().si());
+    Ok(Cow::Owned(data.clone().with_lengths(length)))
+}
+
+/// What a reader should know of specimens of which nothing is stated.
+pub(crate) fn note(data: &Data, muscle: &Muscle) -> Option<String> {
+    let others = muscle.check_specimens(data.specimens()).ok().filter(|others| !others.is_empty())?;
+    let names: Vec<String> = others.iter().map(|name| format!("`{name}`")).collect();
+    let (is, its) = if names.len() == 1 { ("specimen", "a table") } else { ("specimens", "tables") };
+    Some(format!(
+        "the muscle as stated stands for the {is} {}, of which nothing else is stated: add {its} such as `[specimens.{}]` if they differ",
+        names.join(", "),
+        others[0]
+    ))
+}
