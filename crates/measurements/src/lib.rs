@@ -11,6 +11,7 @@ mod dimension;
 mod error;
 mod heading;
 mod history;
+mod isobars;
 mod parquet_file;
 mod parquet_page;
 mod quality;
@@ -24,6 +25,8 @@ mod slot;
 mod source;
 mod stretch;
 mod sweep;
+mod turning;
+mod window;
 
 pub use columns::{Columns, Labels, Trace};
 pub use data::{Data, Motion};

@@ -94,6 +94,8 @@ pub enum FindingKind {
     TimeGap,
     /// The label of a run returns after others.
     SweepInterrupted,
+    /// A sweep label goes on over what ends a run.
+    SweepContradicted,
     /// A coarse sensor.
     Quantised,
     /// A reading stays at its extreme while others move.
