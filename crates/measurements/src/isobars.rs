@@ -20,6 +20,9 @@ const FORCE: f64 = 0.2;
 const COVERED: f64 = 0.8;
 /// each has to be constant to this share of the largest pressure in eight tenths of its rows: a pressure that swings stays for a while at its ends.
 const FLAT: f64 = 0.03;
+/// Rows inside a run whose median the pressure at its ends has to reach, and how nearly, as a share of the largest, while the muscle rests.
+const SETTLED: usize = 15;
+const SETTLED_TO: f64 = 2e-3;
 /// Rows whose median is the pressure at an end of a run.
 const JUNCTION: usize = 3;
 /// So many rows between two runs are a disturbance if the pressure is the same after them.
@@ -61,6 +64,7 @@ pub(crate) fn find(readings: Readings<'_>, rows: &Range<usize>) -> Vec<Isobar> {
         way: range(&readings.motion[rows.clone()]),
         force_noise: spread * noise(&readings.force[rows.clone()]),
         motion_noise: spread * noise(&readings.motion[rows.clone()]),
+        pressure_noise: (0.5 * spread * noise(pressure)).max(SETTLED_TO * largest),
     };
     let mut found: Vec<Isobar> = Vec::new();
     for piece in pieces(pressure, band) {
@@ -84,6 +88,14 @@ pub(crate) fn find(readings: Readings<'_>, rows: &Range<usize>) -> Vec<Isobar> {
     }
     for isobar in &mut found {
         judge.trim(isobar, (EDGE * largest).max(0.5 * (band - BAND * largest)));
+    }
+    for second in 1..found.len() {
+        // Where the pressure takes time from one run to the other.
+        let (before, after) = (found[second - 1].rows.clone(), found[second].rows.clone());
+        if before.end < after.start {
+            found[second].rows.start = judge.settled(after.start, after.clone());
+            found[second - 1].rows.end = judge.settled(before.end - 1, before.rev()) + 1;
+        }
     }
     let is_step = |pair: &[Isobar]| (pair[1].pressure - pair[0].pressure).abs() > STEP * largest;
     if found.windows(2).any(is_step) { found } else { Vec::new() }
@@ -158,6 +170,7 @@ struct Judge<'a> {
     way: f64,
     force_noise: f64,
     motion_noise: f64,
+    pressure_noise: f64,
 }
 
 impl Judge<'_> {
@@ -172,7 +185,8 @@ impl Judge<'_> {
 
     /// Leaves the rows of the steps at both ends to these.
     fn trim(&self, isobar: &mut Isobar, edge: f64) {
-        let is_off = |row: usize| (self.readings.pressure[row] - isobar.pressure).abs() > edge;
+        let pressure = self.readings.pressure;
+        let is_off = |row: usize| (pressure[row] - isobar.pressure).abs() > edge;
         // A regulator that droops through the whole band has its median anywhere in it.
         let off = isobar.rows.clone().filter(|row| is_off(*row)).count();
         if 5 * off > isobar.rows.len() {
@@ -181,5 +195,28 @@ impl Judge<'_> {
         let start = isobar.rows.clone().find(|row| !is_off(*row)).unwrap_or(isobar.rows.start);
         let end = isobar.rows.clone().rev().find(|row| !is_off(*row)).map_or(isobar.rows.end, |row| row + 1);
         isobar.rows = start..end;
+    }
+
+    /// The first of the rows from an end of a run at which the muscle no longer rests where it did, or the pressure is that of the rows that follow.
+    fn settled(&self, from: usize, rows: impl Iterator<Item = usize> + Clone) -> usize {
+        let mut rows = rows;
+        loop {
+            let mut ahead = rows.clone();
+            let inside: Vec<f64> =
+                ahead.by_ref().take(SETTLED).map(|row| self.readings.pressure[row]).collect();
+            let Some(row) = rows.next() else { return from };
+            if inside.len() < SETTLED || !self.settles(row, from, inside) {
+                return row;
+            }
+        }
+    }
+
+    /// Whether the muscle rests where it did at the end of the run, and the pressure isn't yet that of the rows inside.
+    fn settles(&self, row: usize, from: usize, mut inside: Vec<f64>) -> bool {
+        let motion = self.readings.motion;
+        let pressure = self.readings.pressure;
+        let middle = median(&mut inside);
+        (motion[row] - motion[from]).abs() <= self.motion_noise
+            && (pressure[row] - middle).abs() > self.pressure_noise
     }
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 const REPEATED: usize = 3;
 
 impl Data {
-    /// Rows whose direction is in doubt, in ascending order: the first row of a sweep, which nothing leads to; each turning point, at which friction may have either
+    /// Rows whose direction is in doubt, in ascending order: the first row of a sweep and of an isobar in it, which nothing leads to; each turning point, at which friction may have either
     /// sign; and the rows next to them as long as the way between is not more than noise and steps of the sensor (rows that read the same set point
     /// again, or that a file counts to the other branch). None in a static map.
     #[must_use]
@@ -24,7 +24,13 @@ impl Data {
                 let rows = rows.take_while(|row| (s[*row] - s[from]).abs() <= resolved);
                 rows.filter(|row| moves(stretches, *row)).collect::<Vec<_>>()
             };
-            for turn in turns(&sweep.rows, stretches) {
+            // Nothing leads to the first row of an isobar either.
+            let between = self.between_isobars();
+            let is_between = |row: usize| between.binary_search(&row).is_ok();
+            let begins = |row: &usize| *row > sweep.rows.start && is_between(row - 1) && !is_between(*row);
+            let after_steps: Vec<usize> = sweep.rows.clone().filter(begins).collect();
+            found.extend(&after_steps);
+            for turn in turns(&sweep.rows, stretches).into_iter().chain(after_steps) {
                 found.extend(reach(turn, &mut (turn..sweep.rows.end)));
                 found.extend(reach(turn, &mut (sweep.rows.start..turn).rev()));
             }

@@ -37,8 +37,8 @@ fn compared(
     near: Option<(&Model, &[f64])>,
 ) -> Result<Comparison, InferenceError> {
     let mut analysis = Analysis { near, ..Analysis::new(data, muscle, options)? };
+    analysis.ask()?;
     let first = analysis.climb(0, None)?;
-    analysis.check_match(&first)?;
     let floor = analysis.measure_noise(&first);
     // Weights follow from the noise: the first rung again if it fits anything.
     let first = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
@@ -114,15 +114,17 @@ pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fi
 
 fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
     let mut analysis = Analysis::new(data, muscle, options)?;
+    analysis.ask()?;
     let base = analysis.climb(0, None)?;
-    analysis.check_match(&base)?;
     let noise_floor = analysis.measure_noise(&base);
     let climbed = analysis.climb(options.effects.len(), None)?;
     let rmse_n = residuals::summary(&analysis, &climbed.force).rmse;
     let Climbed { prepared, theta, fit, force } = climbed;
+    let mut fit = fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force));
+    fit.warnings.splice(0..0, analysis.findings.iter().map(ToString::to_string));
     Ok(Fitting {
         model: prepared.model,
-        fit: fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force)),
+        fit,
         data: analysis.summary(),
         before_rmse_n: residuals::summary(&analysis, &base.force).rmse,
         rmse_n,

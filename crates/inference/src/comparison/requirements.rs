@@ -7,6 +7,7 @@ use bulge_muscles::{Muscle, Quantity};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use crate::comparison::mismatch::possible_motion;
 use crate::comparison::rows::lines;
 use crate::error::InferenceError;
 
@@ -25,11 +26,13 @@ pub(crate) fn check_size(
     let outside = |row: &usize| mask[*row] && !POSSIBLE.contains(&contraction(*row));
     let rows: Vec<usize> = (0..record.len()).filter(outside).collect();
     let Some(&row) = rows.first() else { return Ok(()) };
+    let is_possible = |contraction: f64| POSSIBLE.contains(&contraction);
     Err(InferenceError::OtherSize {
         muscle: muscle.name().to_owned(),
         lines: format!("line {}", lines(data, &rows)),
         contraction: contraction(row),
         length_m: muscle.length().si(),
+        meant: possible_motion(data, muscle, &is_possible),
     })
 }
 

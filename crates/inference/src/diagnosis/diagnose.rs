@@ -6,8 +6,8 @@ use bulge_muscles::{Muscle, Quantity};
 use std::sync::Arc;
 
 use crate::comparison::analysis::{Analysis, Climbed, Options};
-use crate::comparison::compare::compare_near;
-use crate::comparison::mismatch::check_scale;
+use crate::comparison::compare::{compare, compare_near};
+use crate::comparison::document::Comparison;
 use crate::diagnosis::averaged::Averaged;
 use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
@@ -16,7 +16,7 @@ use crate::diagnosis::next::{Judged, Limits, NextLimits, next_experiment};
 use crate::diagnosis::noise::Source;
 use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::{Search, Stage};
-use crate::diagnosis::write::{Findings, cannot_tell, document};
+use crate::diagnosis::write::{Findings, cannot_tell, document, unanswered};
 use crate::error::InferenceError;
 use crate::noise::law::NoiseLaw;
 use crate::noise::whitening::Whitening;
@@ -90,9 +90,11 @@ struct Ground {
 fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<Diagnosis, InferenceError> {
     let progress = &options.progress;
     let mut analysis = Analysis::new(data, muscle, &options.base)?;
-    check_scale(data, &analysis.as_stated()?, &analysis.used.mask)?;
+    analysis.ask()?;
+    if analysis.findings.iter().any(|finding| finding.decided) {
+        return Ok(unanswered(data, muscle, compared_as_stated(data, muscle, options)?));
+    }
     let first = analysis.climb(0, None)?;
-    analysis.check_match(&first)?;
     analysis.measure_noise(&first);
     let base = analysis.climb(options.base.effects.len(), Some(&first))?;
     progress.at(0.1, "the noise");
@@ -153,6 +155,15 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
     Ok(document(muscle, &found, comparison))
 }
 
+/// The comparison with the base alone.
+fn compared_as_stated(
+    data: &Data,
+    muscle: &Muscle,
+    options: &DiagnoseOptions,
+) -> Result<Comparison, InferenceError> {
+    compare(data, muscle, &Options { rivals: false, held_out: false, ..options.base.clone() })
+}
+
 /// Means, their forces, and their noise under the base model.
 fn ground(
     analysis: &Analysis<'_>,
@@ -176,7 +187,7 @@ fn ground(
         .map(|((p, e), count)| ((p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)) / count)
         .collect();
     let counts: Vec<f64> = averaged.counts().collect();
-    let stated = mean_of_rows(&input_variances, &counts);
+    let stated = variance_of_rows(&input_variances, &counts);
     let residual: Vec<f64> =
         analysis.record.force().iter().zip(&base.force).map(|(measured, force)| measured - force).collect();
     let extra = unequal(&averaged, &counts, &residual, analysis.record.force_sd());
@@ -228,8 +239,7 @@ fn unequal(averaged: &Averaged, counts: &[f64], residual: &[f64], stated: Option
 
 /// Rows that count as independent: as many single rows as would know a constant as well as the means do.
 fn effective_rows(law: &NoiseLaw, ground: &Ground, whitening: &Whitening, sd_n: f64) -> f64 {
-    let means = ground.input_variances.len().max(1) as f64;
-    let inputs = ground.input_variances.iter().sum::<f64>() / means;
+    let inputs = variance_of_rows(&ground.input_variances, &vec![1.0; ground.input_variances.len()]);
     let of_mean = law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs;
     let rows: f64 = ground.averaged.counts().sum();
     if of_mean > 0.0 { (whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
@@ -244,12 +254,13 @@ fn row_sd(law: &NoiseLaw, ground: &Ground, residual: &[f64]) -> f64 {
 fn white_of_row(law: &NoiseLaw, ground: &Ground, residual: &[f64]) -> f64 {
     let counts: Vec<f64> = ground.averaged.counts().collect();
     let (sum, freedom) = ground.averaged.within(residual);
-    let own = law.white_n.powi(2) + mean_of_rows(&ground.input_variances, &counts);
+    let own = law.white_n.powi(2) + variance_of_rows(&ground.input_variances, &counts);
     if freedom > 0.0 { (sum / freedom).max(own) } else { own }
 }
 
-/// Mean variance of single rows from those of means.
-fn mean_of_rows(variances: &[f64], counts: &[f64]) -> f64 {
-    let sum: f64 = variances.iter().zip(counts).map(|(variance, count)| variance * count).sum();
-    sum / variances.len().max(1) as f64
+/// Median variance of single rows from those of means: that of rows in doubt is not the rule.
+fn variance_of_rows(variances: &[f64], counts: &[f64]) -> f64 {
+    let mut all: Vec<f64> = variances.iter().zip(counts).map(|(variance, count)| variance * count).collect();
+    all.sort_unstable_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.0)
 }

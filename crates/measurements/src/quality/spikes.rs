@@ -22,29 +22,38 @@ const PASSES: usize = 3;
 /// More than one row in so many is the way this quantity scatters.
 const MOST: usize = 20;
 
-pub(super) fn find(gate: &Gate) -> Vec<Finding> {
-    let columns = [
+/// Spikes of each column.
+pub(super) fn in_columns<'a>(gate: &Gate<'a>) -> Vec<(&'static str, Vec<usize>)> {
+    let columns: [(&'static str, &'a [f64], &Resolution); 3] = [
         ("force", gate.data.force(), &gate.force),
         (gate.motion_name(), gate.motion, gate.motion_resolution()),
         ("pressure", gate.data.pressure(), &gate.pressure),
     ];
-    let of_column = |(name, values, resolution): (&str, &[f64], &Resolution)| {
-        let rows = along(gate.data, values, resolution, RANGE);
+    columns.map(|(name, values, resolution)| (name, along(gate.data, values, resolution, RANGE))).to_vec()
+}
+
+pub(super) fn find(gate: &Gate) -> Vec<Finding> {
+    let of_column = |(name, rows): (&str, Vec<usize>)| {
+        let value = |row: usize| match name {
+            "force" => gate.data.force()[row],
+            "pressure" => gate.data.pressure()[row],
+            _ => gate.motion[row],
+        };
         gate.finding_if_any(
             FindingKind::Spike,
             Severity::Warning,
             &rows,
             |count| {
-                let value = rows.first().map_or(0.0, |row| values[*row]);
+                let first = rows.first().map_or(0.0, |row| value(*row));
                 format!(
-                    "the {name} of {} lies far from the rows around, the first at {value:.6} (SI)",
+                    "the {name} of {} lies far from the rows around, the first at {first:.6} (SI)",
                     rows_in_words(count)
                 )
             },
             "nothing: these rows don't count; remove them if the reading was disturbed",
         )
     };
-    columns.into_iter().filter_map(of_column).collect()
+    in_columns(gate).into_iter().filter_map(of_column).collect()
 }
 
 impl Data {
