@@ -296,7 +296,9 @@ fn units_that_cannot_be_true_are_asked_about() {
     let contraction = |factor: f64| {
         move |columns: &mut Columns| {
             let Trace::Contraction(values) = &mut columns.motion else { return };
-            values.iter_mut().for_each(|value| *value *= factor);
+            for value in values {
+                *value *= factor;
+            }
         }
     };
     let absolute = |columns: &mut Columns| columns.pressure_pa.iter_mut().for_each(|p| *p += 1.005e5);

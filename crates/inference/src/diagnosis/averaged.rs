@@ -113,7 +113,9 @@ impl Averaged {
                 let around = place.saturating_sub(AROUND)..(place + AROUND + 1).min(rows.len());
                 let mut values: Vec<f64> = rows[around].iter().map(|row| residual[*row]).collect();
                 let middle = median(&mut values);
-                values.iter_mut().for_each(|value| *value = (*value - middle).abs());
+                for value in &mut values {
+                    *value = (*value - middle).abs();
+                }
                 let most = BOUND * (MAD_TO_SD * median(&mut values)).max(least);
                 bounded[rows[place]] = value.max(low.min(middle - most)).min(high.max(middle + most));
             }
@@ -249,7 +251,9 @@ mod tests {
         }
         // Without order nothing is known of neighbours.
         let mut moments = record.moments().to_vec();
-        moments.iter_mut().for_each(|m| m.direction = 0.0);
+        for moment in &mut moments {
+            moment.direction = 0.0;
+        }
         let map = Record::from_moments(moments, vec![0.0; 1000], record.sweeps().to_vec()).unwrap();
         let averaged = Averaged::of(&map, &vec![true; 1000], &levels, 100).unwrap();
         assert_eq!(averaged.bounded(&residual), residual);

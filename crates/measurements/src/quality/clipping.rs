@@ -97,8 +97,7 @@ fn in_column(
     }
     // Where the range ends for some rows it ends for all.
     let at_end = |row: &usize| ends.contains(&values[*row]);
-    let rows = gate.data.paths().flat_map(|(sweep, _)| sweep.rows.clone()).filter(at_end).collect();
-    rows
+    gate.data.paths().flat_map(|(sweep, _)| sweep.rows.clone()).filter(at_end).collect()
 }
 
 /// By how much the force should have changed in a run, from how it changed with motion and pressure just before and after.
