@@ -4,6 +4,7 @@ pub(crate) mod analysis;
 mod base_law;
 pub(crate) mod compare;
 pub(crate) mod document;
+pub(crate) mod doubt;
 pub(crate) mod floor;
 pub(crate) mod levels;
 pub(crate) mod loops;

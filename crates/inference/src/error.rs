@@ -29,31 +29,10 @@ pub enum InferenceError {
         /// How many.
         rows: usize,
     },
-    /// The muscle doesn't match the data.
-    #[error(
-        "the muscle doesn't match the data: {muscle} would push at {lines} ({rows} rows; first at contraction {contraction:.3} and {pressure_pa:.0} Pa: \
-         {force_n:.0} N), where the measured muscle pulls with up to {measured_n:.0} N; check length, radius and the zero of the contraction"
-    )]
-    BeyondLimit {
-        /// Name of the muscle.
-        muscle: String,
-        /// Lines of the file.
-        lines: String,
-        /// How many rows.
-        rows: usize,
-        /// Contraction of the first.
-        contraction: f64,
-        /// Its pressure \[Pa\].
-        pressure_pa: f64,
-        /// What the model says of it \[N\].
-        force_n: f64,
-        /// Largest force that was measured at these rows \[N\].
-        measured_n: f64,
-    },
     /// The contractions are impossible: the data are those of another muscle, or in another unit.
     #[error(
         "the muscle doesn't match the data: the contraction at {lines} is {:.1} % of the {:.1} mm of {muscle}; check `length` in the muscle file, and the \
-         unit and the zero of the data", 100.0 * contraction, 1e3 * length_m
+         unit and the zero of the data{meant}", 100.0 * contraction, 1e3 * length_m
     )]
     OtherSize {
         /// Name of the muscle.
@@ -64,6 +43,8 @@ pub enum InferenceError {
         contraction: f64,
         /// Length of the muscle \[m\].
         length_m: f64,
+        /// What the readings may have been meant as; may be empty.
+        meant: String,
     },
     /// An effect needs something that the data don't have.
     #[error("`{effect}` needs {needs}, which these data don't have; leave it out or measure it")]
@@ -88,17 +69,6 @@ pub enum InferenceError {
         what: String,
         /// What it says.
         source: Box<ModelError>,
-    },
-    /// Measured and computed forces differ by one large factor.
-    #[error(
-        "the muscle doesn't match the data: the measured forces are {factor:.3} times those of the model at all pressures and contractions, which no \
-         physical effect does; check {check}"
-    )]
-    OtherScale {
-        /// Measured over computed.
-        factor: f64,
-        /// What to check.
-        check: String,
     },
     /// The noise of a record can't be described or whitened.
     #[error("the noise: {0}")]

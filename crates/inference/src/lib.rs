@@ -25,7 +25,7 @@ pub use bulge_numerics::Random;
 pub use comparison::analysis::Options;
 pub use comparison::compare::{Fitting, compare, fit_effects};
 pub use comparison::document::{
-    Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, LeftOut, LoopGap, NoiseFloor, Part,
+    Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, LeftOut, LoopGap, Mismatch, NoiseFloor, Part,
     ResidualMap, Rival, Rung, Stack,
 };
 pub use diagnosis::confidence::Confidence;

@@ -5,7 +5,7 @@ use crate::error::MeasurementError;
 use crate::resolution::{Resolution, bounds};
 use crate::source::{Source, SourceFile, fingerprint};
 use crate::stretch::{self, DeadBand, Stretch};
-use crate::sweep::{self, Sweep, SweepKind};
+use crate::sweep::{self, Contradiction, Sweep, SweepKind};
 use std::ops::Range;
 use std::path::Path;
 
@@ -22,9 +22,9 @@ pub enum Motion<'a> {
 ///
 /// Rows with a time or a sweep label are a path: they follow each other, and [`Data::history`] says how the muscle moved. Without both
 /// they are a static map. Sweeps are the runs with one label; without labels a new one begins with another file or specimen, where the
-/// time goes back or pauses for more than 20 times the median time between rows, and where an isobaric run ends and another begins. There pressure and
-/// motion jump within one row, by more than 5 % of their range and 20 times their median change, between rows of constant pressure; and the jump is not that of a
-/// muscle that follows a step of pressure, because it goes the other way, or the muscle moves before and after it as well.
+/// time goes back or pauses for more than 20 times the median time between rows, and where the pressure steps from one isobaric run to another: stretches of constant
+/// pressure (within 8 % of the largest) over which the muscle is driven and its force changes. Steps of pressure at held length or under a weight begin none.
+/// A label is believed unless its rows contradict it in one of these ways but for pauses; then it falls into parts, and [`Data::quality`] says so.
 ///
 /// ```
 /// use bulge_measurements::{Data, SweepKind};
@@ -51,6 +51,10 @@ pub struct Data {
     /// Unpressurised length of each specimen \[m\], where it is not the muscle's; empty if none has its own.
     lengths: Vec<Option<f64>>,
     sweeps: Vec<Sweep>,
+    /// Rows of steps of pressure between isobaric runs, in ascending order.
+    between: Vec<usize>,
+    /// Where a stated sweep contradicts itself.
+    pub(crate) contradictions: Vec<(usize, Contradiction)>,
     pub(crate) structure: Structure,
 }
 
@@ -114,6 +118,8 @@ impl Data {
             specimens: Vec::new(),
             lengths: Vec::new(),
             sweeps: Vec::new(),
+            between: Vec::new(),
+            contradictions: Vec::new(),
             structure: Structure {
                 stretches: Vec::new(),
                 pressure_stretches: Vec::new(),
@@ -155,7 +161,9 @@ impl Data {
                 (rows, if is_one { String::new() } else { format!("{stem}/") })
             })
             .collect();
-        self.sweeps = sweep::find(&self.columns, &self.specimen, &files);
+        let found = sweep::find(&self.columns, &self.specimen, &files);
+        (self.sweeps, self.between, self.contradictions) =
+            (found.sweeps, found.between, found.contradictions);
         self.finished()
     }
 
@@ -345,6 +353,13 @@ impl Data {
         &self.sweeps
     }
 
+    /// Rows of steps of pressure from one isobaric run to the next within a recording, in ascending order: they belong to the run that they lead to, or are one
+    /// of their own, and lie on no isobar.
+    #[must_use]
+    pub fn between_isobars(&self) -> &[usize] {
+        &self.between
+    }
+
     /// Index of the file of a row, and its line there (CSV) or its number (Parquet), counted from 1; line 0 if there is no such row.
     #[must_use]
     pub fn line(&self, row: usize) -> (usize, usize) {
@@ -395,6 +410,10 @@ impl Data {
             file.rows = count(&rows).len();
         }
         found.sweeps.iter_mut().for_each(|sweep| sweep.rows = count(&sweep.rows));
+        let place = |row: &usize| kept.binary_search(row).ok();
+        found.between = self.between.iter().filter_map(place).collect();
+        let placed = self.contradictions.iter().filter_map(|(row, what)| Some((place(row)?, *what)));
+        found.contradictions = placed.collect();
         found.sweeps.retain(|sweep| !sweep.rows.is_empty());
         found.finished()
     }

@@ -94,6 +94,8 @@ pub enum FindingKind {
     TimeGap,
     /// The label of a run returns after others.
     SweepInterrupted,
+    /// A sweep label goes on over what ends a run.
+    SweepContradicted,
     /// A coarse sensor.
     Quantised,
     /// A reading stays at its extreme while others move.
@@ -155,6 +157,49 @@ impl Data {
         let mut findings: Vec<Finding> = checks.iter().flat_map(|check| check(&gate)).collect();
         findings.sort_by_key(|finding| finding.kind);
         Quality { findings }
+    }
+}
+
+/// Rows with a reading that is none of the muscle's.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Disturbance {
+    /// The rows, in ascending order.
+    pub rows: Vec<usize>,
+    /// What is wrong with them.
+    pub why: String,
+}
+
+impl Data {
+    /// Rows whose readings are spikes, stood still or were clipped, by column. A static map has none that could be told.
+    #[must_use]
+    pub fn disturbed(&self) -> Vec<Disturbance> {
+        if self.is_empty() || !self.is_path() {
+            return Vec::new();
+        }
+        let options = QualityOptions::default();
+        let gate = Gate::new(self, &options);
+        let named = |what: &'static str| {
+            move |(name, rows): (&str, Vec<usize>)| Disturbance {
+                rows,
+                why: format!("{what}: the {name} {}", of(what)),
+            }
+        };
+        let found = spikes::in_columns(&gate).into_iter().map(named("spike"));
+        let clipped = clipping::in_columns(&gate).into_iter().map(named("clipped"));
+        let frozen = Disturbance {
+            rows: frozen::rows(&gate),
+            why: "frozen: pressure, motion and force repeat the row before to the last digit".to_owned(),
+        };
+        found.chain(clipped).chain([frozen]).filter(|found| !found.rows.is_empty()).collect()
+    }
+}
+
+/// What is wrong with a column.
+fn of(what: &str) -> &'static str {
+    if what == "spike" {
+        "lies far from what the rows around lead to"
+    } else {
+        "stays at the end of its range while others move"
     }
 }
 

@@ -1,7 +1,7 @@
 //! Monotone stretches of a motion: turning points by a zigzag with a dead band, and rests.
 
 use crate::resolution::{Resolution, median};
-use std::collections::VecDeque;
+use crate::window::Window;
 use std::ops::Range;
 
 /// Rows over which the motion keeps its direction.
@@ -47,6 +47,11 @@ impl DeadBand {
         let spread = 1.0 + (2.0 * (rows.max(2) as f64).ln()).sqrt();
         let half_noise = (0.75 * step).max(spread * noise);
         Self { width: (2.0 * half_noise).max(Self::OF_TRAVEL * resolution.range), half_noise }
+    }
+
+    /// The way that noise and steps of the sensor feign.
+    pub(crate) fn resolved(&self) -> f64 {
+        self.half_noise
     }
 }
 
@@ -221,50 +226,6 @@ fn merged(mut one: Vec<Range<usize>>, other: Vec<Range<usize>>) -> Vec<Range<usi
     found
 }
 
-/// The longest run of rows from a given one whose values stay within a band, for rows asked in rising order, in O(n) altogether.
-struct Window<'a> {
-    s: &'a [f64],
-    /// Rows that could be the lowest and the highest of the window, in order.
-    low: VecDeque<usize>,
-    high: VecDeque<usize>,
-    /// The first row that is not in the window.
-    end: usize,
-}
-
-impl<'a> Window<'a> {
-    fn new(s: &'a [f64]) -> Self {
-        Self { s, low: VecDeque::new(), high: VecDeque::new(), end: 0 }
-    }
-
-    fn last_within(&mut self, first: usize, band: f64) -> usize {
-        let s = self.s;
-        for rows in [&mut self.low, &mut self.high] {
-            while rows.front().is_some_and(|row| *row < first) {
-                rows.pop_front();
-            }
-        }
-        self.end = self.end.max(first);
-        while self.end < s.len() {
-            let value = s[self.end];
-            let low = self.low.front().map_or(value, |row| s[*row].min(value));
-            let high = self.high.front().map_or(value, |row| s[*row].max(value));
-            if high - low > band {
-                break;
-            }
-            while self.low.back().is_some_and(|row| s[*row] >= value) {
-                self.low.pop_back();
-            }
-            while self.high.back().is_some_and(|row| s[*row] <= value) {
-                self.high.pop_back();
-            }
-            self.low.push_back(self.end);
-            self.high.push_back(self.end);
-            self.end += 1;
-        }
-        self.end.saturating_sub(1).max(first)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -390,20 +351,5 @@ mod tests {
         assert_eq!(directions(&[0.1, 0.2]), [(2, 1)]);
         assert_eq!(directions(&[0.1; 5]), [(5, 0)]);
         assert_eq!(directions(&[]), []);
-    }
-
-    #[test]
-    fn windows_are_the_longest() {
-        let mut noise = Noise::new(3);
-        let s: Vec<f64> = (0..300).map(|_| noise.normal()).collect();
-        let mut window = Window::new(&s);
-        for first in 0..s.len() {
-            let within = |last: usize| {
-                let (low, high) = crate::resolution::bounds(&s[first..=last]);
-                high - low <= 1.5
-            };
-            let last = (first..s.len()).take_while(|last| within(*last)).last().unwrap();
-            assert_eq!(window.last_within(first, 1.5), last);
-        }
     }
 }

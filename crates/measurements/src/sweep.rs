@@ -1,6 +1,7 @@
 //! Sweeps: uninterrupted runs, as labelled or as found in time, pressure and motion.
 
-use crate::columns::{Columns, Trace};
+use crate::columns::Columns;
+use crate::isobars;
 use crate::resolution::{bounds, median};
 use crate::stretch::Stretch;
 use serde::Serialize;
@@ -39,106 +40,132 @@ pub struct Sweep {
 
 /// A pause this many times as long as the median time between rows begins a new sweep.
 pub(crate) const GAP: f64 = 20.0;
-/// A jump in one row to another pressure and another contraction begins a new sweep if both are more than this share of their range,
-const JUMP: f64 = 0.05;
-/// and more than this many times the median change between rows,
-const JUMP_OF_STEPS: f64 = 20.0;
-/// if the pressure is constant over so many rows on both sides,
-const AROUND: usize = 5;
-/// and the muscle shortens although the pressure falls, or lengthens although it rises; else if it also moves before and after, over so many rows
-const MOVING_AROUND: usize = 20;
-/// by this share of the jump: a muscle under a weight that follows a step of pressure stands still before and nearly still after.
-const MOVING: f64 = 0.01;
+/// Rows of a step of pressure from one isobaric run to another are a run of their own if they are more than this share of the shorter of the two.
+const LONG_STEP: f64 = 0.2;
 /// A sweep whose contraction changes less, while the pressure changes, is isometric: the rig gives way a little.
 const ISOMETRIC_TRAVEL: f64 = 2e-3;
 /// A pressure that changes by more than this share of the largest is no constant pressure.
 const PRESSURE_CHANGE: f64 = 0.05;
 
-/// The sweeps of a data set without their kind. `files` are the rows of each file, with the name's beginning.
-pub(crate) fn find(columns: &Columns, specimen: &[u32], files: &[(Range<usize>, String)]) -> Vec<Sweep> {
-    let mut found = Vec::new();
+/// The sweeps of a data set without their kind, and what else follows from where they begin.
+#[derive(Debug, Default)]
+pub(crate) struct Found {
+    pub(crate) sweeps: Vec<Sweep>,
+    /// Rows of steps of pressure between isobaric runs, in ascending order.
+    pub(crate) between: Vec<usize>,
+    /// First rows of parts into which a stated sweep falls, with what it contradicts itself by.
+    pub(crate) contradictions: Vec<(usize, Contradiction)>,
+}
+
+/// How a sweep label contradicts its rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Contradiction {
+    /// The time runs back.
+    Time,
+    /// The specimen changes.
+    Specimen,
+    /// The pressure steps from one level to another.
+    Pressure,
+}
+
+/// Finds the sweeps. `files` are the rows of each file, with the name's beginning.
+pub(crate) fn find(columns: &Columns, specimen: &[u32], files: &[(Range<usize>, String)]) -> Found {
+    let mut found = Found::default();
     for (file, prefix) in files {
-        let first = found.len();
+        let first = found.sweeps.len();
         let mut start = file.start;
+        let mut label_before = None;
         for part in specimen.get(file.clone()).unwrap_or_default().chunk_by(|a, b| a == b) {
             let rows = start..start + part.len();
             start = rows.end;
-            for rows in runs(columns, &rows) {
-                let number = found.len() - first + 1;
-                let label = columns
-                    .sweep
-                    .as_ref()
-                    .and_then(|labels| labels.names().get(*labels.rows().get(rows.start)? as usize).cloned());
+            for rows in runs(columns, &rows, &mut found) {
+                let number = found.sweeps.len() - first + 1;
+                let labels = columns.sweep.as_ref();
+                let label = labels.and_then(|labels| labels.rows().get(rows.start).copied());
+                if label.is_some() && label == label_before && rows.start == start - part.len() {
+                    found.contradictions.push((rows.start, Contradiction::Specimen));
+                }
+                label_before = label;
+                let label = label.and_then(|label| labels?.names().get(label as usize).cloned());
                 let name = format!("{prefix}{}", label.unwrap_or_else(|| number.to_string()));
-                found.push(Sweep { name, rows, specimen: part[0], kind: SweepKind::Static });
+                found.sweeps.push(Sweep { name, rows, specimen: part[0], kind: SweepKind::Static });
             }
         }
     }
+    found.contradictions.sort_by_key(|(row, _)| *row);
     found
 }
 
 /// The uninterrupted runs among rows of one specimen in one file.
-fn runs(columns: &Columns, rows: &Range<usize>) -> Vec<Range<usize>> {
+fn runs(columns: &Columns, rows: &Range<usize>, found: &mut Found) -> Vec<Range<usize>> {
+    let labels = columns.sweep.as_ref().map(crate::columns::Labels::rows);
+    let time = columns.time_s.as_deref();
     let mut starts = vec![rows.start];
-    if let Some(labels) = &columns.sweep {
-        let labels = labels.rows();
-        starts.extend((rows.start + 1..rows.end).filter(|i| labels[*i] != labels[i - 1]));
-    } else if let Some(time) = &columns.time_s {
+    if let Some(labels) = labels {
+        let is_new = |i: usize| labels[i] != labels[i - 1];
+        // A clock that is set back to where the run began, or before; else rows are out of order, and begin no run.
+        let mut began = rows.start;
+        let mut restarts = Vec::new();
+        for i in rows.start + 1..rows.end {
+            let is_back = time.is_some_and(|time| time[i] < time[i - 1] && time[i] <= time[began]);
+            if is_back && !is_new(i) {
+                restarts.push(i);
+            }
+            if is_back || is_new(i) {
+                began = i;
+            }
+        }
+        found.contradictions.extend(restarts.iter().map(|row| (*row, Contradiction::Time)));
+        starts.extend((rows.start + 1..rows.end).filter(|i| is_new(*i)));
+        starts.extend(restarts);
+        starts.sort_unstable();
+    } else if let Some(time) = time {
         let mut forward: Vec<f64> =
             time[rows.clone()].windows(2).map(|w| w[1] - w[0]).filter(|step| *step > 0.0).collect();
         let pause = GAP * median(&mut forward);
-        let jumps = Jumps::new(columns, rows);
-        let breaks = |i: &usize| time[*i] < time[i - 1] || time[*i] - time[i - 1] > pause || jumps.is_at(*i);
+        let breaks = |i: &usize| time[*i] < time[i - 1] || time[*i] - time[i - 1] > pause;
         starts.extend((rows.start + 1..rows.end).filter(breaks));
+    } else {
+        return std::iter::once(rows.clone()).collect();
     }
     let ends = starts.iter().skip(1).copied().chain([rows.end]);
-    starts.iter().zip(ends).map(|(start, end)| *start..end).collect()
-}
-
-/// Jumps from the end of one isobaric run to the start of another.
-struct Jumps<'a> {
-    pressure: &'a [f64],
-    motion: &'a [f64],
-    rows: &'a Range<usize>,
-    /// Smallest jumps of pressure and motion.
-    least: [f64; 2],
-    /// +1 where the motion is a contraction, -1 where it is a length.
-    sign: f64,
-}
-
-impl<'a> Jumps<'a> {
-    fn new(columns: &'a Columns, rows: &'a Range<usize>) -> Self {
-        let (pressure, motion) = (columns.pressure_pa.as_slice(), columns.motion.values());
-        let least = [pressure, motion].map(|values| {
-            let values = &values[rows.clone()];
-            let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
-            let (low, high) = bounds(values);
-            (JUMP * (high - low)).max(JUMP_OF_STEPS * median(&mut steps))
-        });
-        let sign = if matches!(columns.motion, Trace::Contraction(_)) { 1.0 } else { -1.0 };
-        Self { pressure, motion, rows, least, sign }
-    }
-
-    /// Whether a new run begins at this row.
-    fn is_at(&self, row: usize) -> bool {
-        let [pressure, motion] = [self.pressure, self.motion].map(|values| values[row] - values[row - 1]);
-        if pressure.abs() <= self.least[0] || motion.abs() <= self.least[1] {
-            return false;
+    let mut split = Vec::new();
+    for recording in starts.iter().zip(ends).map(|(start, end)| *start..end) {
+        let parts = isobaric(columns, &recording, &mut found.between);
+        if labels.is_some() {
+            let inner = parts.iter().skip(1);
+            found.contradictions.extend(inner.map(|part| (part.start, Contradiction::Pressure)));
         }
-        let sides = |rows: usize| {
-            [row.saturating_sub(rows).max(self.rows.start)..row, row..(row + rows).min(self.rows.end)]
-        };
-        let is_isobaric = sides(AROUND).iter().all(|side| {
-            let (low, high) = bounds(&self.pressure[side.clone()]);
-            high - low < 0.1 * pressure.abs()
-        });
-        let moves = || {
-            sides(MOVING_AROUND).iter().all(|side| {
-                (self.motion[side.end - 1] - self.motion[side.start]).abs() > MOVING * motion.abs()
-            })
-        };
-        is_isobaric && (pressure * motion * self.sign < 0.0 || moves())
+        split.extend(parts);
     }
+    split
+}
+
+/// A recording cut between its isobaric runs. Rows of a short step belong to the run that they lead to; those of a long one are a run of their own.
+fn isobaric(columns: &Columns, recording: &Range<usize>, between: &mut Vec<usize>) -> Vec<Range<usize>> {
+    let readings = isobars::Readings {
+        pressure: &columns.pressure_pa,
+        motion: columns.motion.values(),
+        force: &columns.force_n,
+    };
+    let isobars = isobars::find(readings, recording);
+    let mut parts = Vec::new();
+    let mut start = recording.start;
+    for pair in isobars.windows(2) {
+        let [before, after] = [&pair[0].rows, &pair[1].rows];
+        let step = before.end..after.start;
+        let most = LONG_STEP * before.len().min(after.len()) as f64;
+        if step.len() as f64 > most {
+            parts.extend([start..step.start, step.clone()]);
+            start = step.end;
+        } else {
+            parts.push(start..step.start);
+            start = step.start;
+        }
+        between.extend(step);
+    }
+    parts.push(start..recording.end);
+    parts
 }
 
 /// Whether a sweep keeps its pressure; `largest` is the largest pressure in the data.

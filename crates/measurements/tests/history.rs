@@ -7,7 +7,7 @@
     reason = "a test that cannot be set up fails; values are exact by construction"
 )]
 
-use bulge_measurements::{Columns, Data, Labels, SweepKind, Trace};
+use bulge_measurements::{Columns, Data, FindingKind, Labels, QualityOptions, SweepKind, Trace};
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
@@ -226,38 +226,171 @@ fn sweeps_are_found_in_time() {
     assert_eq!(starts(&data(&paused(1.85))), [0]);
 }
 
+/// A muscle's force: falls with contraction \[Pa, - -> N\].
+fn force(pressure: f64, contraction: f64) -> f64 {
+    2e-3 * pressure * (1.0 - 2.8 * contraction)
+}
+
+/// A recording that runs on, of states (pressure, contraction, force).
+fn recorded(rows: usize, step_s: f64, state: &dyn Fn(usize) -> [f64; 3]) -> Data {
+    let column = |i: usize| (0..rows).map(|row| state(row)[i]).collect::<Vec<f64>>();
+    let mut columns = Columns::new(column(0), Trace::Contraction(column(1)), column(2));
+    columns.time_s = Some((0..rows).map(|row| step_s * row as f64).collect());
+    Data::from_columns(columns).unwrap()
+}
+
+fn ranges(data: &Data) -> Vec<std::ops::Range<usize>> {
+    data.sweeps().iter().map(|sweep| sweep.rows.clone()).collect()
+}
+
+/// Pseudo-random, between -1 and 1.
+fn jitter(row: usize) -> f64 {
+    2.0 * (12.9898 * row as f64).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0) - 1.0
+}
+
 #[test]
 fn sweeps_are_found_where_an_isobar_ends() {
     // Half loops at three pressures, the clock and the recording run on.
-    let rows = 200;
     let state = |row: usize| {
-        let (level, part) = (row / rows, (row % rows) as f64 / (rows - 1) as f64);
+        let (level, part) = (row / 200, (row % 200) as f64 / 199.0);
         (1e5 * (1 + level) as f64, 0.1 - 0.1 * (PI * part).cos())
     };
-    let columns = |state: &dyn Fn(usize) -> (f64, f64), rows: usize| {
-        let mut columns = Columns::new(
-            (0..rows).map(|row| state(row).0).collect(),
-            Trace::Contraction((0..rows).map(|row| state(row).1).collect()),
-            vec![1.0; rows],
-        );
-        columns.time_s = Some((0..rows).map(|row| 0.01 * row as f64).collect());
-        Data::from_columns(columns).unwrap()
-    };
-    let data = columns(&state, 3 * rows);
-    assert_eq!(
-        data.sweeps().iter().map(|sweep| sweep.rows.clone()).collect::<Vec<_>>(),
-        [0..200, 200..400, 400..600]
-    );
+    let with_force = |(p, c): (f64, f64)| [p, c, force(p, c)];
+    let data = recorded(600, 0.01, &|row| with_force(state(row)));
+    assert_eq!(ranges(&data), [0..200, 200..400, 400..600]);
     assert_eq!(kinds(&data), [SweepKind::Shortening; 3]);
     // Also where the muscle starts short, and the jump goes the way of the pressure.
-    let long = |row: usize| (state(row).0, 0.2 - state(row).1);
-    assert_eq!(kinds(&columns(&long, 3 * rows)), [SweepKind::Lengthening; 3]);
-    // Steps of pressure under a weight are one run: the muscle stands still between them.
-    let steps = |row: usize| (1e5 * (1 + row / 100) as f64, 0.05 * (row / 100) as f64);
-    assert_eq!(columns(&steps, 400).sweeps().len(), 1);
-    // So are loops whose pressure changes at the start of each.
-    let levels = |row: usize| (1e5 * (1 + row / 100) as f64, 0.1 - 0.1 * (TAU * row as f64 / 100.0).cos());
-    assert_eq!(columns(&levels, 400).sweeps().len(), 1);
+    let long = |row: usize| with_force((state(row).0, 0.2 - state(row).1));
+    assert_eq!(kinds(&recorded(600, 0.01, &long)), [SweepKind::Lengthening; 3]);
+    // Steps of pressure under a weight are one run: the force hardly changes, however slowly the muscle follows.
+    for slow in [1.0, 40.0] {
+        let steps = |row: usize| {
+            let follows = 1.0 - (-((row % 100) as f64) / slow).exp();
+            [1e5 * (1 + row / 100) as f64, 0.05 * ((row / 100) as f64 + follows), 50.0 + 2.0 * jitter(row)]
+        };
+        assert_eq!(ranges(&recorded(400, 0.01, &steps)).len(), 1);
+    }
+}
+
+#[test]
+fn loops_at_four_pressures_in_one_recording_are_four_sweeps() {
+    // Rows per level, rows of the ramp from each level to the next, droop, noise of pressure, time between rows.
+    for (rows, ramp, droop, noise, step_s) in [
+        (300, 0, 0.0, 0.0, 0.05),
+        (300, 0, 0.03, 0.0, 0.05),
+        (300, 0, 0.0, 0.01, 0.05),
+        (300, 12, 0.02, 0.005, 0.05),
+        (22, 0, 0.0, 0.0, 1.0),
+        (24, 2, 0.01, 0.003, 1.0),
+        (40_000, 900, 0.02, 0.005, 5e-4),
+    ] {
+        let all = rows + ramp;
+        let state = |row: usize| {
+            let (level, row_in) = (row / all, row % all);
+            let turned = TAU * (row_in.saturating_sub(ramp)) as f64 / rows as f64;
+            let c = 0.1 - 0.1 * turned.cos();
+            let base = 1e5 * (1 + level) as f64;
+            let before = if level == 0 { base } else { base - 1e5 };
+            let part = if row_in < ramp { (row_in + 1) as f64 / (ramp + 1) as f64 } else { 1.0 };
+            let p = before + part * (base - before) + 4e5 * (droop * turned.sin() + noise * jitter(row));
+            [p, c, force(p, c)]
+        };
+        let data = recorded(4 * all, step_s, &state);
+        let case = format!("{rows} {ramp} {droop} {noise}");
+        assert_eq!(data.sweeps().len(), 4, "{case}: {:?}", ranges(&data));
+        assert!(kinds(&data).iter().all(|kind| *kind == SweepKind::Loop), "{case}");
+        for (level, sweep) in data.sweeps().iter().enumerate() {
+            // The rows of a ramp belong to the run that they lead to, but for its last ones at the pressure before.
+            assert!(sweep.rows.start.abs_diff(level * all) <= ramp / 4, "{case}: {:?}", ranges(&data));
+        }
+        let between = data.between_isobars();
+        // Where the pressure droops and is noisy, a row or two of a run look like its steps.
+        assert!(between.len() <= 3 * ramp + 2 && between.len() >= 3 * ramp / 2, "{case}: {}", between.len());
+        assert!(between.iter().all(|row| (row + 2) % all < ramp + 4), "{case}");
+    }
+}
+
+#[test]
+fn droop_and_pressure_that_drives_split_nothing() {
+    let loops = |row: usize| 0.1 - 0.1 * (TAU * row as f64 / 200.0).cos();
+    // A regulator that droops by a tenth along a loop, at one pressure.
+    let droop = |row: usize| {
+        let p = 2e5 * (1.0 + 0.05 * (TAU * row as f64 / 200.0).sin());
+        [p, loops(row), force(p, loops(row))]
+    };
+    assert_eq!(ranges(&recorded(800, 0.05, &droop)).len(), 1);
+    // Filling and venting at held length; a staircase of pressure there; pressure and length that both run.
+    let fill = |row: usize| {
+        let p = 3e5 * (1.0 - (2.0 * (row % 1000) as f64 / 1000.0 - 1.0).abs());
+        [p, 0.1 + 1e-4 * jitter(row), force(p, 0.1)]
+    };
+    assert_eq!(ranges(&recorded(3000, 0.01, &fill)).len(), 1);
+    let stairs = |row: usize| {
+        let p = 5e4 * (row / 50) as f64;
+        [p + 200.0 * jitter(row), 0.1 + 1e-4 * jitter(row + 7), force(p, 0.1) + 0.5 * jitter(row + 3)]
+    };
+    assert_eq!(ranges(&recorded(400, 0.1, &stairs)).len(), 1);
+    let both = |row: usize| {
+        let p = 2e5 + 1e5 * (TAU * row as f64 / 170.0).sin();
+        [p, loops(row), force(p, loops(row))]
+    };
+    assert_eq!(ranges(&recorded(1200, 0.05, &both)).len(), 1);
+}
+
+#[test]
+fn labels_that_contradict_their_rows_fall_apart() {
+    let state = |row: usize| {
+        let (p, c) = (1e5 * (1 + row / 100) as f64, 0.1 - 0.1 * (TAU * row as f64 / 100.0).cos());
+        [p, c, force(p, c)]
+    };
+    let labelled = |change: &dyn Fn(&mut Columns)| {
+        let column = |i: usize| (0..300).map(|row| state(row)[i]).collect::<Vec<f64>>();
+        let mut columns = Columns::new(column(0), Trace::Contraction(column(1)), column(2));
+        columns.time_s = Some((0..300).map(|row| 0.1 * row as f64).collect());
+        columns.sweep = Some((0..300).map(|_| "all").collect());
+        change(&mut columns);
+        let data = Data::from_columns(columns).unwrap();
+        let found = data.quality(&QualityOptions::default());
+        let says: Vec<String> =
+            found.of(FindingKind::SweepContradicted).map(|finding| finding.says.clone()).collect();
+        assert!(found.of(FindingKind::SweepInterrupted).next().is_none(), "{found:?}");
+        (ranges(&data), says.join("; "))
+    };
+    let (found, says) = labelled(&|_| ());
+    assert_eq!(found, [0..100, 100..200, 200..300]);
+    assert!(says.starts_with("the pressure steps") && says.contains("2 times"), "{says}");
+    let (found, says) = labelled(&|columns| {
+        columns.pressure_pa.fill(2e5);
+        columns.time_s = Some((0..300).map(|row| 0.1 * (row % 150) as f64).collect());
+    });
+    assert_eq!(found, [0..150, 150..300]);
+    assert!(says.starts_with("the time runs back"), "{says}");
+    let (found, says) = labelled(&|columns| {
+        columns.pressure_pa.fill(2e5);
+        columns.specimen = Some((0..300).map(|row| if row < 150 { "a" } else { "b" }).collect());
+    });
+    assert_eq!(found, [0..150, 150..300]);
+    assert!(says.starts_with("the specimen changes"), "{says}");
+    // Labels of one run each say nothing wrong.
+    let (found, says) = labelled(&|columns| {
+        columns.sweep = Some((0..300).map(|row| (row / 100).to_string()).collect());
+    });
+    assert_eq!((found.len(), says.as_str()), (3, ""));
+}
+
+#[test]
+fn the_direction_at_turning_points_is_in_doubt() {
+    // A triangle along set points, of which the upper one is read twice.
+    let way = [0.0, 0.05, 0.1, 0.15, 0.2, 0.2, 0.15, 0.1, 0.05, 0.0];
+    assert_eq!(timed(way.to_vec()).direction_in_doubt(), [0, 4, 5]);
+    // Dense and noisy: as far as the noise feigns a way; rows at rest in a long hold have no direction to doubt.
+    let corners = [(0.0, 0), (0.2, 1000), (0.2, 400), (0.0, 1000)];
+    let noisy: Vec<f64> =
+        polyline(&corners).iter().enumerate().map(|(row, c)| c + 1e-4 * jitter(row)).collect();
+    let found = timed(noisy).direction_in_doubt();
+    assert!(found.contains(&0) && found.len() < 30, "{found:?}");
+    assert!(found.iter().all(|row| *row < 10 || row.abs_diff(1000) < 10), "{found:?}");
+    assert!(timed(vec![0.1; 50]).direction_in_doubt().is_empty());
 }
 
 #[test]

@@ -234,6 +234,15 @@ impl Record {
         self
     }
 
+    /// The same with standard deviations of the forces \[N\], one for each; all stay as they are if there are more or fewer.
+    #[must_use]
+    pub fn with_force_sd(mut self, sd: Vec<f64>) -> Self {
+        if sd.len() == self.len() {
+            self.force_sd = Some(sd);
+        }
+        self
+    }
+
     /// The same history at other pressures \[Pa\] and contractions, one for each moment; those that are missing stay.
     #[must_use]
     pub fn at(mut self, pressure: &[f64], contraction: &[f64]) -> Self {

@@ -74,6 +74,9 @@ fn measured(out: &mut String, diagnosis: &Diagnosis) {
         three(data.force_n[0]),
         three(data.force_n[1])
     );
+    for left in &data.left_out {
+        let _ = writeln!(out, "  left out {} rows (line {}): {}", left.rows, left.lines, left.why);
+    }
 }
 
 /// The verdict in plain words, and each effect with its class and numbers.

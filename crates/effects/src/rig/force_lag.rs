@@ -39,7 +39,7 @@ impl Effect for ForceLag {
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         let about = "how late the force is";
-        vec![ParameterCard::new("time", SECOND, (-5.0, 5.0), 0.0, about).prior(0.0, 0.2).plausible(-2.0, 2.0)]
+        vec![ParameterCard::new("time", SECOND, (0.0, 5.0), 0.0, about).prior(0.0, 0.2).plausible(0.0, 2.0)]
     }
 
     fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {

@@ -8,9 +8,11 @@ use bulge_muscles::{Muscle, Parameter, Quantity};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-use crate::comparison::document::{DataSummary, LeftOut, NoiseFloor, Rung};
+use crate::comparison::document::{DataSummary, LeftOut, Mismatch, NoiseFloor, Rung};
+use crate::comparison::doubt::doubtful_sd;
 use crate::comparison::floor::noise_floor;
 use crate::comparison::levels::{Folds, Levels};
+use crate::comparison::mismatch::questions;
 use crate::comparison::requirements::{check_needs, check_size};
 use crate::comparison::rows::{Used, full_scale, lines, used};
 use crate::comparison::specimens::note;
@@ -26,8 +28,6 @@ use crate::fit::weights::Noise;
 
 /// Rows on which held-out errors and contributions are computed.
 pub(crate) const FEWER_ROWS: usize = 4000;
-/// A measured force above this part of full scale where the model would push is a muscle that doesn't match.
-const CLEARLY_PULLS: f64 = 0.1;
 
 /// What is compared, besides muscle and data.
 #[derive(Debug, Clone)]
@@ -77,6 +77,8 @@ pub(crate) struct Analysis<'a> {
     pub(crate) folds: Option<Folds>,
     pub(crate) noise: Noise,
     pub(crate) full_scale: f64,
+    /// What is asked about units, signs and scales.
+    pub(crate) findings: Vec<Mismatch>,
     /// A model with all effects, and numbers near those of its best fit.
     pub(crate) near: Option<(&'a Model, &'a [f64])>,
 }
@@ -108,10 +110,23 @@ impl<'a> Analysis<'a> {
         check_size(data, muscle, &record, &used.mask)?;
         let full_scale = full_scale(data.force());
         let levels = Levels::of(&record, &used.mask);
-        let folds = Folds::of(&record, &levels);
+        let folds = Folds::of(&record, &levels, &used.mask);
         // Until the noise is known: a hundredth of full scale.
         let noise = Noise::of(muscle, (0.01 * full_scale).max(f64::MIN_POSITIVE));
-        Ok(Self { data, muscle, options, record, used, levels, folds, noise, full_scale, near: None })
+        let findings = Vec::new();
+        Ok(Self {
+            data,
+            muscle,
+            options,
+            record,
+            used,
+            levels,
+            folds,
+            noise,
+            full_scale,
+            findings,
+            near: None,
+        })
     }
 
     /// The base with what the muscle file states, but for those of the first `count` effects: they are fitted anew.
@@ -149,15 +164,6 @@ impl<'a> Analysis<'a> {
             with_nuisances(&model, &self.options.catalogue)
         };
         with_effects().map_err(|error| self.about(error))
-    }
-
-    /// The force of the base with everything as stated, nothing fitted \[N\]; NaN in rows without a state.
-    pub(crate) fn as_stated(&self) -> Result<Vec<f64>, InferenceError> {
-        let prepared = self.model(0)?;
-        let counting = Warm::of_rows(&self.used.mask);
-        let start = prepared.model.start();
-        let found = prepared.model.evaluate_partly(&self.record, &start, &Wanted::default(), &counting);
-        Ok(found.map_err(|error| self.about(error))?.prediction.force)
     }
 
     /// The rung of the first `count` effects: fitted if there is anything to fit.
@@ -252,23 +258,11 @@ impl<'a> Analysis<'a> {
         InferenceError::Model { what, source: Box::new(error) }
     }
 
-    /// Whether the model pulls where the muscle does.
-    pub(crate) fn check_match(&self, first: &Climbed) -> Result<(), InferenceError> {
-        let measured = self.record.force();
-        let pushes =
-            |row: &usize| first.force[*row] < 0.0 && measured[*row] > CLEARLY_PULLS * self.full_scale;
-        let rows: Vec<usize> = self.rows().filter(pushes).collect();
-        let Some(&row) = rows.first() else { return Ok(()) };
-        let moment = &self.record.moments()[row];
-        Err(InferenceError::BeyondLimit {
-            muscle: self.muscle.name().to_owned(),
-            lines: format!("line {}", lines(self.data, &rows)),
-            rows: rows.len(),
-            contraction: moment.contraction,
-            pressure_pa: moment.pressure,
-            force_n: first.force[row],
-            measured_n: rows.iter().map(|row| measured[*row]).fold(0.0, f64::max),
-        })
+    /// Asks about units, signs and scales that can't be true.
+    pub(crate) fn ask(&mut self) -> Result<(), InferenceError> {
+        let prepared = self.model(0)?;
+        self.findings = questions(self.data, self.muscle, &prepared.model, &self.record, &self.used.mask);
+        Ok(())
     }
 
     /// What no model can go below, as the residuals of a rung show it.
@@ -291,13 +285,28 @@ impl<'a> Analysis<'a> {
         noise_floor(repeats.pure_error().as_ref(), &self.record, &used, &residuals, self.muscle)
     }
 
-    /// The noise of the force from here on, and the floor for people.
+    /// The noise of the force from here on, and the floor for people. What the residuals show to be a disturbed reading doesn't count from here on, and rows whose
+    /// direction is in doubt count by how much that matters.
     pub(crate) fn measure_noise(&mut self, first: &Climbed) -> Option<NoiseFloor> {
         let floor = self.noise_floor(first);
         let stated = self.muscle.instruments().force.map_or(0.0, |force| force.noise());
         let sd = if stated > 0.0 { stated } else { floor.as_ref().map_or(0.0, |floor| floor.sd_n) };
         if sd > 0.0 {
             self.noise.force_n = sd;
+        }
+        let residuals: Vec<f64> =
+            self.record.force().iter().zip(&first.force).map(|(measured, model)| measured - model).collect();
+        self.used.leave_out_spikes(self.data, &residuals);
+        let sd = doubtful_sd(
+            &self.record,
+            self.data,
+            &self.used.mask,
+            &self.levels.of,
+            &residuals,
+            self.noise.force_n,
+        );
+        if let Some(sd) = sd {
+            self.record = Arc::new(Record::clone(&self.record).with_force_sd(sd));
         }
         floor
     }
@@ -383,6 +392,7 @@ impl<'a> Analysis<'a> {
             rows: self.record.len(),
             used: self.rows().count(),
             left_out: self.used.left_out.clone(),
+            findings: self.findings.clone(),
             sha256: self.data.sha256(),
             files: self.data.files().iter().map(|file| file.name.clone()).collect(),
             sweeps: self.record.sweeps().len(),
@@ -396,10 +406,19 @@ impl<'a> Analysis<'a> {
     }
 
     pub(crate) fn warnings(&self, ladder: &[Rung]) -> Vec<String> {
-        let mut warnings: Vec<String> = note(self.data, self.muscle).into_iter().collect();
+        let mut warnings: Vec<String> =
+            self.findings.iter().map(ToString::to_string).chain(note(self.data, self.muscle)).collect();
+        let negative = ladder.first().filter(|rung| rung.r_squared < 0.0 && self.findings.is_empty());
+        if let Some(rung) = negative {
+            warnings.push(format!(
+                "the muscle as stated is farther from these forces ({:.1} N) than their mean is (R^2 below 0): check its length and radius, the zero of the contraction, \
+                 and the units of the data",
+                rung.rmse_n
+            ));
+        }
         if self.folds.is_none() && self.options.held_out {
             warnings.push(
-                "nothing could be held out: there are fewer than three pressures, two specimens and three sweeps".to_owned(),
+                "nothing could be held out: no three pressures, lengths, loads or sweeps were set apart, and no two specimens".to_owned(),
             );
         }
         for rung in ladder {

@@ -35,8 +35,8 @@ pub(crate) fn compare_near(
 
 fn compared(mut analysis: Analysis<'_>) -> Result<Comparison, InferenceError> {
     let Analysis { data, muscle, options, .. } = analysis;
+    analysis.ask()?;
     let first = analysis.climb(0, None)?;
-    analysis.check_match(&first)?;
     let floor = analysis.measure_noise(&first);
     // Weights follow from the noise: the first rung again if it fits anything.
     let first = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
@@ -126,8 +126,8 @@ pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fi
 
 fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
     let mut analysis = Analysis::new(data, muscle, options)?;
+    analysis.ask()?;
     let base = analysis.climb(0, None)?;
-    analysis.check_match(&base)?;
     let noise_floor = analysis.measure_noise(&base);
     let climbed = analysis.climb(options.effects.len(), None)?;
     let rmse_n = residuals::summary(&analysis, &climbed.force).rmse;
@@ -137,6 +137,7 @@ fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, In
     fit.warnings.extend(failed.map(|error| not_fitted("the fit", &error)));
     fit.warnings.extend(left.map(|left| without_state("the fit", &left)));
     fit.warnings.extend(note(data, muscle));
+    fit.warnings.splice(0..0, analysis.findings.iter().map(ToString::to_string));
     Ok(Fitting {
         model: prepared.model,
         fit,

@@ -49,6 +49,8 @@ pub struct DataSummary {
     pub used: usize,
     /// Rows that don't, and why.
     pub left_out: Vec<LeftOut>,
+    /// Units, signs and scales that can't be true, with the evidence.
+    pub findings: Vec<Mismatch>,
     /// SHA-256 of the file, or of the digests of several.
     pub sha256: String,
     /// Names of the files.
@@ -67,6 +69,30 @@ pub struct DataSummary {
     pub force_n: [f64; 2],
     /// Largest force that was measured \[N\]: errors are given in per cent of it.
     pub full_scale_n: f64,
+}
+
+/// Data and muscle that don't go together, and by what they would.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Mismatch {
+    /// What it is about: `absolute-pressure`, `pressure-unit`, `force-unit`, `force-sign`, `contraction-unit`, `displacement`, `length`, `scale`, `pushes`.
+    pub kind: &'static str,
+    /// Whether the readings are those of another unit or sign beyond doubt: no physics can be learnt from them as they stand.
+    pub decided: bool,
+    /// RMS error of the muscle as stated \[N\], with the readings as they stand.
+    pub rmse_n: f64,
+    /// The same with the readings as they are meant, where something else would fit.
+    pub meant_rmse_n: Option<f64>,
+    /// What is seen, with numbers, and the question.
+    pub says: String,
+    /// What to write instead.
+    pub instead: String,
+}
+
+impl std::fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let stop = if self.says.ends_with('?') { "" } else { ":" };
+        write!(f, "{}{stop} {}", self.says, self.instead)
+    }
 }
 
 /// Rows that were left out.
@@ -108,7 +134,7 @@ pub struct Rung {
     pub largest_n: f64,
     /// RMS error on what was left out of the fit \[N\]: whole pressures, sweeps or specimens in turn.
     pub held_out_rmse_n: Option<f64>,
-    /// What was left out in turn: `pressure`, `sweep`, `specimen`.
+    /// What was left out in turn: `pressure`, `length`, `load`, `sweep`, `specimen`.
     pub held_out_by: Option<&'static str>,
     /// Coefficient of determination 1 - SS_error/SS_total.
     pub r_squared: f64,

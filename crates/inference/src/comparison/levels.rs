@@ -78,7 +78,7 @@ impl Levels {
 /// What is left out of a fit together, in turn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Folds {
-    /// `pressure`, `specimen` or `sweep`.
+    /// `pressure`, `length`, `load`, `sweep` or `specimen`.
     pub(crate) by: &'static str,
     /// Fold of each row.
     pub(crate) of: Vec<usize>,
@@ -86,9 +86,15 @@ pub(crate) struct Folds {
     pub(crate) count: usize,
 }
 
+/// Lengths or loads that a test held belong to different levels if this part of their range lies between them without a row.
+const HELD_GAP: f64 = 0.03;
+/// Rows of a level, on average, below which it was not held.
+const HELD_ROWS: usize = 5;
+
 impl Folds {
-    /// Whole pressures if there are three, else specimens, else sweeps; none if nothing can be left out.
-    pub(crate) fn of(record: &Record, levels: &Levels) -> Option<Self> {
+    /// Whichever the test set apart: three or more pressures, lengths (isometric) or loads (isotonic), else two or more specimens, else three or more sweeps;
+    /// none if nothing can be left out.
+    pub(crate) fn of(record: &Record, levels: &Levels, used: &[bool]) -> Option<Self> {
         let folded = |by, of: Vec<usize>, groups: usize| {
             let count = groups.min(FOLDS);
             Some(Self { by, of: of.into_iter().map(|group| group * count / groups).collect(), count })
@@ -96,8 +102,15 @@ impl Folds {
         if levels.len() >= 3 {
             return folded("pressure", levels.of.clone(), levels.len());
         }
+        let moments = record.moments();
+        let lengths: Vec<f64> = moments.iter().map(|m| m.contraction).collect();
+        for (by, values) in [("length", &lengths[..]), ("load", record.force())] {
+            if let Some((of, groups)) = held(values, used) {
+                return folded(by, of, groups);
+            }
+        }
         if record.specimens().len() >= 2 {
-            let of = record.moments().iter().map(|m| m.specimen as usize).collect();
+            let of = moments.iter().map(|m| m.specimen as usize).collect();
             return folded("specimen", of, record.specimens().len());
         }
         if record.sweeps().len() >= 3 {
@@ -107,6 +120,22 @@ impl Folds {
     }
 }
 
+/// Levels of a quantity that was held, if there are three or more: the level of each row, and their number.
+fn held(values: &[f64], used: &[bool]) -> Option<(Vec<usize>, usize)> {
+    let mut sorted: Vec<f64> =
+        values.iter().zip(used).filter(|(_, used)| **used).map(|(value, _)| *value).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let (low, high) = (sorted.first().copied()?, sorted.last().copied()?);
+    let edges: Vec<f64> = sorted
+        .windows(2)
+        .filter(|pair| pair[1] - pair[0] > HELD_GAP * (high - low))
+        .map(|pair| 0.5 * (pair[0] + pair[1]))
+        .collect();
+    let groups = edges.len() + 1;
+    let of = values.iter().map(|value| edges.partition_point(|edge| edge < value)).collect();
+    (groups >= 3 && sorted.len() >= HELD_ROWS * groups).then_some((of, groups))
+}
+
 /// Number of the sweep of each row.
 pub(crate) fn sweep_of(sweeps: &[Range<usize>], rows: usize) -> Vec<usize> {
     let mut of = vec![0; rows];
@@ -114,4 +143,42 @@ pub(crate) fn sweep_of(sweeps: &[Range<usize>], rows: usize) -> Vec<usize> {
         of[sweep.clone()].fill(number);
     }
     of
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::Moment;
+
+    fn by(moments: Vec<Moment>, force: Vec<f64>, sweeps: Vec<Range<usize>>) -> Option<(&'static str, usize)> {
+        let used = vec![true; moments.len()];
+        let record = Record::from_moments(moments, force, sweeps)?;
+        Folds::of(&record, &Levels::of(&record, &used), &used).map(|folds| (folds.by, folds.count))
+    }
+
+    #[test]
+    fn held_out_is_what_was_set_apart() {
+        let n = 240;
+        let part = |i: usize| i as f64 / n as f64;
+        let level = |i: usize| (i * 4 / n) as f64;
+        let all = || std::iter::once(0..n).collect::<Vec<_>>();
+        let wave = |i: usize| (20.0 * part(i)).sin();
+        let of = |moment: &dyn Fn(usize) -> Moment, force: &dyn Fn(usize) -> f64, sweeps| {
+            by((0..n).map(moment).collect(), (0..n).map(force).collect(), sweeps)
+        };
+        let isobaric = |i: usize| Moment::at_rest(1e5 * (1.0 + level(i)), 0.1 + 0.1 * wave(i));
+        assert_eq!(of(&isobaric, &|i| 100.0 + 50.0 * wave(i), all()), Some(("pressure", 4)));
+        // Hundreds of pressures at four lengths.
+        let isometric = |i: usize| Moment::at_rest(2e5 + 1.5e5 * wave(i), 0.05 * level(i) + 1e-4 * wave(i));
+        assert_eq!(of(&isometric, &|i| 300.0 + 200.0 * wave(i), all()), Some(("length", 4)));
+        // Under four weights.
+        let isotonic = |i: usize| Moment::at_rest(2e5 + 1.5e5 * wave(i), 0.1 + 0.1 * wave(i));
+        assert_eq!(of(&isotonic, &|i| 50.0 * (1.0 + level(i)) + wave(i), all()), Some(("load", 4)));
+        let mixed = |i: usize| 100.0 + 50.0 * wave(i);
+        let sweeps = vec![0..80, 80..160, 160..n];
+        assert_eq!(of(&isotonic, &mixed, sweeps), Some(("sweep", 3)));
+        let two = |i: usize| Moment { specimen: u32::from(i >= 120), ..isotonic(i) };
+        assert_eq!(of(&two, &mixed, vec![0..120, 120..n]), Some(("specimen", 2)));
+        assert_eq!(of(&isotonic, &mixed, all()), None);
+    }
 }

@@ -1,44 +1,345 @@
-//! Data and muscle that belong to different worlds: a wrong unit is no physics.
+//! Data and muscle that belong to different worlds: a wrong unit, sign or zero is no physics, and is asked about with the evidence.
 
-use bulge_measurements::Data;
+use bulge_measurements::{Data, Motion};
+use bulge_model::{Model, Record, Wanted, Warm};
+use bulge_muscles::units::significant;
+use bulge_muscles::{Muscle, Quantity};
 
-use crate::error::InferenceError;
+use crate::comparison::document::Mismatch;
+use crate::comparison::rows::{full_scale, lines};
 
+/// Below this part of full scale an error is no question of units.
+const LARGE: f64 = 0.08;
+/// Part of the error that may be left if the readings were meant otherwise.
+const LEFT: f64 = 0.35;
 /// Factors between these are gains, geometry, or effects.
 const USUAL: (f64, f64) = (0.55, 1.8);
-/// Part of the error that may be left after the factor, if the factor is the trouble.
-const LEFT: f64 = 0.3;
-/// Factors that units differ by, with what to check.
-const UNITS: [(f64, &str); 6] = [
-    (14.504, "psi read as bar, or bar as psi"),
-    (6.895, "psi read as kPa, or kPa as psi"),
-    (10.0, "bar read as 100 kPa, or MPa as bar"),
-    (100.0, "kPa read as bar, or bar as kPa"),
-    (9.807, "force in kgf read as N, or N as kgf"),
-    (4.448, "force in lbf read as N, or N as lbf"),
+/// Two meanings with errors that differ by less than this factor are both named.
+const ALIKE: f64 = 1.3;
+/// Rows on which meanings are tried, and those that have to have an answer.
+const ROWS: usize = 300;
+const ANSWERED: f64 = 0.9;
+/// The standard atmosphere \[Pa\].
+const ATMOSPHERE: f64 = 101_325.0;
+/// Weather and height leave the pressure of the air above this \[Pa\]: a reading below is no absolute pressure.
+const LEAST_AIR: f64 = 0.85e5;
+/// An offset that differs from the air's pressure by more than this fits worse than that, if the pressure is absolute \[Pa\].
+const OTHER_OFFSET: f64 = 0.25e5;
+/// A measured force above this part of full scale where the model would push is a muscle that doesn't match.
+const CLEARLY_PULLS: f64 = 0.1;
+/// Factors by which units of force differ, with what was read as what.
+const FORCES: [(f64, &str, &str); 4] = [
+    (9.806_65, "kilograms", "force [kgf]"),
+    (4.448_222, "pounds", "force [lbf]"),
+    (1e3, "kilonewtons", "force [kN]"),
+    (1e-3, "newtons", "force [N]"),
+];
+/// The same for pressures.
+const PRESSURES: [(f64, &str); 8] = [
+    (14.503_77, "bar read as psi"),
+    (1.0 / 14.503_77, "psi read as bar"),
+    (10.0, "MPa read as bar, or bar as 100 kPa"),
+    (0.1, "bar read as MPa"),
+    (100.0, "bar read as kPa"),
+    (0.01, "kPa read as bar"),
+    (6.894_76, "psi read as kPa"),
+    (1.0 / 6.894_76, "kPa read as psi"),
 ];
 
-/// Whether measured and computed forces differ by one large factor, as they do with a wrong unit.
-pub(crate) fn check_scale(data: &Data, model: &[f64], used: &[bool]) -> Result<(), InferenceError> {
-    let rows = || (0..data.len()).filter(|row| used[*row] && model[*row].is_finite());
-    let force = data.force();
+/// What readings may have been meant as.
+struct Meaning {
+    kind: &'static str,
+    /// The question, after "with ... the error falls from ... to ...: ".
+    with: String,
+    question: String,
+    instead: String,
+    /// From pressure, contraction and force as read to those that are meant.
+    of: Box<dyn Fn([f64; 3]) -> [f64; 3]>,
+}
+
+/// A muscle as stated, and some of the rows that count.
+struct Trial<'a> {
+    model: &'a Model,
+    record: &'a Record,
+    used: &'a [bool],
+}
+
+impl Trial<'_> {
+    /// RMS error with the readings as they are meant \[N\], and the force of each row; none where too few rows have an answer.
+    fn error(&self, of: &dyn Fn([f64; 3]) -> [f64; 3]) -> Option<(f64, Vec<f64>)> {
+        let moments = self.record.moments();
+        let meant: Vec<[f64; 3]> = moments
+            .iter()
+            .zip(self.record.force())
+            .map(|(m, force)| of([m.pressure, m.contraction, *force]))
+            .collect();
+        let used: Vec<bool> = (0..meant.len()).map(|row| self.used[row] && meant[row][0] > 0.0).collect();
+        let count = |mask: &[bool]| mask.iter().filter(|counts| **counts).count() as f64;
+        if count(&used) < ANSWERED * count(self.used) || count(&used) < 5.0 {
+            return None;
+        }
+        let [pressure, contraction] = [0, 1].map(|i| meant.iter().map(|m| m[i]).collect::<Vec<f64>>());
+        let record = self.record.clone().at(&pressure, &contraction);
+        let theta = self.model.start();
+        let warm = Warm::of_rows(&used);
+        let force =
+            self.model.evaluate_partly(&record, &theta, &Wanted::default(), &warm).ok()?.prediction.force;
+        let squares: Vec<f64> = (0..meant.len())
+            .filter(|row| used[*row])
+            .map(|row| (meant[row][2] - force[row]).powi(2))
+            .filter(|square| square.is_finite())
+            .collect();
+        let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
+        (squares.len() as f64 >= ANSWERED * count(&used)).then(|| (mean.sqrt(), force))
+    }
+}
+
+/// What is asked about data for a muscle, `model` being the muscle as stated: units and signs first, then a scale and a sign that nothing explains.
+pub(crate) fn questions(
+    data: &Data,
+    muscle: &Muscle,
+    model: &Model,
+    record: &Record,
+    used: &[bool],
+) -> Vec<Mismatch> {
+    let (thin, kept) = record.thinned(ROWS);
+    let counts: Vec<bool> = kept.iter().map(|row| used[*row]).collect();
+    let trial = Trial { model, record: &thin, used: &counts };
+    let Some((before, force)) = trial.error(&|read| read) else { return Vec::new() };
+    let full = full_scale(data.force());
+    if before <= LARGE * full {
+        return Vec::new();
+    }
+    let read =
+        (squares(&thin, &counts) / counts.iter().filter(|counts| **counts).count().max(1) as f64).sqrt();
+    // Of what is left the forces as they are meant are the measure.
+    let size = |meaning: &Meaning| scale_of(meaning) * read;
+    let mut tried: Vec<(f64, Meaning)> = meanings(data, muscle)
+        .into_iter()
+        .filter_map(|meaning| Some((trial.error(&*meaning.of)?.0, meaning)))
+        .filter(|(after, meaning)| *after <= LEFT * before.min(size(meaning)))
+        .filter(|(after, meaning)| is_best(&trial, *after, meaning))
+        .collect();
+    tried.sort_by(|a, b| (a.0 / size(&a.1)).total_cmp(&(b.0 / size(&b.1))));
+    let least = tried.first().map_or(0.0, |(after, meaning)| after / size(meaning));
+    tried.retain(|(after, meaning)| *after <= ALIKE * least * size(meaning));
+    if !tried.is_empty() {
+        return tried.into_iter().map(|(after, meaning)| asked(before, after, meaning)).collect();
+    }
+    let mut found = Vec::new();
+    found.extend(scale(&thin, &counts, &force, before));
+    found.extend(pushes(data, muscle, &thin, &kept, &counts, &force, [before, full]));
+    found
+}
+
+/// How much larger forces are as meant than as read.
+fn scale_of(meaning: &Meaning) -> f64 {
+    (meaning.of)([1.0, 0.0, 1.0])[2].abs()
+}
+
+/// Sum of squares of the forces of the rows that count.
+fn squares(record: &Record, used: &[bool]) -> f64 {
+    record.force().iter().zip(used).filter(|(_, used)| **used).map(|(force, _)| force * force).sum()
+}
+
+/// An absolute pressure is known by its offset: others fit worse.
+fn is_best(trial: &Trial<'_>, after: f64, meaning: &Meaning) -> bool {
+    let is_worse = |offset: f64| {
+        let other = trial.error(&|[p, c, f]| [p - offset, c, f]);
+        other.is_none_or(|(error, _)| error > after)
+    };
+    meaning.kind != "absolute-pressure"
+        || [ATMOSPHERE - OTHER_OFFSET, ATMOSPHERE + OTHER_OFFSET].into_iter().all(is_worse)
+}
+
+fn asked(before: f64, after: f64, meaning: Meaning) -> Mismatch {
+    let Meaning { kind, with, question, instead, .. } = meaning;
+    Mismatch {
+        kind,
+        decided: true,
+        rmse_n: before,
+        meant_rmse_n: Some(after),
+        says: format!(
+            "{with} the error of the muscle as stated falls from {} N to {} N: {question}",
+            significant(before, 3),
+            significant(after, 3)
+        ),
+        instead,
+    }
+}
+
+/// All meanings that these columns can have.
+fn meanings(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
+    let mut found = vec![Meaning {
+        kind: "force-sign",
+        with: "with the sign of the force turned over".to_owned(),
+        question: "does this load cell read a pull as negative?".to_owned(),
+        instead: "turn the sign of the column `force`: a pull is positive".to_owned(),
+        of: Box::new(|[p, c, f]| [p, c, -f]),
+    }];
+    if data.pressure().iter().all(|p| *p >= LEAST_AIR) {
+        found.push(Meaning {
+            kind: "absolute-pressure",
+            with: "with 1.013 bar less".to_owned(),
+            question: "is the pressure absolute?".to_owned(),
+            instead: "write `pressure [bar abs]` (or the unit that it has, with `abs`) in the header, or subtract the pressure of the air"
+                .to_owned(),
+            of: Box::new(|[p, c, f]| [p - ATMOSPHERE, c, f]),
+        });
+    }
+    found.extend(FORCES.map(|(factor, what, heading)| Meaning {
+        kind: "force-unit",
+        with: format!("with forces {} times as large", significant(factor, 4)),
+        question: format!("are these {what}?"),
+        instead: format!("write `{heading}` in the header"),
+        of: Box::new(move |[p, c, f]| [p, c, factor * f]),
+    }));
+    found.extend(PRESSURES.map(|(factor, what)| Meaning {
+        kind: "pressure-unit",
+        with: format!("with pressures {} times as large", significant(factor, 4)),
+        question: format!("is this {what}?"),
+        instead: "correct the unit of `pressure` in the header".to_owned(),
+        of: Box::new(move |[p, c, f]| [factor * p, c, f]),
+    }));
+    found.extend(motions(data, muscle));
+    found
+}
+
+/// What the column of the motion may be.
+fn motions(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
+    let l0 = muscle.length().si();
+    let meaning = |kind, with: &str, question: &str, instead: &str, of: fn(f64, f64) -> f64| Meaning {
+        kind,
+        with: with.to_owned(),
+        question: question.to_owned(),
+        instead: instead.to_owned(),
+        of: Box::new(move |[p, c, f]| [p, of(c, l0), f]),
+    };
+    match data.motion() {
+        Motion::Contraction(_) => vec![
+            meaning(
+                "contraction-unit",
+                "with contractions 100 times as large",
+                "are these fractions under `%`?",
+                "write `contraction [-]` in the header",
+                |c, _| 100.0 * c,
+            ),
+            meaning(
+                "contraction-unit",
+                "with contractions a hundredth as large",
+                "is this per cent without its `%`?",
+                "write `contraction [%]` in the header",
+                |c, _| 0.01 * c,
+            ),
+            meaning(
+                "contraction-unit",
+                "with the sign of the contraction turned over",
+                "is this an elongation?",
+                "turn the sign of the column `contraction`: shortening is positive",
+                |c, _| -c,
+            ),
+            meaning(
+                "length",
+                "with the contractions read as lengths in metres",
+                "are these lengths?",
+                "write `length [m]` in the header",
+                |c, l0| 1.0 - c / l0,
+            ),
+            meaning(
+                "length",
+                "with the contractions read as lengths in millimetres",
+                "are these lengths?",
+                "write `length [mm]` in the header",
+                |c, l0| 1.0 - 0.1 * c / l0,
+            ),
+        ],
+        Motion::Length(_) => vec![meaning(
+            "displacement",
+            "with the lengths read as displacements",
+            "is this how far the muscle has shortened?",
+            "write the length between the fittings, or `contraction [%]`: displacement over unpressurised length",
+            |c, _| 1.0 - c,
+        )],
+    }
+}
+
+/// Meanings of the motion under which its contractions are possible, where they are not as read: the question that goes with the refusal.
+pub(crate) fn possible_motion(data: &Data, muscle: &Muscle, is_possible: &dyn Fn(f64) -> bool) -> String {
+    let read = data.contraction(muscle.length().si());
+    let all = |meaning: &Meaning| {
+        let meant = read.iter().map(|c| (meaning.of)([1.0, *c, 1.0])[1]);
+        let (mut possible, mut largest) = (true, 0.0_f64);
+        for c in meant {
+            possible &= is_possible(c);
+            largest = largest.max(c.abs());
+        }
+        // A hundredth of everything is possible, and nothing that a muscle does.
+        possible && largest > 0.01
+    };
+    let found = motions(data, muscle).into_iter().find(all);
+    found.map_or_else(String::new, |meaning| {
+        format!("; {} all are possible: {} {}", meaning.with, meaning.question, meaning.instead)
+    })
+}
+
+/// Measured and computed forces that differ by one large factor.
+fn scale(record: &Record, used: &[bool], model: &[f64], before: f64) -> Option<Mismatch> {
+    let force = record.force();
+    let rows = || (0..record.len()).filter(|row| used[*row] && model[*row].is_finite());
     let square: f64 = rows().map(|row| model[row] * model[row]).sum();
     let along: f64 = rows().map(|row| model[row] * force[row]).sum();
-    if square <= 0.0 || rows().count() < 5 {
-        return Ok(());
-    }
-    let factor = along / square;
-    let error =
-        |factor: f64| rows().map(|row| (force[row] - factor * model[row]).powi(2)).sum::<f64>().sqrt();
-    let (before, after) = (error(1.0), error(factor));
-    if (USUAL.0..=USUAL.1).contains(&factor) || factor <= 0.0 || after > LEFT * before {
-        return Ok(());
-    }
-    let near = |unit: f64| (factor / unit).ln().abs().min((factor * unit).ln().abs());
-    let unit = UNITS.iter().min_by(|a, b| near(a.0).total_cmp(&near(b.0))).filter(|unit| near(unit.0) < 0.35);
-    let check = unit.map_or_else(
-        || "the units of pressure and force in the header, and the radius of the muscle".to_owned(),
-        |(_, what)| format!("the units in the header ({what}?) and the radius of the muscle"),
-    );
-    Err(InferenceError::OtherScale { factor, check })
+    let factor = if square > 0.0 { along / square } else { return None };
+    let squares: f64 = rows().map(|row| (force[row] - factor * model[row]).powi(2)).sum();
+    let after = (squares / rows().count().max(1) as f64).sqrt();
+    (!(USUAL.0..=USUAL.1).contains(&factor) && factor > 0.0 && after <= LEFT * before).then(|| Mismatch {
+        kind: "scale",
+        decided: false,
+        rmse_n: before,
+        meant_rmse_n: Some(after),
+        says: format!(
+            "the measured forces are {} times those of the muscle as stated at all pressures and contractions (with that factor the error falls from {} N \
+             to {} N), which few effects do",
+            significant(factor, 3),
+            significant(before, 3),
+            significant(after, 3)
+        ),
+        instead: "check the radius of the muscle, and the units of pressure and force".to_owned(),
+    })
+}
+
+/// A model that would push where the muscle pulls.
+fn pushes(
+    data: &Data,
+    muscle: &Muscle,
+    record: &Record,
+    kept: &[usize],
+    used: &[bool],
+    model: &[f64],
+    [before, full]: [f64; 2],
+) -> Option<Mismatch> {
+    let measured = record.force();
+    let is_pushing = |row: &usize| used[*row] && model[*row] < 0.0 && measured[*row] > CLEARLY_PULLS * full;
+    let rows: Vec<usize> = (0..record.len()).filter(is_pushing).collect();
+    let first = *rows.first()?;
+    let moment = &record.moments()[first];
+    let places: Vec<usize> = rows.iter().map(|row| kept[*row]).collect();
+    let most = rows.iter().map(|row| measured[*row]).fold(0.0, f64::max);
+    Some(Mismatch {
+        kind: "pushes",
+        decided: false,
+        rmse_n: before,
+        meant_rmse_n: None,
+        says: format!(
+            "{} as stated would push at {} of {} rows (line {}; first at contraction {:.3} and {:.0} Pa: {:.0} N), where the measured muscle pulls with up to \
+             {most:.0} N",
+            muscle.name(),
+            rows.len(),
+            record.len(),
+            lines(data, &places),
+            moment.contraction,
+            moment.pressure,
+            model[first]
+        ),
+        instead: "check length, radius and the zero of the contraction".to_owned(),
+    })
 }

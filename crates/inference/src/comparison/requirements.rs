@@ -7,6 +7,7 @@ use bulge_muscles::{Muscle, Quantity};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use crate::comparison::mismatch::possible_motion;
 use crate::comparison::rows::lines;
 use crate::error::InferenceError;
 
@@ -32,11 +33,13 @@ pub(crate) fn check_size(
         || (muscle.name().to_owned(), muscle.length()),
         |(name, own)| (format!("the specimen `{name}` of {}", muscle.name()), own.length()),
     );
+    let is_possible = |contraction: f64| POSSIBLE.contains(&contraction);
     Err(InferenceError::OtherSize {
         muscle: name,
         lines: format!("line {}", lines(data, &rows)),
         contraction: contraction(row),
         length_m: length.si(),
+        meant: possible_motion(data, muscle, &is_possible),
     })
 }
 

@@ -5,44 +5,78 @@ use std::fmt::Write;
 
 use crate::comparison::document::LeftOut;
 
+/// Steps of pressure that make more than this part of the rows are what was tested.
+const MOST_BETWEEN: f64 = 0.2;
+/// More than this part of the rows pushes only if the force has the other sign.
+const MOST_IDLE: f64 = 0.8;
+
 /// Rows that count, and those that don't with the reason.
 pub(crate) struct Used {
     pub(crate) mask: Vec<bool>,
     pub(crate) left_out: Vec<LeftOut>,
 }
 
-/// Readings at zero say only that the muscle didn't pull: two or more of exactly the lowest force, within 1 % of full scale of zero; rows that moved
+impl Used {
+    /// Leaves out rows, unless nothing would be left.
+    fn leave_out(&mut self, data: &Data, rows: impl IntoIterator<Item = usize>, why: String) {
+        let rows: Vec<usize> = rows.into_iter().filter(|row| self.mask[*row]).collect();
+        if rows.is_empty() || rows.len() == self.mask.iter().filter(|counts| **counts).count() {
+            return;
+        }
+        for row in &rows {
+            self.mask[*row] = false;
+        }
+        self.left_out.push(LeftOut { why, lines: lines(data, &rows), rows: rows.len() });
+    }
+
+    /// Leaves out spikes that only show when the model's force is taken off.
+    pub(crate) fn leave_out_spikes(&mut self, data: &Data, residuals: &[f64]) {
+        // Rows that don't count may have no prediction: they lie on the line between those that do.
+        let mut values = residuals.to_vec();
+        for sweep in data.sweeps() {
+            let mut last = None;
+            for row in sweep.rows.clone() {
+                match last {
+                    _ if self.mask[row] && values[row].is_finite() => last = Some(values[row]),
+                    Some(value) => values[row] = value,
+                    None => values[row] = 0.0,
+                }
+            }
+        }
+        let why = "spike: the force lies far from what the rows around lead to, beside any model";
+        self.leave_out(data, data.spikes(&values), why.to_owned());
+    }
+}
+
+/// Rows that say nothing about the muscle: readings that are disturbed, frozen or clipped; rows of steps of pressure between isobaric runs; and readings at
+/// zero, which say only that it didn't pull: two or more of exactly the lowest force, within 1 % of full scale of zero; rows that moved
 /// on at zero force; rows in which the muscle pushed.
 pub(crate) fn used(data: &Data) -> Used {
     let force = data.force();
     let full = full_scale(force);
     let lowest = force.iter().copied().fold(f64::INFINITY, f64::min);
-    let is_cut = |row: usize| force[row].total_cmp(&lowest).is_eq();
-    let cut: Vec<usize> = (0..force.len()).filter(|row| is_cut(*row)).collect();
-    let mut mask = vec![true; force.len()];
-    let mut left_out = Vec::new();
-    if cut.len() >= 2 && cut.len() < force.len() && lowest.abs() <= 0.01 * full {
-        for row in &cut {
-            mask[*row] = false;
-        }
-        left_out.push(LeftOut {
-            why: format!("slack: {lowest} N, the lowest reading, says only that the muscle didn't pull"),
-            lines: lines(data, &cut),
-            rows: cut.len(),
-        });
+    let is_cut = |row: &usize| force[*row].total_cmp(&lowest).is_eq();
+    let cut: Vec<usize> = (0..force.len()).filter(is_cut).collect();
+    let mut used = Used { mask: vec![true; force.len()], left_out: Vec::new() };
+    if cut.len() >= 2 && lowest.abs() <= 0.01 * full {
+        let why = format!("slack: {lowest} N, the lowest reading, says only that the muscle didn't pull");
+        used.leave_out(data, cut, why);
     }
-    let idle: Vec<usize> = data.not_pulling().into_iter().filter(|row| mask[*row]).collect();
-    if !idle.is_empty() && idle.len() < mask.iter().filter(|counts| **counts).count() {
-        for row in &idle {
-            mask[*row] = false;
-        }
-        left_out.push(LeftOut {
-            why: "slack or pushing: the muscle didn't pull, and says nothing about its force".to_owned(),
-            lines: lines(data, &idle),
-            rows: idle.len(),
-        });
+    for disturbance in data.disturbed() {
+        used.leave_out(data, disturbance.rows, disturbance.why);
     }
-    Used { mask, left_out }
+    let between = data.between_isobars().iter().copied();
+    let why = "between pressures: the pressure steps from one isobaric run to the next, and what friction does there isn't known";
+    if data.between_isobars().len() as f64 <= MOST_BETWEEN * force.len() as f64 {
+        used.leave_out(data, between, why.to_owned());
+    }
+    // Where nearly all rows push, the load cell has the other sign: that is a question.
+    let idle = data.not_pulling();
+    if idle.len() as f64 <= MOST_IDLE * force.len() as f64 {
+        let why = "slack or pushing: the muscle didn't pull, and says nothing about its force";
+        used.leave_out(data, idle, why.to_owned());
+    }
+    used
 }
 
 /// Largest force that was measured \[N\].

@@ -19,7 +19,18 @@ pub(crate) struct Averaged {
     pub(crate) record: Record,
     /// Rows of the long record in each mean.
     pub(crate) groups: Vec<Vec<usize>>,
+    /// Stretches of the groups over which the muscle moves one way, as ranges of groups; none in a static map.
+    stretches: Vec<Range<usize>>,
 }
+
+/// Rows on each side of one that say where it should be,
+const AROUND: usize = 5;
+/// and how many of their standard deviations (by the median deviation) it may be off; a normal number is once in 16 000.
+const BOUND: f64 = 4.0;
+/// Median of |x| over the standard deviation of x, for a normal x, inverted.
+const MAD_TO_SD: f64 = 1.4826;
+/// Standard deviations stated for two rows of one mean differ by no more than this factor.
+const ALIKE: f64 = 1.5;
 
 impl Averaged {
     /// About `most` means of the rows that are used, each within one sweep, one specimen and one direction. With no more rows than that, each is its own mean.
@@ -32,6 +43,7 @@ impl Averaged {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         let mut sweeps: Vec<Range<usize>> = Vec::new();
         let least = if size > 1 && record.is_path() { parts_of_ways(record, used, levels) } else { 1 };
+        let mut stretches = Vec::new();
         for sweep in record.sweeps() {
             let start = groups.len();
             let mut rows: Vec<usize> = sweep.clone().filter(|row| used[*row]).collect();
@@ -40,9 +52,13 @@ impl Averaged {
             }
             for run in runs(&rows, record, levels) {
                 let parts = run.len().div_ceil(size).max(least.min(run.len()));
+                let first = groups.len();
                 groups.extend(
                     (0..parts).map(|i| run[i * run.len() / parts..(i + 1) * run.len() / parts].to_vec()),
                 );
+                if record.is_path() {
+                    stretches.push(first..groups.len());
+                }
             }
             if groups.len() > start {
                 sweeps.push(start..groups.len());
@@ -50,7 +66,7 @@ impl Averaged {
         }
         let force = groups.iter().map(|group| mean(group, record.force())).collect();
         let averaged = record.averaged(&groups, force, sweeps)?;
-        Some(Self { record: averaged, groups })
+        Some(Self { record: averaged, groups, stretches })
     }
 
     /// Number of rows in each mean.
@@ -64,18 +80,20 @@ impl Averaged {
     }
 
     /// The forces that the means stand for: the model's at the mean plus the mean residual, so that what the model already says of the curvature
-    /// within a group is not taken for a misfit.
+    /// within a group is not taken for a misfit. Residuals are bounded first: see [`Averaged::bounded`].
     pub(crate) fn forces(&self, record: &Record, model: &[f64], at_means: &[f64]) -> Vec<f64> {
         let residual: Vec<f64> =
             record.force().iter().zip(model).map(|(measured, force)| measured - force).collect();
+        let residual = self.bounded(&residual);
         self.means(&residual).iter().zip(at_means).map(|(residual, force)| residual + force).collect()
     }
 
     /// Scatter of residuals within the groups: sum of squares about a straight line through each, and its degrees of freedom. What a misfit does within a group is
     /// nearly straight, and no scatter; a group with a reversal or a spike in it is left out.
     pub(crate) fn within(&self, residual: &[f64]) -> (f64, f64) {
+        let bounded = self.bounded(residual);
         let mut all: Vec<(f64, f64)> =
-            self.groups.iter().filter_map(|group| scatter(group, residual)).collect();
+            self.groups.iter().filter_map(|group| scatter(group, &bounded)).collect();
         all.sort_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
         let Some(middle) = all.get(all.len() / 2).map(|(sum, freedom)| {
             // Median of chi-squared over its degrees of freedom (Wilson and Hilferty 1931).
@@ -115,6 +133,55 @@ fn parts_of_ways(record: &Record, used: &[bool], levels: &Levels) -> usize {
     (MOST_PARTS / ways.max(1)).clamp(1, PARTS)
 }
 
+impl Averaged {
+    /// Residuals of which none is far off the path of its neighbours (Huber's pseudo-values about Hampel's running median): a residual beyond both of its
+    /// neighbours is moved to 4 standard deviations from the median of the five on either side, or to the nearer neighbour if that is farther. The standard deviation
+    /// is that of these rows or of all, whichever is larger. Normal noise keeps its values but once in 16 000 rows; what rises or falls steadily, such as
+    /// the transition after a reversal, keeps them always. In a static map rows have no neighbours.
+    fn bounded(&self, residual: &[f64]) -> Vec<f64> {
+        let mut bounded = residual.to_vec();
+        let least = self.white(residual);
+        for stretch in &self.stretches {
+            let rows: Vec<usize> = self.groups[stretch.clone()].iter().flatten().copied().collect();
+            for place in 1..rows.len().saturating_sub(1) {
+                let value = residual[rows[place]];
+                let [before, after] = [residual[rows[place - 1]], residual[rows[place + 1]]];
+                let (low, high) = (before.min(after), before.max(after));
+                if value >= low && value <= high {
+                    continue;
+                }
+                let around = place.saturating_sub(AROUND)..(place + AROUND + 1).min(rows.len());
+                let mut values: Vec<f64> = rows[around].iter().map(|row| residual[*row]).collect();
+                let middle = median(&mut values);
+                for value in &mut values {
+                    *value = (*value - middle).abs();
+                }
+                let most = BOUND * (MAD_TO_SD * median(&mut values)).max(least);
+                bounded[rows[place]] = value.max(low.min(middle - most)).min(high.max(middle + most));
+            }
+        }
+        bounded
+    }
+
+    /// Standard deviation of the white part of residuals, from their second differences along the stretches.
+    fn white(&self, residual: &[f64]) -> f64 {
+        let mut differences = Vec::new();
+        for stretch in &self.stretches {
+            let rows: Vec<usize> = self.groups[stretch.clone()].iter().flatten().copied().collect();
+            differences.extend(
+                rows.windows(3).map(|w| (residual[w[0]] - 2.0 * residual[w[1]] + residual[w[2]]).abs()),
+            );
+        }
+        MAD_TO_SD * median(&mut differences) / 6.0_f64.sqrt()
+    }
+}
+
+/// The median; reorders the values. 0 of none.
+fn median(values: &mut [f64]) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
 fn mean(group: &[usize], values: &[f64]) -> f64 {
     group.iter().map(|row| values[*row]).sum::<f64>() / group.len() as f64
 }
@@ -130,12 +197,17 @@ fn sort_as_map(rows: &mut [usize], record: &Record, levels: &Levels) {
 /// Stretches of rows with one direction, specimen and pressure level.
 fn runs<'r>(rows: &'r [usize], record: &'r Record, levels: &'r Levels) -> impl Iterator<Item = &'r [usize]> {
     let moments = record.moments();
+    // A row in doubt would take its neighbours along.
+    let is_alike = move |a: usize, b: usize| {
+        record.force_sd().is_none_or(|sd| sd[a].max(sd[b]) <= ALIKE * sd[a].min(sd[b]))
+    };
     rows.chunk_by(move |a, b| {
         let [first, second] = [a, b].map(|row| &moments[*row]);
         first.specimen == second.specimen
             && first.branch().total_cmp(&second.branch()).is_eq()
             && first.cycle.floor().total_cmp(&second.cycle.floor()).is_eq()
             && (record.is_path() || levels.of[*a] == levels.of[*b])
+            && is_alike(*a, *b)
     })
 }
 
@@ -186,6 +258,45 @@ mod tests {
             // A straight line is its own mean.
             assert!((force - 1000.0 * moment.contraction).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn what_lies_off_the_path_is_bounded_and_nothing_else() {
+        let record = triangle(1000);
+        let levels = Levels::of(&record, &vec![true; 1000]);
+        let averaged = Averaged::of(&record, &vec![true; 1000], &levels, 100).unwrap();
+        // A trend, a turn of friction at the reversal with a transition, and noise of +-1.
+        let noise = |row: usize| (f64::from(u32::try_from(row).unwrap()) * 12.9898).sin() * 43_758.545_3;
+        let mut residual: Vec<f64> = (0..1000)
+            .map(|row| {
+                let friction =
+                    if row < 500 { -20.0 } else { 20.0 - 40.0 * (-((row - 500) as f64) / 2.0).exp() };
+                0.1 * row as f64 + friction + 2.0 * (noise(row).rem_euclid(1.0) - 0.5)
+            })
+            .collect();
+        assert_eq!(averaged.bounded(&residual), residual);
+        let clean = residual.clone();
+        for row in [100, 300, 502, 700] {
+            residual[row] += 50.0;
+        }
+        let bounded = averaged.bounded(&residual);
+        for row in 0..1000 {
+            let off = bounded[row] - clean[row];
+            match row {
+                100 | 300 | 700 => assert!(off < 6.0, "{row}: {off}"),
+                // Within a transition it may rise as far as that does.
+                502 => assert!((0.0..=50.0).contains(&off), "{off}"),
+                _ => assert!(off.abs() < 1e-12, "{row}: {off}"),
+            }
+        }
+        // Without order nothing is known of neighbours.
+        let mut moments = record.moments().to_vec();
+        for moment in &mut moments {
+            moment.direction = 0.0;
+        }
+        let map = Record::from_moments(moments, vec![0.0; 1000], record.sweeps().to_vec()).unwrap();
+        let averaged = Averaged::of(&map, &vec![true; 1000], &levels, 100).unwrap();
+        assert_eq!(averaged.bounded(&residual), residual);
     }
 
     #[test]

@@ -6,8 +6,8 @@ use bulge_muscles::Muscle;
 use std::sync::Arc;
 
 use crate::comparison::analysis::{Analysis, Climbed, Options};
-use crate::comparison::compare::compare_near;
-use crate::comparison::mismatch::check_scale;
+use crate::comparison::compare::{compare, compare_near};
+use crate::comparison::document::Comparison;
 use crate::comparison::rows::lines;
 use crate::comparison::specimens::of_specimens;
 use crate::diagnosis::classes::Class;
@@ -17,7 +17,7 @@ use crate::diagnosis::ground::{Ground, Stop, effective_rows, ground, ground_agai
 use crate::diagnosis::next::{Judged, Limits, NextLimits, next_experiment};
 use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::{Search, Stage};
-use crate::diagnosis::write::{Findings, cannot_tell, document};
+use crate::diagnosis::write::{Findings, cannot_tell, document, unanswered};
 use crate::error::InferenceError;
 use crate::progress::Progress;
 
@@ -79,9 +79,11 @@ pub fn diagnose(
 
 fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<Diagnosis, InferenceError> {
     let mut analysis = Analysis::new(data, muscle, &options.base)?;
-    check_scale(data, &analysis.as_stated()?, &analysis.used.mask)?;
+    analysis.ask()?;
+    if analysis.findings.iter().any(|finding| finding.decided) {
+        return Ok(unanswered(data, muscle, compared_as_stated(data, muscle, options)?));
+    }
     let first = analysis.climb(0, None)?;
-    analysis.check_match(&first)?;
     analysis.measure_noise(&first);
     let base = analysis.climb(options.base.effects.len(), Some(&first))?;
     // Of rows without a state the base says nothing: what the catalogue could say there, nothing could be compared with.
@@ -189,6 +191,15 @@ fn concluded(
     let comparison = compare_near(analysis, &compared, last.numbers())?;
     progress.at(1.0, "done");
     Ok(document(analysis.muscle, &found, comparison))
+}
+
+/// The comparison with the base alone.
+fn compared_as_stated(
+    data: &Data,
+    muscle: &Muscle,
+    options: &DiagnoseOptions,
+) -> Result<Comparison, InferenceError> {
+    compare(data, muscle, &Options { rivals: false, held_out: false, ..options.base.clone() })
 }
 
 /// Each named effect with its rivals, and how often such a claim is right.

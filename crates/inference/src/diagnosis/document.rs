@@ -3,7 +3,7 @@
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-use crate::comparison::document::Comparison;
+use crate::comparison::document::{Comparison, LeftOut, Mismatch};
 use crate::diagnosis::confidence::Confidence;
 use crate::noise::law::NoiseLaw;
 
@@ -83,6 +83,10 @@ pub struct DiagnosedData {
     pub sweeps: usize,
     /// Number of specimens.
     pub specimens: usize,
+    /// Rows that don't count, and why.
+    pub left_out: Vec<LeftOut>,
+    /// Units, signs and scales that can't be true, with the evidence.
+    pub findings: Vec<Mismatch>,
 }
 
 /// The noise.

@@ -145,7 +145,7 @@ pub(crate) fn ground(
         })
         .collect();
     let counts: Vec<f64> = averaged.counts().collect();
-    let stated = mean_of_rows(&input_variances, &counts);
+    let stated = variance_of_rows(&input_variances, &counts);
     let residual: Vec<f64> =
         analysis.record.force().iter().zip(&base.force).map(|(measured, force)| measured - force).collect();
     let (sum, freedom) = averaged.within(&residual);
@@ -199,12 +199,13 @@ pub(crate) fn row_sd(law: &NoiseLaw, ground: &Ground) -> f64 {
 /// Variance of a single row without what it shares with its neighbours \[N^2\].
 fn white_of_row(law: &NoiseLaw, ground: &Ground) -> f64 {
     let counts: Vec<f64> = ground.averaged.counts().collect();
-    let own = law.white_n.powi(2) + mean_of_rows(&ground.input_variances, &counts);
+    let own = law.white_n.powi(2) + variance_of_rows(&ground.input_variances, &counts);
     ground.within.map_or(own, |within| within.max(own))
 }
 
-/// Mean variance of single rows from those of means.
-fn mean_of_rows(variances: &[f64], counts: &[f64]) -> f64 {
-    let sum: f64 = variances.iter().zip(counts).map(|(variance, count)| variance * count).sum();
-    sum / variances.len().max(1) as f64
+/// Median variance of single rows from those of means: that of rows in doubt is not the rule.
+fn variance_of_rows(variances: &[f64], counts: &[f64]) -> f64 {
+    let mut all: Vec<f64> = variances.iter().zip(counts).map(|(variance, count)| variance * count).collect();
+    all.sort_unstable_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.0)
 }

@@ -74,6 +74,8 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
             sha256: comparison.data.sha256.clone(),
             sweeps: comparison.data.sweeps,
             specimens: comparison.data.specimens.len(),
+            left_out: comparison.data.left_out.clone(),
+            findings: comparison.data.findings.clone(),
         },
         noise: DiagnosedNoise {
             sd_n,
@@ -121,6 +123,8 @@ pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnos
             sha256: data.sha256(),
             sweeps: data.sweeps().len(),
             specimens: data.specimens().len(),
+            left_out: Vec::new(),
+            findings: Vec::new(),
         },
         noise: DiagnosedNoise { sd_n: stated, correlated: false, source: source(law.source).to_owned(), law },
         verdict: Verdict::CannotTell,
@@ -147,6 +151,27 @@ pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnos
     }
 }
 
+/// Readings in another unit or of another sign than stated: no physics is looked for, and the question is the answer.
+pub(crate) fn unanswered(data: &Data, muscle: &Muscle, comparison: Comparison) -> Diagnosis {
+    let questions: Vec<String> = comparison.data.findings.iter().map(ToString::to_string).collect();
+    let diagnosis = cannot_tell(data, muscle, "");
+    Diagnosis {
+        says: format!(
+            "no physics is looked for in readings that seem to be others than stated: {}",
+            questions.join("; or ")
+        ),
+        data: DiagnosedData {
+            used: comparison.data.used,
+            left_out: comparison.data.left_out.clone(),
+            findings: comparison.data.findings.clone(),
+            ..diagnosis.data
+        },
+        warnings: comparison.warnings.clone(),
+        comparison,
+        ..diagnosis
+    }
+}
+
 /// What was measured, and no model beside it.
 fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
     let range = |values: &[f64]| {
@@ -156,6 +181,7 @@ fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
         rows: data.len(),
         used: data.len(),
         left_out: Vec::new(),
+        findings: Vec::new(),
         sha256: data.sha256(),
         files: data.files().iter().map(|file| file.name.clone()).collect(),
         sweeps: data.sweeps().len(),

@@ -13,6 +13,31 @@ const FORCE_SHARE: f64 = 0.1;
 const STILL: f64 = 0.02;
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
+    let of_column = |(name, rows): (&str, Vec<usize>)| {
+        let value = |row: usize| match name {
+            "force" => gate.data.force()[row],
+            "pressure" => gate.data.pressure()[row],
+            _ => gate.motion[row],
+        };
+        gate.finding_if_any(
+            FindingKind::Clipped,
+            Severity::Warning,
+            &rows,
+            |count| {
+                let first = rows.first().map_or(0.0, |row| value(*row));
+                format!(
+                    "the {name} stays at its extreme value of {first:.6} (SI) in {} while others move",
+                    rows_in_words(count)
+                )
+            },
+            "nothing: these rows don't count; the sensor or the amplifier was at the end of its range",
+        )
+    };
+    in_columns(gate).into_iter().filter_map(of_column).collect()
+}
+
+/// Clipped rows of each column.
+pub(super) fn in_columns(gate: &Gate) -> Vec<(&'static str, Vec<usize>)> {
     let data = gate.data;
     let (force, pressure, motion) = (data.force(), data.pressure(), gate.motion);
     let range_in = |values: &[f64], rows: &Range<usize>| {
@@ -39,26 +64,22 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             && range_in(motion, run)
                 <= (STILL * gate.motion_resolution().range).max(gate.data.structure.band.width)
     };
-    [
-        in_column(gate, "force", force, &stuck_force),
-        in_column(gate, gate.motion_name(), motion, &stuck_motion),
-        in_column(gate, "pressure", pressure, &stuck_pressure),
+    vec![
+        ("force", in_column(gate, force, &stuck_force)),
+        (gate.motion_name(), in_column(gate, motion, &stuck_motion)),
+        ("pressure", in_column(gate, pressure, &stuck_pressure)),
     ]
-    .into_iter()
-    .flatten()
-    .collect()
 }
 
-/// Runs of the column's largest or smallest value that are stuck, by sweep and run.
+/// Rows with the column's largest or smallest value, where it is stuck in some run of them.
 #[expect(clippy::float_cmp, reason = "a sensor that is stuck repeats its reading bit for bit")]
 fn in_column(
     gate: &Gate,
-    name: &str,
     values: &[f64],
     is_stuck: &dyn Fn(&Range<usize>, &Range<usize>) -> bool,
-) -> Option<Finding> {
+) -> Vec<usize> {
     let (low, high) = bounds(values);
-    let mut rows = Vec::new();
+    let mut ends = Vec::new();
     for (sweep, _) in gate.data.paths() {
         let mut start = sweep.rows.start;
         for equal in values[sweep.rows.clone()].chunk_by(|a, b| a == b) {
@@ -70,23 +91,13 @@ fn in_column(
                 && is_extreme
                 && is_stuck(&sweep.rows, &run)
             {
-                rows.extend(run);
+                ends.push(equal[0]);
             }
         }
     }
-    gate.finding_if_any(
-        FindingKind::Clipped,
-        Severity::Warning,
-        &rows,
-        |count| {
-            let value = rows.first().map_or(0.0, |row| values[*row]);
-            format!(
-                "the {name} stays at its extreme value of {value:.6} (SI) in {} while others move",
-                rows_in_words(count)
-            )
-        },
-        "remove these rows: the sensor or the amplifier was at the end of its range",
-    )
+    // Where the range ends for some rows it ends for all.
+    let at_end = |row: &usize| ends.contains(&values[*row]);
+    gate.data.paths().flat_map(|(sweep, _)| sweep.rows.clone()).filter(at_end).collect()
 }
 
 /// By how much the force should have changed in a run, from how it changed with motion and pressure just before and after.

@@ -10,7 +10,8 @@ const STEPS: f64 = 2.0;
 /// Noise below this share of the range is that of the arithmetic: nothing was measured.
 const LEAST: f64 = 1e-7;
 
-pub(super) fn find(gate: &Gate) -> Vec<Finding> {
+/// Rows that repeat the one before.
+pub(super) fn rows(gate: &Gate) -> Vec<usize> {
     let (pressure, motion, force) = (gate.data.pressure(), gate.motion, gate.data.force());
     let is_noisy = |resolution: &Resolution| {
         resolution.noise > STEPS * resolution.step && resolution.noise > LEAST * resolution.range
@@ -32,6 +33,11 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
             }
         }
     }
+    rows
+}
+
+pub(super) fn find(gate: &Gate) -> Vec<Finding> {
+    let rows = rows(gate);
     let found = gate.finding_if_any(
         FindingKind::Frozen,
         Severity::Warning,
@@ -43,7 +49,7 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
                 gate.motion_name()
             )
         },
-        "remove these rows: the recording stood still, or filled a gap with the last reading",
+        "nothing: these rows don't count; the recording stood still, or filled a gap with the last reading",
     );
     found.into_iter().collect()
 }

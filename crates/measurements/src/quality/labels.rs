@@ -1,6 +1,7 @@
 //! Labels against the rows: stated directions, runs that are interrupted, rows that are there twice.
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
+use crate::sweep::Contradiction;
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -8,7 +9,10 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 const NEAR_TURN: usize = 2;
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
-    [directions(gate), interrupted(gate), duplicates(gate)].into_iter().flatten().collect()
+    let mut found: Vec<Finding> =
+        [directions(gate), interrupted(gate), duplicates(gate)].into_iter().flatten().collect();
+    found.extend(contradicted(gate));
+    found
 }
 
 fn directions(gate: &Gate) -> Option<Finding> {
@@ -52,8 +56,9 @@ fn interrupted(gate: &Gate) -> Option<Finding> {
         let is_new = seen.insert((gate.data.line(row).0, gate.data.specimen()[row], labels.rows()[row]));
         (!is_new).then_some(row)
     };
-    let rows: Vec<usize> =
-        gate.data.sweeps().iter().map(|sweep| sweep.rows.start).filter_map(returns).collect();
+    let within = |row: &usize| gate.data.contradictions.binary_search_by_key(row, |(row, _)| *row).is_ok();
+    let starts = gate.data.sweeps().iter().map(|sweep| sweep.rows.start);
+    let rows: Vec<usize> = starts.filter_map(returns).filter(|row| !within(row)).collect();
     gate.finding_if_any(
         FindingKind::SweepInterrupted,
         Severity::Warning,
@@ -65,6 +70,42 @@ fn interrupted(gate: &Gate) -> Option<Finding> {
         },
         "keep the rows of a run together and in the order in which they were measured",
     )
+}
+
+/// Labels that go on over what ends a run: each part is taken as a run of its own.
+fn contradicted(gate: &Gate) -> impl Iterator<Item = Finding> {
+    let of = |what: Contradiction, says: &str, instead: &str| {
+        let found = gate.data.contradictions.iter().filter(|(_, other)| *other == what);
+        let rows: Vec<usize> = found.map(|(row, _)| *row).collect();
+        gate.finding_if_any(
+            FindingKind::SweepContradicted,
+            Severity::Warning,
+            &rows,
+            |count| {
+                format!("{says} within a sweep label ({count} times): each part is taken as a run of its own")
+            },
+            instead,
+        )
+    };
+    [
+        of(
+            Contradiction::Time,
+            "the time runs back",
+            "give each run a label of its own, or sort its rows by time",
+        ),
+        of(
+            Contradiction::Specimen,
+            "the specimen changes",
+            "give the runs of each specimen labels of their own",
+        ),
+        of(
+            Contradiction::Pressure,
+            "the pressure steps from one level to another",
+            "give the run at each pressure a label of its own, or leave the column `sweep` out",
+        ),
+    ]
+    .into_iter()
+    .flatten()
 }
 
 /// Rows that say the same as an earlier one in every column. Where a static map repeats its states, some repeats are equal to the last digit. Along a path without times that is no copy: a muscle at rest reads the same again.

@@ -1,90 +1,147 @@
-//! Spikes: one to three readings beyond all their neighbours in time.
+//! Spikes: one to three readings that lie off the path on which their neighbours on both sides agree.
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
+use crate::data::Data;
 use crate::resolution::Resolution;
+use std::ops::Range;
 
 /// Longest spike in rows.
 const LONGEST: usize = 3;
-/// Readings on each side that it has to stand out from.
-const SIDE: usize = 2;
-/// By how many standard deviations of the noise,
+/// Readings on each side that say where it should be.
+const SIDE: usize = 3;
+/// It lies beyond both sides by this many standard deviations of the noise,
 const NOISE: f64 = 8.0;
 /// quantisation steps,
 const STEPS: f64 = 4.0;
-/// changes between its neighbours,
-const CHANGES: f64 = 3.0;
+/// bends of the neighbours (their second differences),
+const BENDS: f64 = 2.0;
 /// and which share of the range.
 const RANGE: f64 = 5e-3;
-/// At a turning point of the motion the force has a tip of its own: so many times more is needed.
-const AT_TURN: f64 = 10.0;
+/// Neighbouring spikes hide each other: those found are bridged, and the rest is looked at again so often.
+const PASSES: usize = 3;
+/// More than one row in so many is the way this quantity scatters.
+const MOST: usize = 20;
+
+/// Spikes of each column.
+pub(super) fn in_columns<'a>(gate: &Gate<'a>) -> Vec<(&'static str, Vec<usize>)> {
+    let columns: [(&'static str, &'a [f64], &Resolution); 3] = [
+        ("force", gate.data.force(), &gate.force),
+        (gate.motion_name(), gate.motion, gate.motion_resolution()),
+        ("pressure", gate.data.pressure(), &gate.pressure),
+    ];
+    columns.map(|(name, values, resolution)| (name, along(gate.data, values, resolution, RANGE))).to_vec()
+}
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
-    let columns = [
-        ("force", gate.data.force(), &gate.force, true),
-        (gate.motion_name(), gate.motion, gate.motion_resolution(), false),
-        ("pressure", gate.data.pressure(), &gate.pressure, false),
-    ];
-    let of_column = |(name, values, resolution, has_tips): (&str, &[f64], &Resolution, bool)| {
-        let rows = rows(gate, values, resolution, has_tips);
+    let of_column = |(name, rows): (&str, Vec<usize>)| {
+        let value = |row: usize| match name {
+            "force" => gate.data.force()[row],
+            "pressure" => gate.data.pressure()[row],
+            _ => gate.motion[row],
+        };
         gate.finding_if_any(
             FindingKind::Spike,
             Severity::Warning,
             &rows,
             |count| {
-                let value = rows.first().map_or(0.0, |row| values[*row]);
+                let first = rows.first().map_or(0.0, |row| value(*row));
                 format!(
-                    "the {name} of {} lies far from the rows around, the first at {value:.6} (SI)",
+                    "the {name} of {} lies far from the rows around, the first at {first:.6} (SI)",
                     rows_in_words(count)
                 )
             },
-            "remove these rows if the reading was disturbed",
+            "nothing: these rows don't count; remove them if the reading was disturbed",
         )
     };
-    columns.into_iter().filter_map(of_column).collect()
+    in_columns(gate).into_iter().filter_map(of_column).collect()
 }
 
-fn rows(gate: &Gate, values: &[f64], resolution: &Resolution, has_tips: bool) -> Vec<usize> {
-    let least = (NOISE * resolution.noise).max(STEPS * resolution.step).max(RANGE * resolution.range);
-    let mut found = Vec::new();
-    if least == 0.0 {
-        return found;
+impl Data {
+    /// Rows at which `values`, one for each row (such as the difference of measured and computed forces), have spikes: one to three of them beyond what the three on either side
+    /// lead to, by 8 standard deviations of their noise and twice the bend of the neighbours. A step, a tip, and a turn of friction are none: each of their
+    /// values is where one of the sides leads. None in a static map.
+    #[must_use]
+    pub fn spikes(&self, values: &[f64]) -> Vec<usize> {
+        if values.len() != self.len() {
+            return Vec::new();
+        }
+        let sweeps: Vec<Range<usize>> = self.sweeps().iter().map(|sweep| sweep.rows.clone()).collect();
+        along(self, values, &Resolution::of(values, &sweeps), 0.0)
     }
-    for (sweep, stretches) in gate.data.paths() {
-        let x = &values[sweep.rows.clone()];
-        let turns: Vec<usize> =
-            stretches.iter().map(|stretch| stretch.rows.end - 1 - sweep.rows.start).collect();
-        let is_turn = |first: usize, end: usize| {
-            let next = turns.partition_point(|turn| turn + 1 < first);
-            turns.get(next).is_some_and(|turn| *turn <= end)
-        };
+}
+
+/// Rows of spikes of a quantity that was read like this; below `share` of its range there are none.
+fn along(data: &Data, values: &[f64], resolution: &Resolution, share: f64) -> Vec<usize> {
+    let least = (NOISE * resolution.noise).max(STEPS * resolution.step).max(share * resolution.range);
+    let mut found = Vec::new();
+    if least > 0.0 {
+        for (sweep, _) in data.paths() {
+            found.extend(in_run(&values[sweep.rows.clone()], least).iter().map(|row| sweep.rows.start + row));
+        }
+    }
+    if MOST * found.len() > values.len() { Vec::new() } else { found }
+}
+
+/// Spikes of one run, in ascending order.
+fn in_run(values: &[f64], least: f64) -> Vec<usize> {
+    let mut x = values.to_vec();
+    let mut found: Vec<usize> = Vec::new();
+    for _ in 0..PASSES {
+        let before = found.len();
         let mut row = SIDE;
         while row + SIDE < x.len() {
-            let length = (1..=LONGEST).find(|length| {
-                let Some(excess) = excess(x, row, *length).filter(|(height, _)| *height > least) else {
-                    return false;
-                };
-                let factor = if has_tips && is_turn(row, row + length) { AT_TURN } else { 1.0 };
-                excess.0 > factor * least.max(CHANGES * excess.1)
-            });
+            // The shortest that ends back on the path: the rows beside a spike look like a part of it.
+            let length = (1..=LONGEST).find(|length| is_spike(&x, row, *length, least));
+            for place in row..row + length.unwrap_or(0) {
+                found.push(place);
+            }
             if let Some(length) = length {
-                found.extend((row..row + length).map(|row| sweep.rows.start + row));
+                bridge(&mut x, row, length);
             }
             row += length.unwrap_or(1);
         }
+        if found.len() == before {
+            break;
+        }
     }
+    found.sort_unstable();
+    found.dedup();
     found
 }
 
-/// By how much `length` readings from `first` stand out from all their neighbours, and the largest change between these; none at the ends.
-fn excess(x: &[f64], first: usize, length: usize) -> Option<(f64, f64)> {
-    let before = x.get(first.checked_sub(SIDE)?..first)?;
-    let (spike, after) = (x.get(first..first + length)?, x.get(first + length..first + length + SIDE)?);
-    let around = before.iter().chain(after);
-    let (low, high) =
-        around.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
-    let (lowest, highest) = crate::resolution::bounds(spike);
-    let height = (lowest - high).max(low - highest);
-    let across = (after[0] - before[SIDE - 1]).abs() / (length + 1) as f64;
-    let change = (before[1] - before[0]).abs().max((after[1] - after[0]).abs()).max(across);
-    (height > 0.0).then_some((height, change))
+/// Whether `length` readings from `first` lie on one side of where both sides lead.
+fn is_spike(x: &[f64], first: usize, length: usize, least: f64) -> bool {
+    let end = first + length;
+    let (Some(before), Some(after)) = (x.get(first - SIDE..first), x.get(end..end + SIDE)) else {
+        return false;
+    };
+    let bend = |side: &[f64]| (side[0] - 2.0 * side[1] + side[2]).abs();
+    // A straight line from one side is off by the bend k (k + 1)/2 after k rows; its noise grows like k.
+    let reach = length as f64;
+    let bends = BENDS * bend(before).max(bend(after)) * 0.5 * reach * (reach + 1.0);
+    // Both sides have to lead to the same place, or nothing says where the readings should be.
+    let needed = (least * reach).max(bends);
+    let excess = |row: usize| {
+        let (k, back) = ((row - first + 1) as f64, (end - row) as f64);
+        let leads = [
+            before[2] + k * (before[2] - before[1]),
+            after[0] + back * (after[0] - after[1]),
+            before[2],
+            after[0],
+        ];
+        let [low, high] =
+            leads.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(*v), h.max(*v)]);
+        [x[row] - high, low - x[row]]
+    };
+    let excesses: Vec<[f64; 2]> = (first..end).map(excess).collect();
+    [0, 1].iter().any(|side| excesses.iter().all(|excess| excess[*side] > needed))
+}
+
+/// Puts spiked readings on the line between their neighbours.
+fn bridge(x: &mut [f64], first: usize, length: usize) {
+    let (from, to) = (x[first - 1], x[first + length]);
+    for k in 0..length {
+        let part = (k + 1) as f64 / (length + 1) as f64;
+        x[first + k] = from + part * (to - from);
+    }
 }

@@ -236,6 +236,84 @@ fn spikes_in_each_column() {
     plants(FindingKind::Spike, &[350], |columns| motion(columns)[350] += 0.02);
 }
 
+/// Triangles with Coulomb's friction of this size, so many rows for each of three pressures.
+fn friction_loops(rows: usize, friction: f64, noise_n: f64, seed: u64) -> Columns {
+    let mut noise = Noise::new(seed);
+    let (mut p, mut c, mut f) = (Vec::new(), Vec::new(), Vec::new());
+    for i in 0..3 * rows {
+        let part = (i % rows) as f64 / rows as f64 * 4.0;
+        let (up, way) = (part % 2.0 <= 1.0, 1.0 - (part % 2.0 - 1.0).abs());
+        p.push(1e5 * (1 + i / rows) as f64 + 30.0 * noise.normal());
+        c.push(0.02 + 0.2 * way + 1e-5 * noise.normal());
+        let sign = if up { 1.0 } else { -1.0 };
+        f.push(force(p[i], c[i], 0.0) - friction * sign + noise_n * noise.normal());
+    }
+    let mut columns = Columns::new(p, Trace::Contraction(c), f);
+    columns.time_s = Some((0..3 * rows).map(|i| 0.05 * i as f64).collect());
+    columns
+}
+
+#[test]
+fn clean_rows_are_no_spikes() {
+    let (mut rows, mut called) = (0, 0);
+    for seed in 0..20 {
+        for (size, friction, noise_n) in
+            [(40, 20.0, 1.0), (100, 0.0, 0.5), (400, 30.0, 0.2), (2000, 12.0, 2.0)]
+        {
+            let data = Data::from_columns(friction_loops(size, friction, noise_n, seed)).unwrap();
+            rows += data.len();
+            called += data.spikes(data.force()).len();
+        }
+        let loops = Data::from_columns(clean_loops(2, seed)).unwrap();
+        rows += loops.len();
+        called += loops.spikes(loops.force()).len();
+    }
+    assert!(1000 * called < rows, "{called} of {rows}");
+}
+
+#[test]
+fn spikes_of_20_sigma_in_two_per_cent_of_the_rows() {
+    let (mut planted, mut found, mut wrong) = (0, 0, 0);
+    for seed in 0..10 {
+        let mut columns = friction_loops(400, 6.0, 0.5, seed);
+        let mut noise = Noise::new(100 + seed);
+        let mut spiked = std::collections::BTreeSet::new();
+        while spiked.len() < 24 {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a row")]
+            let row = (noise.uniform() * 1200.0) as usize;
+            if spiked.insert(row) {
+                columns.force_n[row] += if noise.normal() > 0.0 { 10.0 } else { -10.0 };
+            }
+        }
+        let data = Data::from_columns(columns).unwrap();
+        // As a model sees them: what it leaves along the path.
+        let left: Vec<f64> = (0..1200)
+            .map(|row| data.force()[row] - force(data.pressure()[row], data.contraction(1.0)[row], 0.0))
+            .collect();
+        let rows = data.spikes(&left);
+        planted += 24;
+        found += rows.iter().filter(|row| spiked.contains(row)).count();
+        wrong += rows.iter().filter(|row| !spiked.contains(row)).count();
+    }
+    assert!(found * 10 > planted * 8 && wrong * 50 < planted, "{found} of {planted}, {wrong} wrong");
+}
+
+#[test]
+fn heavy_tails_are_hardly_spikes() {
+    let mut called = 0;
+    for seed in 0..10 {
+        let mut columns = friction_loops(400, 6.0, 0.0, seed);
+        let mut noise = Noise::new(200 + seed);
+        for value in &mut columns.force_n {
+            let chi: f64 = (0..3).map(|_| noise.normal().powi(2)).sum();
+            *value += 0.5 * noise.normal() / (chi / 3.0).sqrt();
+        }
+        called += Data::from_columns(columns).map(|data| data.spikes(data.force()).len()).unwrap();
+    }
+    // Student's t with 3 degrees of freedom is beyond 11 in one of 600 rows.
+    assert!(called < 60, "{called} of 12000");
+}
+
 #[test]
 fn a_slack_muscle() {
     let columns = |c_max: f64, seed: u64| {

@@ -82,6 +82,7 @@ pub struct Plot {
 /// #     rows: 2,
 /// #     used: 2,
 /// #     left_out: Vec::new(),
+/// #     findings: Vec::new(),
 /// #     sha256: String::new(),
 /// #     files: vec!["isobars.csv".to_owned()],
 /// #     sweeps: 1,

@@ -19,6 +19,8 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
             sha256: comparison.data.sha256.clone(),
             sweeps: comparison.data.sweeps,
             specimens: comparison.data.specimens.len(),
+            left_out: comparison.data.left_out.clone(),
+            findings: comparison.data.findings.clone(),
         },
         noise: noise(),
         verdict: Verdict::Missing,

@@ -1,0 +1,58 @@
+//! Rows whose direction isn't known: they count by how much the direction matters.
+
+use bulge_measurements::Data;
+use bulge_model::Record;
+
+/// Fewer rows of a branch say nothing about its place.
+const FEWEST: usize = 3;
+
+/// Standard deviations of all rows, where those whose direction is in doubt have the variance that the doubt makes: `sigma^2 + g^2` with the gap `g` between the branches at their pressure, by which a
+/// row is off that lies on the other branch.
+///
+/// The gap is that of the medians of the residuals while shortening and while lengthening. A muscle without friction has none, and loses nothing: none then.
+pub(crate) fn doubtful_sd(
+    record: &Record,
+    data: &Data,
+    used: &[bool],
+    levels: &[usize],
+    residuals: &[f64],
+    sd_n: f64,
+) -> Option<Vec<f64>> {
+    let doubtful = data.direction_in_doubt();
+    if doubtful.is_empty() {
+        return None;
+    }
+    let mut is_doubtful = vec![false; record.len()];
+    for row in &doubtful {
+        is_doubtful[*row] = true;
+    }
+    let count = levels.iter().copied().max().map_or(0, |last| last + 1);
+    let mut branches = vec![[Vec::new(), Vec::new()]; count];
+    for (row, moment) in record.moments().iter().enumerate() {
+        if used[row] && !is_doubtful[row] && moment.direction != 0.0 && residuals[row].is_finite() {
+            branches[levels[row]][usize::from(moment.direction < 0.0)].push(residuals[row]);
+        }
+    }
+    let gaps: Vec<f64> = branches.into_iter().map(gap).collect();
+    if gaps.iter().all(|gap| *gap <= sd_n) {
+        return None;
+    }
+    // What the file states, not what the record may have from an earlier comparison.
+    let stated = data.force_sd();
+    let sd = |row: usize| {
+        let own = stated.map_or(sd_n, |sd| sd[row]);
+        if is_doubtful[row] { own.hypot(gaps[levels[row]]) } else { own }
+    };
+    Some((0..record.len()).map(sd).collect())
+}
+
+fn gap(branches: [Vec<f64>; 2]) -> f64 {
+    if branches.iter().any(|branch| branch.len() < FEWEST) {
+        return 0.0;
+    }
+    let [shortening, lengthening] = branches.map(|mut branch| {
+        let middle = branch.len() / 2;
+        *branch.select_nth_unstable_by(middle, f64::total_cmp).1
+    });
+    (lengthening - shortening).abs()
+}
