@@ -5,6 +5,7 @@ mod arguments;
 mod characteristics;
 mod compare;
 mod curve;
+mod data;
 mod demo;
 mod diagnose;
 mod effects;

@@ -167,6 +167,13 @@ impl<'a> Document<'a> {
         if let Some(instruments) = instruments {
             muscle = muscle.with_instruments(instruments_in(&instruments)?);
         }
+        if let Some(data) = root.checked_table("data")?
+            && let Some(columns) = data.checked_table("columns")?
+        {
+            for (quantity, _) in columns.names() {
+                muscle = muscle.with_data_column(quantity, columns.text(quantity)?.unwrap_or_default());
+            }
+        }
         for (parameter, width) in self.widths.take() {
             muscle = muscle.with_width(parameter, width).map_err(invalid)?;
         }

@@ -47,6 +47,21 @@ const KEYS: &[Key] = &[
     both("instruments.length.noise", "\"5 um\""),
     both("instruments.length.zero", "\"0.05 mm\""),
     both("instruments.length.gain", "\"0.1 %\""),
+    both("data.columns.pressure", "\"P1 [psi]\""),
+    both("data.columns.contraction", "\"eps [%]\""),
+    both("data.columns.length", "\"L [mm]\""),
+    both("data.columns.displacement", "\"Weg [mm]\""),
+    both("data.columns.force", "\"Force_N [N]\""),
+    both("data.columns.time", "\"t [s]\""),
+    both("data.columns.sweep", "\"Sweep\""),
+    both("data.columns.specimen", "\"Specimen\""),
+    both("data.columns.cycle", "\"Cycle\""),
+    both("data.columns.direction", "\"Direction\""),
+    both("data.columns.temperature", "\"T [degC]\""),
+    both("data.columns.diameter", "\"D [mm]\""),
+    both("data.columns.volume", "\"V [ml]\""),
+    both("data.columns.force_sd", "\"sF [N]\""),
+    both("data.columns.ignore", "\"Ignore\""),
 ];
 
 /// Other words for a key: not accepted, but answered.

@@ -44,6 +44,7 @@ pub struct Muscle {
     learnt: Vec<Learnt>,
     instruments: Instruments,
     widths: Vec<(Parameter, f64)>,
+    data_columns: Vec<(String, String)>,
 }
 
 impl Muscle {
@@ -68,6 +69,7 @@ impl Muscle {
             learnt: Vec::new(),
             instruments: Instruments::default(),
             widths: Vec::new(),
+            data_columns: Vec::new(),
         };
         muscle.with_name(name)
     }
@@ -144,6 +146,19 @@ impl Muscle {
             None => self.learnt.push(effect),
         }
         self
+    }
+
+    /// The same with a column that files of its measurements have: the quantity, and the heading with its unit.
+    #[must_use]
+    pub fn with_data_column(mut self, quantity: impl Into<String>, column: impl Into<String>) -> Self {
+        self.data_columns.push((quantity.into(), column.into()));
+        self
+    }
+
+    /// Columns that files of its measurements have, as `[data.columns]` states them: quantity and heading, such as `force` and `Force_N [N]`.
+    #[must_use]
+    pub fn data_columns(&self) -> &[(String, String)] {
+        &self.data_columns
     }
 
     /// The same without learnt effects: what this crate itself knows of the muscle.

@@ -39,6 +39,13 @@ pub fn to_toml(muscle: &Muscle) -> String {
         lines.extend(effect.values().iter().map(|value| format!("{} = {}", value.key, value.text())));
     }
     instrument_lines(&mut lines, muscle);
+    if !muscle.data_columns().is_empty() {
+        lines.push("\n[data.columns]".to_owned());
+        let line = |(quantity, column): &(String, String)| {
+            format!("{quantity} = {}", toml::Value::String(column.clone()))
+        };
+        lines.extend(muscle.data_columns().iter().map(line));
+    }
     lines.push(String::new());
     lines.join("\n")
 }

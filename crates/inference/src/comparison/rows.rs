@@ -1,6 +1,7 @@
 //! Which rows enter errors and fits, and how rows are named to people.
 
-use bulge_measurements::Data;
+use bulge_measurements::{Data, Reading};
+use bulge_muscles::units::significant;
 use std::fmt::Write;
 
 use crate::comparison::document::LeftOut;
@@ -9,6 +10,8 @@ use crate::comparison::document::LeftOut;
 pub(crate) struct Used {
     pub(crate) mask: Vec<bool>,
     pub(crate) left_out: Vec<LeftOut>,
+    /// How the data were read, with the rows that no equilibrium has.
+    pub(crate) reading: Reading,
 }
 
 /// Readings at zero say only that the muscle didn't pull: two or more of exactly the lowest force, within 1 % of full scale of zero; rows that moved
@@ -21,6 +24,10 @@ pub(crate) fn used(data: &Data) -> Used {
     let cut: Vec<usize> = (0..force.len()).filter(|row| is_cut(*row)).collect();
     let mut mask = vec![true; force.len()];
     let mut left_out = Vec::new();
+    let mut reading = data.reading().clone();
+    let vented = without_pressure(data, &mut mask, &mut reading);
+    left_out.extend(vented);
+    let cut: Vec<usize> = cut.into_iter().filter(|row| mask[*row]).collect();
     if cut.len() >= 2 && cut.len() < force.len() && lowest.abs() <= 0.01 * full {
         for row in &cut {
             mask[*row] = false;
@@ -42,7 +49,28 @@ pub(crate) fn used(data: &Data) -> Used {
             rows: idle.len(),
         });
     }
-    Used { mask, left_out }
+    Used { mask, left_out, reading }
+}
+
+/// Leaves out rows whose gauge pressure is 0 or, by the noise of a zero, below: nothing balances the fibres there.
+fn without_pressure(data: &Data, mask: &mut [bool], reading: &mut Reading) -> Option<LeftOut> {
+    let pressure = data.pressure();
+    let rows: Vec<usize> = (0..pressure.len()).filter(|row| pressure[*row] <= 0.0).collect();
+    if rows.is_empty() {
+        return None;
+    }
+    for row in &rows {
+        mask[*row] = false;
+        let (file, line) = data.line(*row);
+        let file = data.files().get(file).map_or("", |file| file.name.as_str());
+        let reason = format!("a gauge pressure of {} Pa has no equilibrium", significant(pressure[*row], 4));
+        reading.add(file, line, reason);
+    }
+    Some(LeftOut {
+        why: "no gauge pressure: nothing balances the fibres".to_owned(),
+        lines: lines(data, &rows),
+        rows: rows.len(),
+    })
 }
 
 /// Largest force that was measured \[N\].

@@ -81,6 +81,7 @@ pub struct Plot {
 /// #     rows: 2,
 /// #     used: 2,
 /// #     left_out: Vec::new(),
+/// #     reading: bulge_measurements::Reading::default(),
 /// #     sha256: String::new(),
 /// #     files: vec!["isobars.csv".to_owned()],
 /// #     sweeps: 1,
