@@ -12,8 +12,6 @@ mod column_map;
 mod columns;
 mod csv_file;
 mod data;
-#[cfg(test)]
-mod dialects;
 mod dimension;
 mod encoding;
 mod error;
@@ -41,6 +39,10 @@ mod spreadsheet;
 mod stretch;
 mod sweep;
 mod table;
+#[cfg(test)]
+mod tests {
+    mod dialects;
+}
 mod unit;
 
 pub use cell_error::CellError;
