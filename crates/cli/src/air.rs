@@ -270,9 +270,6 @@ impl Fill {
             let document = json!({ "schema": "bulge.filling/1", "muscle": name, "filling": history });
             return Ok(serde_json::to_string_pretty(&document)? + "\n");
         }
-        if files::is_stdout(self.csv.as_deref()) {
-            return Ok(csv(&history));
-        }
         let mut text = told(&name, &history);
         if let (Some(load), Some(last)) = (&self.load, history.samples.last()) {
             let load = quantity::<Force>("--load", load)?.si();

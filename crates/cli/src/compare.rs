@@ -2,7 +2,6 @@
 
 use bulge_effects::{Effect, known};
 use bulge_inference::{Comparison, Fit, Options, compare};
-use bulge_measurements::Data;
 use bulge_report::comparison::{html, plots};
 use clap::Args;
 use std::fmt::Write;
@@ -10,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::arguments;
+use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
 use crate::text::{significant, with_interval};
@@ -17,9 +17,8 @@ use crate::text::{significant, with_interval};
 /// Model against measurement. Effects are fitted only if you name them with `--with`.
 #[derive(Debug, Args)]
 pub(crate) struct CompareCommand {
-    /// Measured rows: CSV (or Parquet) with columns such as `pressure [bar]`, `contraction [%]`, `force [N]`; several files make one analysis
-    #[arg(required = true, value_name = "DATA")]
-    data: Vec<PathBuf>,
+    #[command(flatten)]
+    data: DataArguments,
     /// A muscle file or the name of a shipped muscle
     #[arg(long)]
     muscle: String,
@@ -52,7 +51,7 @@ impl CompareCommand {
         let muscle = arguments::muscle(&self.muscle)?;
         let known = known(&muscle, &catalogue)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
-        let data = Data::read(&self.data)?;
+        let data = self.data.read(&muscle)?;
         let mut options = Options { known, ..Options::new(catalogue, effects) };
         options.rivals = self.rivals;
         if let Some(name) = &self.law {
@@ -93,6 +92,7 @@ pub(crate) fn text(comparison: &Comparison, effects: &[Arc<dyn Effect>]) -> Stri
     let mut out = String::new();
     let data = &comparison.data;
     let _ = writeln!(out, "{} against {}\n", comparison.muscle, data.files.join(", "));
+    out.push_str(&told(&data.reading));
     let kind = if data.is_path { "along paths" } else { "in a static map" };
     let _ = writeln!(
         out,

@@ -110,9 +110,6 @@ impl CurveCommand {
         if self.json {
             return Ok(serde_json::to_string_pretty(&document(&muscle, &isobars))? + "\n");
         }
-        if files::is_stdout(self.csv.as_deref()) {
-            return Ok(characteristics::csv(&isobars));
-        }
         let mut heading = format!("{}\n\n", muscle.name());
         if extended.adds_force() {
             let _ = writeln!(heading, "  with the effects {}, at rest\n", extended.used().join(", "));
@@ -128,12 +125,7 @@ impl CurveCommand {
             Err(Failure::Value { option, what: format!("{value} is out of range: give {low} to {high}") })
         };
         within("--points", self.points, 2, MAX_POINTS)?;
-        within("--frames", self.frames, 2, MAX_FRAMES)?;
-        if self.json && files::is_stdout(self.csv.as_deref()) {
-            let what = "standard output can take CSV or JSON, not both: give a file name".to_owned();
-            return Err(Failure::Value { option: "--csv", what });
-        }
-        Ok(())
+        within("--frames", self.frames, 2, MAX_FRAMES)
     }
 
     /// The contractions, from the option or over the range in which the muscle pulls at the first pressure.

@@ -7,7 +7,6 @@ pub(crate) mod untested;
 
 use bulge_effects::known;
 use bulge_inference::{DiagnoseOptions, Diagnosis, Options, diagnose};
-use bulge_measurements::Data;
 use bulge_muscles::{Force, Quantity};
 use bulge_report::diagnosis::{html, plots};
 use clap::Args;
@@ -15,6 +14,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use crate::arguments;
+use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
 use progress::Bar;
@@ -22,9 +22,8 @@ use progress::Bar;
 /// Which physical effect is missing: compares, looks for what the model lacks, adds it, and says how sure that is.
 #[derive(Debug, Args)]
 pub(crate) struct DiagnoseCommand {
-    /// Measured rows: CSV (or Parquet) with columns such as `pressure [bar]`, `contraction [%]`, `force [N]`; several files make one analysis
-    #[arg(required = true, value_name = "DATA")]
-    data: Vec<PathBuf>,
+    #[command(flatten)]
+    data: DataArguments,
     /// A muscle file or the name of a shipped muscle
     #[arg(long)]
     muscle: String,
@@ -54,7 +53,7 @@ impl DiagnoseCommand {
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
-        let data = Data::read(&self.data)?;
+        let data = self.data.read(&muscle)?;
         let known = known(&muscle, &catalogue)?;
         let base = Options { known, ..Options::new(catalogue, effects) };
         let bar = Bar::new(self.json);
@@ -70,13 +69,18 @@ impl DiagnoseCommand {
                 let _ = writeln!(wrote, "  wrote {}", path.display());
             }
         }
-        if self.json { Ok(document) } else { Ok(text::text(&found, &self.call()) + &wrote) }
+        if self.json {
+            Ok(document)
+        } else {
+            Ok(told(&found.data.reading) + &text::text(&found, &self.call()) + &wrote)
+        }
     }
 
     /// The command line as far as the next step takes it over.
     fn call(&self) -> text::Call {
         text::Call {
-            data: self.data.iter().map(|path| path.display().to_string()).collect(),
+            data: self.data.names(),
+            columns: self.data.columns.clone(),
             muscle: self.muscle.clone(),
             with: self.with.iter().map(|name| name.trim().to_owned()).collect(),
             effects: self.effects.as_ref().map(|path| path.display().to_string()),

@@ -1,16 +1,53 @@
 //! Files that appear whole or not at all.
 
-use bulge_sweep::write_durably;
+use bulge_muscles::output;
+use std::ffi::OsStr;
 use std::fs;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::failure::Failure;
 
-/// Writes to a temporary name in the same folder, forces it to the disk, and renames.
+/// Names of standard output.
+const STDOUT: [&str; 4] = ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
+
+/// Whether a file was written to standard output: what the command says to people would spoil it.
+static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// Writes a file whole, or into what a name stands for that is no regular file; "-" is standard output.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let failed = |source| Failure::Output { path: path.to_path_buf(), source };
+    if is_stdout(path) {
+        return take_stdout(bytes).map_err(failed);
+    }
     can_be_written(path)?;
-    write_durably(path, bytes).map_err(|source| Failure::Output { path: path.to_path_buf(), source })
+    output::write(path, bytes).map_err(failed)
+}
+
+/// Writes one file, and nothing else, to standard output.
+fn take_stdout(bytes: &[u8]) -> io::Result<()> {
+    let wants_json = std::env::args_os().any(|argument| argument == OsStr::new("--json"));
+    if wants_json || IS_TAKEN.swap(true, Ordering::Relaxed) {
+        let what = if wants_json { "a file or JSON, not both" } else { "one file, not several" };
+        let what = format!("standard output can take {what}; give the name of a file");
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+    }
+    print(bytes)
+}
+
+/// Writes to standard output, at once. A reader who has seen enough (`| head`) is no error.
+pub(crate) fn print(bytes: &[u8]) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// Whether standard output holds a file.
+pub(crate) fn stdout_is_taken() -> bool {
+    IS_TAKEN.load(Ordering::Relaxed)
 }
 
 /// Writes a file if it is asked for; the line that says so.
@@ -24,17 +61,17 @@ pub(crate) fn wrote(
 }
 
 /// Whether a file is asked for on standard output, as "-": there it takes the place of all else.
-pub(crate) fn is_stdout(path: Option<&Path>) -> bool {
-    path == Some(Path::new("-"))
+fn is_stdout(path: &Path) -> bool {
+    STDOUT.iter().any(|name| path == Path::new(name))
 }
 
-/// Writes a table as CSV and its picture, as far as they are asked for, but nothing for standard output; the lines that say so.
+/// Writes a table as CSV and its picture, as far as they are asked for; the lines that say so.
 pub(crate) fn wrote_both(
     [csv, plot]: [Option<&Path>; 2],
     table: impl FnOnce() -> String,
     picture: impl FnOnce() -> Result<String, Failure>,
 ) -> Result<String, Failure> {
-    let table = wrote(csv.filter(|_| !is_stdout(csv)), || Ok(table()))?;
+    let table = wrote(csv, || Ok(table()))?;
     Ok(table + &wrote(plot, picture)?)
 }
 
@@ -73,7 +110,9 @@ pub(crate) fn remove(paths: &[PathBuf]) -> Result<(), Failure> {
 /// Refuses a file that could not be written at the end of a long run.
 pub(crate) fn can_be_written(path: &Path) -> Result<(), Failure> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let source = if path.is_dir() {
+    let source = if is_stdout(path) {
+        return Ok(());
+    } else if path.is_dir() {
         io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; give the name of a file")
     } else if !folder.is_dir() {
         let missing = format!("there is no folder {}; create it first", folder.display());

@@ -12,15 +12,15 @@ use std::sync::Arc;
 
 use crate::arguments;
 use crate::compare::parameters;
+use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
 
 /// Fits the named effects, and writes the muscle with what was learnt: a file for `shape`, `curve` and the next `compare`.
 #[derive(Debug, Args)]
 pub(crate) struct FitCommand {
-    /// Measured rows: CSV (or Parquet) with columns such as `pressure [bar]`, `contraction [%]`, `force [N]`; several files make one analysis
-    #[arg(required = true, value_name = "DATA")]
-    data: Vec<PathBuf>,
+    #[command(flatten)]
+    data: DataArguments,
     /// A muscle file or the name of a shipped muscle
     #[arg(long)]
     muscle: String,
@@ -43,7 +43,7 @@ impl FitCommand {
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
-        let data = Data::read(&self.data)?;
+        let data = self.data.read(&muscle)?;
         let learnt = learn(&data, &muscle, effects, catalogue)?;
         if let Some(path) = &self.out {
             files::write(path, learnt.model.as_bytes())?;
@@ -53,9 +53,11 @@ impl FitCommand {
         }
         if self.out.is_none() {
             // A file as it is, so that it can be piped into one; the numbers are in its comments.
+            eprint!("{}", told(data.reading()));
             return Ok(learnt.model);
         }
         let mut text = format!("{} fitted to {}\n\n", muscle.name(), learnt.fitting.data.files.join(", "));
+        text.push_str(&told(data.reading()));
         text.push_str(&lines(&learnt));
         for (name, why) in &learnt.extension.left_out {
             let _ = writeln!(text, "  {name} is not in the file: {why}");

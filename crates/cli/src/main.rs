@@ -5,6 +5,7 @@ mod arguments;
 mod characteristics;
 mod compare;
 mod curve;
+mod data;
 mod demo;
 mod diagnose;
 mod effects;
@@ -127,24 +128,19 @@ fn main() -> ExitCode {
         Command::Muscle(command) => command.run(),
         Command::Validate(command) => command.run(),
     };
-    match outcome.and_then(|text| print(&text)) {
+    let said = |text: &str| if files::stdout_is_taken() { Ok(()) } else { print(text) };
+    match outcome.and_then(|text| said(&text)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             // Nothing is left to be done where this can't be written either.
-            let _ = print(failure.answer());
+            let _ = said(failure.answer());
             let _ = writeln!(std::io::stderr(), "error: {failure}");
             ExitCode::from(failure.status())
         }
     }
 }
 
-/// Everything a command says on standard output, at once. A reader who has seen enough (`| head`) is no error.
+/// Everything a command says on standard output.
 fn print(text: &str) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::Output { path: "standard output".into(), source: error })
-        }
-        _ => Ok(()),
-    }
+    files::print(text.as_bytes()).map_err(|source| Failure::Output { path: "standard output".into(), source })
 }

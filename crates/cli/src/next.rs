@@ -2,7 +2,6 @@
 
 use bulge_effects::known;
 use bulge_inference::{DiagnoseOptions, Diagnosis, NextLimits, Options, Verdict, diagnose};
-use bulge_measurements::Data;
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Pressure, Ratio};
 use bulge_report::diagnosis::{NextStep, headlines, others_in_class};
@@ -11,6 +10,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use crate::arguments;
+use crate::data::{DataArguments, told};
 use crate::diagnose::paragraph::{paragraph, quoted};
 use crate::diagnose::progress::Bar;
 use crate::diagnose::text::untested;
@@ -25,9 +25,8 @@ const UNTESTED: &str = "  could not be looked for ";
 /// The next experiment: the test within your limits that best separates the effects that these data leave open.
 #[derive(Debug, Args)]
 pub(crate) struct NextCommand {
-    /// Measured rows: CSV (or Parquet) with columns such as `pressure [bar]`, `contraction [%]`, `force [N]`; several files make one analysis
-    #[arg(required = true, value_name = "DATA")]
-    data: Vec<PathBuf>,
+    #[command(flatten)]
+    data: DataArguments,
     /// A muscle file or the name of a shipped muscle
     #[arg(long)]
     muscle: String,
@@ -57,7 +56,7 @@ impl NextCommand {
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
-        let data = Data::read(&self.data)?;
+        let data = self.data.read(&muscle)?;
         let known = known(&muscle, &catalogue)?;
         let bar = Bar::new(self.json);
         let progress = bar.progress();
@@ -95,8 +94,8 @@ impl NextCommand {
 
     /// The answer for people.
     fn text(&self, diagnosis: &Diagnosis, step: &NextStep<'_>) -> String {
-        let data: Vec<String> = self.data.iter().map(|path| path.display().to_string()).collect();
-        let mut out = format!("{}, after {}\n\n", diagnosis.muscle, data.join(", "));
+        let mut out = format!("{}, after {}\n\n", diagnosis.muscle, self.data.names().join(", "));
+        out.push_str(&told(&diagnosis.data.reading));
         paragraph(&mut out, "  ", &verdict(diagnosis));
         if let Some(open) = step.open {
             let others: Vec<&str> = others_in_class(open).collect();
@@ -133,12 +132,15 @@ impl NextCommand {
     }
 
     fn files(&self) -> String {
-        self.data.iter().map(|path| quoted(&path.display().to_string())).collect::<Vec<_>>().join(" ")
+        self.data.names().iter().map(|name| quoted(name)).collect::<Vec<_>>().join(" ")
     }
 
     /// The options that the next call takes over.
     fn rest(&self) -> String {
         let mut rest = format!("--muscle {}", quoted(&self.muscle));
+        if let Some(columns) = &self.data.columns {
+            let _ = write!(rest, " --columns {}", quoted(columns));
+        }
         if let Some(file) = &self.effects {
             let _ = write!(rest, " --effects {}", quoted(&file.display().to_string()));
         }

@@ -105,9 +105,6 @@ impl SenseCommand {
             });
             return Ok(serde_json::to_string_pretty(&document)? + "\n");
         }
-        if files::is_stdout(self.csv.as_deref()) {
-            return Ok(csv(&curve));
-        }
         let heading = format!("{} at {pressure}\n\n", muscle.name());
         let worst = format!(
             "  {} {} of noise are {} % of contraction at worst, {} mm (at {} %)\n",

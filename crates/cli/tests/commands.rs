@@ -212,3 +212,39 @@ fn a_shipped_muscle_is_a_file_to_start_from() {
     let ask = |muscle: &str| json(&["shape", muscle, "--pressure", "2 bar", "--force", "500 N", "--json"]);
     assert_eq!(ask(&file), ask("ppam-2-r16"));
 }
+
+/// A link stays, a FIFO is written into, and standard output holds the file and nothing else.
+#[cfg(unix)]
+#[test]
+fn targets_that_are_no_regular_files_are_written_through() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    let folder = Folder::new("targets");
+    let call = |csv: &str| {
+        let output = bulge(&["curve", "dmsp-20-250", "--pressure", "1 bar", "--points", "5", "--csv", csv]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        output.stdout
+    };
+    let expected = call("-");
+    assert!(expected.starts_with(b"pressure [Pa],"));
+    assert_eq!(call("/dev/stdout"), expected);
+    let link = folder.path("link.csv");
+    symlink("real.csv", &link).unwrap();
+    call(&link);
+    assert!(Path::new(&link).is_symlink() && std::fs::read(folder.path("real.csv")).unwrap() == expected);
+    let fifo = folder.path("fifo");
+    if Command::new("mkfifo").arg(&fifo).status().is_ok_and(|status| status.success()) {
+        let reader = std::thread::spawn({
+            let fifo = fifo.clone();
+            move || std::fs::read(fifo).unwrap()
+        });
+        call(&fifo);
+        assert_eq!(reader.join().unwrap(), expected);
+        assert!(std::fs::symlink_metadata(&fifo).unwrap().file_type().is_fifo());
+    }
+    let json = ["curve", "dmsp-20-250", "--pressure", "1 bar", "--points", "5", "--csv", "-", "--json"];
+    let (status, message) = failure(&json);
+    assert!(status == 1 && message.contains("a file or JSON, not both"), "{message}");
+    // A model on standard output is the file, and nothing besides.
+    let svg = bulge(&["curve", "dmsp-20-250", "--pressure", "1 bar", "--points", "5", "--plot", "-"]).stdout;
+    assert!(svg.starts_with(b"<svg"), "{}", String::from_utf8_lossy(&svg[..60]));
+}

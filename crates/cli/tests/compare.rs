@@ -173,14 +173,17 @@ fn bad_input_gets_one_clear_message() {
     let cases: &[(&str, &[&str])] = &[
         ("", &["empty"]),
         (good, &["no row"]),
-        ("pressure [bar],contraction [%],furce [N]\n1,5,100\n", &["furce", "`force [N]`"]),
+        ("pressure [bar],contraction [%],thrust [kg m]\n1,5,100\n", &["thrust", "`force [N]`", "--columns"]),
         ("pressure [bar],contraction [%]\n1,5\n", &["force"]),
         (
             "pressure [bar],contraction [%],force [N]\n1,5,100\n1,abc,90\n",
-            &["data.csv:3", "contraction", "abc"],
+            &["1 of 2 rows", "`contraction [%]` is not a number (line 3)"],
         ),
         ("pressure [mm],contraction [%],force [N]\n1,5,100\n", &["pressure", "mm"]),
-        ("pressure [bar],contraction [%],force [N]\n1,5,100\n1,5\n", &["data.csv:3"]),
+        (
+            "pressure [bar],contraction [%],force [N]\n1,5,100\n1,5\n",
+            &["fewer fields than the header (line 3)"],
+        ),
         ("pressure [bar],contraction [%],force [N]\n1,55,1000\n1,56,900\n", &["line 2-3"]),
     ];
     for (text, parts) in cases {
@@ -217,4 +220,74 @@ fn bad_input_gets_one_clear_message() {
     }
     // Nothing is left behind.
     assert_eq!(folder.names(), ["data.csv", "muscle.toml"]);
+}
+
+/// A file as a laboratory writes it, with a row that can't be used and one without pressure, from standard input too; what was guessed is told.
+#[test]
+fn a_laboratory_file_goes_in_as_it_is() {
+    let folder = Folder::new("laboratory");
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    // Semicolons between columns, commas in numbers.
+    let german = |line: &str| line.replace(',', ";").replace('.', ",");
+    let mut lines: Vec<String> = loops(TRUTH).lines().skip(1).map(german).collect();
+    lines.insert(10, "9,5;1;1;#N/A;3".to_owned());
+    lines.push("1000;6;-0,00241;5;1".to_owned());
+    let text = format!(
+        "Operator: me\nRate: 10 Hz\n\nZeit / s;sweep;Druck (bar);Kontraktion [%];Kraft_N;Notiz\n{}\n",
+        lines.iter().map(|line| format!("{line};ok")).collect::<Vec<_>>().join("\n")
+    );
+    let data = folder.write("data.csv", &text);
+    let found = json(&["compare", &data, "--muscle", &muscle, "--json"]);
+    assert_eq!(found["data"]["used"], 200);
+    let apart = found["data"]["set_apart"].as_array().unwrap();
+    assert_eq!((apart.len(), found["data"]["set_apart_rows"].as_u64()), (2, Some(2)), "{apart:?}");
+    assert_eq!(apart[0]["row"], 15);
+    assert!(apart[0]["reason"].as_str().unwrap().contains("`#N/A` is not a number"), "{apart:?}");
+    assert!(apart[1]["reason"].as_str().unwrap().contains("-241 Pa"), "{apart:?}");
+    assert_eq!(found["data"]["columns"][2]["quantity"], "pressure");
+    let plain = folder.write("plain.csv", &loops(TRUTH));
+    let exact = json(&["compare", &plain, "--muscle", &muscle, "--json"]);
+    assert!((rmse(&found, 0) - rmse(&exact, 0)).abs() < 1e-9 * rmse(&exact, 0));
+    let said = String::from_utf8(bulge(&["compare", &data, "--muscle", &muscle]).stdout).unwrap();
+    for part in ["taken for", "Kraft_N", "ignored: Notiz", "decimal commas", "set apart 2 rows", "line 15"] {
+        assert!(said.contains(part), "{part} is not in {said}");
+    }
+    // The mapping of the muscle file, and standard input.
+    let odd = text.replace("Kraft_N", "ch4").replace("Druck (bar)", "ch2");
+    let mapped = folder.write(
+        "mapped.toml",
+        &format!("{MUSCLE}\n[data.columns]\nforce = \"ch4 [N]\"\npressure = \"ch2 [bar]\"\n"),
+    );
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_bulge"))
+        .args(["compare", "-", "--muscle", &mapped, "--json"])
+        .stdin(std::process::Stdio::piped())
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::io::Write::write_all(&mut child.stdin.take().unwrap(), odd.as_bytes()).unwrap();
+    let answer: Value = serde_json::from_slice(&child.wait_with_output().unwrap().stdout).unwrap();
+    assert_eq!(rmse(&answer, 0).to_bits(), rmse(&found, 0).to_bits());
+    let file = folder.write("odd.csv", &odd);
+    let (status, message) = failure(&["compare", &file, "--muscle", &muscle]);
+    assert!(status == 1 && message.contains("2 things") && message.contains("--columns"), "{message}");
+    let wrong = "force=ch9 [N]";
+    let (status, message) = failure(&["compare", &file, "--muscle", &mapped, "--columns", wrong]);
+    assert!(status == 1 && message.contains("there is no column `ch9 [N]`"), "{message}");
+}
+
+/// What `curve` writes goes into `compare`, and is met.
+#[test]
+fn a_curve_is_data() {
+    let folder = Folder::new("curve-is-data");
+    let csv = folder.path("curve.csv");
+    let made =
+        bulge(&["curve", "dmsp-20-250", "--pressure", "1 bar,2 bar,3 bar", "--points", "31", "--csv", &csv]);
+    assert!(made.status.success());
+    let found = json(&["compare", &csv, "--muscle", "dmsp-20-250", "--json"]);
+    assert!(rmse(&found, 0) < 1e-3, "{}", rmse(&found, 0));
+    let columns = found["data"]["columns"].as_array().unwrap();
+    assert!(
+        columns.iter().any(|column| column["says"] == "ignored: it follows from the length"),
+        "{columns:?}"
+    );
 }

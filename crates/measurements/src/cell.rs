@@ -1,12 +1,46 @@
 //! One field of a table as what its column holds, or why it isn't that.
 
-use crate::error::CellError;
+use crate::cell_error::CellError;
 use crate::quote::quoted;
 
 /// A finite number.
 pub(crate) fn number(text: &str) -> Result<f64, CellError> {
     let value = text.parse::<f64>().map_err(|_| no_number(text))?;
     if value.is_finite() { Ok(value) } else { Err(CellError::NotFinite { text: quoted(text) }) }
+}
+
+/// What stands between the whole number and its decimals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Decimal {
+    Point,
+    /// A comma; points stand between thousands.
+    Comma,
+    /// A comma in some columns, a point in others.
+    Either,
+}
+
+/// A finite number in whatever way people write one that can't be mistaken.
+pub(crate) fn written(text: &str, decimal: Decimal) -> Result<f64, CellError> {
+    let number = match decimal {
+        Decimal::Comma if is_in_thousands(text) => return number(&text.replace('.', "")),
+        Decimal::Comma | Decimal::Either if text.contains(',') && !text.contains('.') => {
+            number(&text.replacen(',', ".", 1))
+        }
+        _ => number(text),
+    };
+    match number {
+        Err(CellError::Spelling { respelt, .. }) => Ok(respelt),
+        found => found,
+    }
+}
+
+/// Whether points stand where those between thousands do: 1.234 and 1.234.567, but not 0.234.
+pub(crate) fn is_in_thousands(text: &str) -> bool {
+    let mut groups = text.trim_start_matches(['+', '-']).split('.');
+    let is_number = |group: &str| group.bytes().all(|byte| byte.is_ascii_digit());
+    let first = groups.next().unwrap_or_default();
+    let is_first = (1..=3).contains(&first.len()) && is_number(first) && !first.starts_with('0');
+    is_first && text.contains('.') && groups.all(|group| group.len() == 3 && is_number(group))
 }
 
 /// Larger numbers are no measurements; up to here no square of a sum overflows.
@@ -24,8 +58,8 @@ pub(crate) fn measurable(value: f64, text: impl Fn() -> String) -> Result<f64, C
 }
 
 /// A whole number.
-pub(crate) fn whole(text: &str) -> Result<i64, CellError> {
-    text.parse::<i64>().or_else(|_| whole_of(number(text)?, text))
+pub(crate) fn whole(text: &str, decimal: Decimal) -> Result<i64, CellError> {
+    text.parse::<i64>().or_else(|_| whole_of(written(text, decimal)?, text))
 }
 
 /// A whole number written as a number with a point, such as 3.0.
@@ -67,19 +101,16 @@ fn no_number(text: &str) -> CellError {
     if text.is_empty() {
         return CellError::Empty;
     }
-    let fixed = text.replacen(',', ".", 1);
-    if text.matches(',').count() == 1 && fixed.parse::<f64>().is_ok() {
-        return CellError::DecimalComma { text: quoted(text), fixed: quoted(&fixed) };
+    if text.matches(',').count() == 1 && text.replacen(',', ".", 1).parse::<f64>().is_ok() {
+        return CellError::DecimalComma { text: quoted(text) };
     }
     if let Some(fixed) = respelt(text) {
-        CellError::Spelling { text: quoted(text), fixed: quoted(&fixed) }
+        CellError::Spelling { text: quoted(text), respelt: fixed.parse().unwrap_or(f64::NAN) }
     } else if text.split_once('#').is_some_and(|(before, _)| before.trim_end().parse::<f64>().is_ok()) {
         CellError::Comment { text: quoted(text) }
     } else if with_unit(text).is_some() {
-        CellError::UnitInside { text: quoted(text), fixed: None }
-    } else if text.contains(':')
-        && text.bytes().all(|byte| byte.is_ascii_digit() || b":. -/TZ".contains(&byte))
-    {
+        CellError::UnitInside { text: quoted(text) }
+    } else if crate::clock::instant(text).is_some() {
         CellError::Clock { text: quoted(text) }
     } else {
         CellError::NotANumber { text: quoted(text) }
@@ -126,10 +157,34 @@ mod tests {
         for (text, value) in [("1", 1.0), ("-2.5e3", -2500.0), ("+.5", 0.5), ("1E-3", 1e-3)] {
             assert_eq!(number(text), Ok(value));
         }
+        let whole = |text| whole(text, Decimal::Point);
         assert_eq!(whole("7"), Ok(7));
         assert_eq!(whole("-3.0"), Ok(-3));
         assert!(matches!(whole("3.5"), Err(CellError::NotWhole { .. })));
         assert!(matches!(whole("1e300"), Err(CellError::NotWhole { .. })));
+    }
+
+    #[test]
+    fn numbers_as_people_write_them() {
+        for (text, decimal, value) in [
+            ("1 000", Decimal::Point, 1000.0),
+            ("1,234.5", Decimal::Point, 1234.5),
+            ("1.234,5", Decimal::Point, 1234.5),
+            ("1'234'567,5", Decimal::Point, 1_234_567.5),
+            ("1,234,567", Decimal::Point, 1_234_567.0),
+            ("\u{2212}5", Decimal::Point, -5.0),
+            ("1.5D3", Decimal::Point, 1500.0),
+            ("1,5", Decimal::Comma, 1.5),
+            ("-0,25e-3", Decimal::Comma, -0.25e-3),
+            ("1.234", Decimal::Comma, 1234.0),
+            ("1.234.567", Decimal::Comma, 1_234_567.0),
+            ("1.234,5", Decimal::Comma, 1234.5),
+            ("0.234", Decimal::Comma, 0.234),
+            ("1.234", Decimal::Either, 1.234),
+            ("1,234", Decimal::Either, 1.234),
+        ] {
+            assert_eq!(written(text, decimal), Ok(value), "{text}");
+        }
     }
 
     #[test]
@@ -139,29 +194,23 @@ mod tests {
             ("nan", "finite"),
             ("-inf", "finite"),
             ("1e999", "finite"),
-            ("1,5", "write `1.5`"),
-            ("-0,25", "write `-0.25`"),
-            ("1,234", "write `1.234`, with a point, in all number columns (or `1234` if"),
-            ("2 bar", "`2 bar` has a unit in the field: write the number alone"),
-            ("20%", "unit in the field"),
-            ("1.5e1N", "unit in the field"),
-            ("1 000", "write `1000`"),
-            ("1,234.5", "write `1234.5`"),
-            ("1.234,5", "write `1234.5`"),
-            ("1'234'567,5", "write `1234567.5`"),
-            ("1,234,567", "write `1234567`"),
-            ("\u{2212}5", "write `-5`"),
-            ("1.5D3", "write `1.5e3`"),
-            ("10 # slip", "line of its own"),
-            ("12:00:01.5", "seconds since the start"),
+            ("1,5", "decimal comma"),
+            ("-0,25", "decimal comma"),
+            ("1,234", "decimal comma"),
+            ("2 bar", "`2 bar` has another unit"),
+            ("20%", "another unit"),
+            ("1.5e1N", "another unit"),
+            ("10 # slip", "comment"),
+            ("12:00:01.5", "time of day"),
             ("2026-03-01 12:00", "time of day"),
             ("0x1F", "`0x1F` is not a number"),
             ("1 2", "not a number"),
             ("abc", "`abc` is not a number"),
+            ("#N/A", "`#N/A` is not a number"),
             ("1.2.3", "not a number"),
             ("\u{1f600}", "not a number"),
         ] {
-            let message = number(text).unwrap_err().to_string();
+            let message = written(text, Decimal::Point).unwrap_err().to_string();
             assert!(message.contains(part), "{text}: {message}");
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::columns::{Columns, Trace, picked};
 use crate::error::MeasurementError;
+use crate::reading::{ReadOptions, Reading, SetApart};
 use crate::resolution::{Resolution, bounds};
 use crate::source::{Source, SourceFile, fingerprint};
 use crate::stretch::{self, DeadBand, Stretch};
@@ -55,6 +56,7 @@ pub struct Data {
     between: Vec<usize>,
     /// Where a stated sweep contradicts itself.
     pub(crate) contradictions: Vec<(usize, Contradiction)>,
+    reading: Reading,
     pub(crate) structure: Structure,
 }
 
@@ -75,19 +77,31 @@ pub(crate) struct Structure {
 }
 
 impl Data {
-    /// Reads files of CSV or Parquet, which their first bytes tell apart. Several files are one analysis; they need the same columns,
-    /// and their sweeps are distinct. Without a column `specimen` all is about specimen "1".
+    /// Reads files of text, Excel, MATLAB or Parquet, which their first bytes tell apart; `-` is standard input. Several files are one analysis; they
+    /// need the same columns, and their sweeps are distinct. Without a column `specimen` all is about specimen "1".
     ///
     /// # Errors
-    /// If a file can't be read or isn't a table of measurements: the message names file, line, column and cure.
+    /// If a file can't be read or isn't a table of measurements: the message names file, line, column and cure of all that is wrong.
     pub fn read(paths: &[impl AsRef<Path>]) -> Result<Self, MeasurementError> {
+        Self::read_with(paths, &ReadOptions::default())
+    }
+
+    /// The same, where it is known which column is which, or how long the muscle is.
+    ///
+    /// # Errors
+    /// As [`Data::read`].
+    pub fn read_with(paths: &[impl AsRef<Path>], options: &ReadOptions) -> Result<Self, MeasurementError> {
         let mut all: Option<Self> = None;
+        let mut complaints = Vec::new();
         for path in paths {
-            let source = Source::read(path.as_ref())?;
-            match &mut all {
-                None => all = Some(Self::start(source)),
-                Some(all) => all.add(source)?,
+            match (Source::read(path.as_ref(), options), &mut all) {
+                (Ok(source), None) => all = Some(Self::start(source)),
+                (Ok(source), Some(all)) => complaints.extend(all.add(source).err()),
+                (Err(complaint), _) => complaints.push(complaint),
             }
+        }
+        if !complaints.is_empty() {
+            return Err(MeasurementError::of(complaints));
         }
         all.map(Self::structured).ok_or(MeasurementError::NoFile)
     }
@@ -97,7 +111,15 @@ impl Data {
     /// # Errors
     /// If it isn't a table of measurements.
     pub fn from_csv(text: &str, origin: &str) -> Result<Self, MeasurementError> {
-        Ok(Self::start(Source::csv(origin, text.as_bytes())?).structured())
+        Self::from_bytes(text.as_bytes(), origin, &ReadOptions::default())
+    }
+
+    /// Reads the bytes of a file of any kind but Parquet; `origin` is the name that messages give it.
+    ///
+    /// # Errors
+    /// If they are no table of measurements.
+    pub fn from_bytes(bytes: &[u8], origin: &str, options: &ReadOptions) -> Result<Self, MeasurementError> {
+        Ok(Self::start(Source::bytes(origin, bytes, options)?).structured())
     }
 
     /// Takes the columns of a program.
@@ -114,6 +136,7 @@ impl Data {
             columns: source.table.columns,
             files: vec![source.file],
             lines: source.table.lines,
+            reading: source.table.reading,
             specimen: Vec::new(),
             specimens: Vec::new(),
             lengths: Vec::new(),
@@ -139,6 +162,7 @@ impl Data {
         let first = self.files[0].name.clone();
         self.columns.append(&source.table.columns, [&first, name])?;
         self.lines.extend(source.table.lines);
+        self.reading.append(source.table.reading);
         self.files.push(source.file);
         Ok(())
     }
@@ -375,6 +399,18 @@ impl Data {
     #[must_use]
     pub fn files(&self) -> &[SourceFile] {
         &self.files
+    }
+
+    /// How the files were read: what their columns were taken for, and which rows were set apart.
+    #[must_use]
+    pub fn reading(&self) -> &Reading {
+        &self.reading
+    }
+
+    /// Rows that can't be used and aren't among those of the data, with their reasons: the first [`Reading::MOST_LISTED`].
+    #[must_use]
+    pub fn set_apart(&self) -> &[SetApart] {
+        &self.reading.set_apart
     }
 
     /// SHA-256 of the file, in hexadecimal; of several files, that of their digests written one after another.

@@ -1,5 +1,6 @@
 //! Why a file or a table is no set of measurements: one sentence each, with the place and the cure.
 
+use crate::cell_error::CellError;
 use bulge_muscles::units::UnitError;
 use thiserror::Error;
 
@@ -7,7 +8,9 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MeasurementError {
     /// No file is named.
-    #[error("no data file is given: name at least one CSV or Parquet file")]
+    #[error(
+        "no data file is given: name at least one file of CSV, Excel, MATLAB or Parquet, or `-` for standard input"
+    )]
     NoFile,
     /// A file that can't be opened or read.
     #[error("{file}: can't be read ({why}): check the name and the permissions")]
@@ -52,27 +55,6 @@ pub enum MeasurementError {
         bytes: usize,
         /// The limit.
         limit: usize,
-    },
-    /// Text in another encoding.
-    #[error(
-        "{file}:{line}: the byte 0x{byte:02X} is not UTF-8: save the file as UTF-8 (a spreadsheet calls it \"CSV UTF-8\"), \
-         or write units without special characters, such as degC and um"
-    )]
-    NotUtf8 {
-        /// The file.
-        file: String,
-        /// The line.
-        line: usize,
-        /// The first byte that isn't.
-        byte: u8,
-    },
-    /// Text with two or four bytes per character.
-    #[error(
-        "{file}:1: the text is in UTF-16 or UTF-32: save the file as UTF-8 (a spreadsheet calls it \"CSV UTF-8\")"
-    )]
-    Utf16 {
-        /// The file.
-        file: String,
     },
     /// A file of another kind.
     #[error("{file}: is {what}: {instead}")]
@@ -140,36 +122,6 @@ pub enum MeasurementError {
         /// All headings.
         known: String,
     },
-    /// A column without a name, such as the row numbers of a data frame.
-    #[error(
-        "{file}:{line}: column {place} has no name: name it, or leave it out (a data frame's row numbers by `index=False`); known are {known}"
-    )]
-    NoName {
-        /// The file.
-        file: String,
-        /// The line of the header.
-        line: usize,
-        /// Which column, counted from 1.
-        place: usize,
-        /// All headings.
-        known: String,
-    },
-    /// A name that isn't known.
-    #[error("{file}:{line}: column {place} is called `{name}`, which is not known: {}known are {known}", meant(nearest.as_ref()))]
-    UnknownColumn {
-        /// The file.
-        file: String,
-        /// The line of the header.
-        line: usize,
-        /// Which column, counted from 1.
-        place: usize,
-        /// What is written.
-        name: String,
-        /// The heading that was probably meant.
-        nearest: Option<String>,
-        /// All headings.
-        known: String,
-    },
     /// A unit that is missing, unknown or of another dimension.
     #[error(
         "{file}:{line}: column `{column}` {}; write the unit in brackets behind the name, such as `{example}`",
@@ -187,18 +139,6 @@ pub enum MeasurementError {
         /// A heading as it should be.
         example: &'static str,
     },
-    /// A unit for labels.
-    #[error("{file}:{line}: column `{column}` holds labels or counts, which have no unit: write `{name}`")]
-    NeedlessUnit {
-        /// The file.
-        file: String,
-        /// The line of the header.
-        line: usize,
-        /// The heading.
-        column: String,
-        /// The heading as it should be.
-        name: &'static str,
-    },
     /// One name twice.
     #[error("{file}:{line}: the columns {first} and {second} are both `{name}`: leave one out")]
     TwiceTheColumn {
@@ -213,18 +153,18 @@ pub enum MeasurementError {
         /// The second.
         second: usize,
     },
-    /// Contraction and length.
+    /// Contraction and length that contradict each other.
     #[error(
-        "{file}:{line}: both `contraction` and `length` are given: leave out the one that was computed from the other (most rigs measure `length`)"
+        "{file}: `contraction` and `length` are both given, and do not follow from one another: leave out the one that was computed (most rigs measure `length`)"
     )]
     BothMotions {
         /// The file.
         file: String,
-        /// The line of the header.
-        line: usize,
     },
     /// A column that every data set needs.
-    #[error("{file}:{line}: there is no column `{name}`: add one, such as `{example}` (found: {found})")]
+    #[error(
+        "{file}:{line}: there is no column `{name}`: add one, such as `{example}`, or say which it is, such as `--columns \"{field}=NAME [UNIT]\"` (found: {found})"
+    )]
     MissingColumn {
         /// The file.
         file: String,
@@ -234,8 +174,92 @@ pub enum MeasurementError {
         name: &'static str,
         /// A heading as it should be.
         example: &'static str,
+        /// The quantity.
+        field: &'static str,
         /// The headings that are there.
         found: String,
+    },
+    /// Several columns may be one quantity.
+    #[error("{file}:{line}: which column is `{name}`: {candidates}? write which, such as `{instead}`")]
+    Ambiguous {
+        /// The file.
+        file: String,
+        /// The line of the header.
+        line: usize,
+        /// The quantity.
+        name: &'static str,
+        /// The columns.
+        candidates: String,
+        /// What to write.
+        instead: String,
+    },
+    /// A pressure above vacuum.
+    #[error(
+        "{file}:{line}: column `{column}` is an absolute pressure, but gauge pressure is needed: subtract the ambient pressure (about 1.013 bar) and name it `pressure [bar]`"
+    )]
+    Absolute {
+        /// The file.
+        file: String,
+        /// The line of the header.
+        line: usize,
+        /// The heading.
+        column: String,
+    },
+    /// What was said of the columns can't be.
+    #[error("--columns (or `[data.columns]`): {what}")]
+    ColumnMap {
+        /// What, where, and what to write instead.
+        what: String,
+    },
+    /// A displacement whose zero isn't known.
+    #[error(
+        "{file}: the column `{column}` is a displacement, whose zero is the length of the unpressurised muscle: name the muscle, or write `length` or `contraction` instead"
+    )]
+    NoRestLength {
+        /// The file.
+        file: String,
+        /// The heading.
+        column: String,
+    },
+    /// Too many rows that can't be used.
+    #[error(
+        "{file}: {unusable} of {rows} rows can't be used, more than a fifth:{reasons}\ncorrect these rows, or leave them out{hint}"
+    )]
+    TooManyUnusable {
+        /// The file.
+        file: String,
+        /// How many.
+        unusable: usize,
+        /// Rows in all.
+        rows: usize,
+        /// Their reasons, counted, with the first lines: one on each line.
+        reasons: String,
+        /// What may have caused them.
+        hint: &'static str,
+    },
+    /// Times in no order that could be that of the test.
+    #[error(
+        "{file}:{line}: the time goes back at {backward} of {rows} rows, and sorted by time the readings jump ({why}): sort the rows as they were measured, number the runs in a column `sweep`, or leave out the column `time` if the rows are a static map"
+    )]
+    TimeShuffled {
+        /// The file.
+        file: String,
+        /// The first line at which it does.
+        line: usize,
+        /// At how many rows.
+        backward: usize,
+        /// Rows in all.
+        rows: usize,
+        /// What jumps.
+        why: String,
+    },
+    /// Several complaints at once.
+    #[error("{} things keep the data from being read:{}", complaints.len() + more, bulleted(complaints, *more))]
+    Several {
+        /// The first of them.
+        complaints: Vec<MeasurementError>,
+        /// How many are not listed.
+        more: usize,
     },
     /// A row with more or fewer fields than the header.
     #[error("{file}:{line}: the row has {found} field{}, the header has {expected}: {}", if *found == 1 { "" } else { "s" }, ragged_cure(*found, *expected))]
@@ -260,6 +284,30 @@ pub enum MeasurementError {
         column: String,
         /// What is wrong.
         problem: CellError,
+    },
+    /// A workbook that can't be read.
+    #[error(
+        "{file}: can't be read as an Excel workbook ({why}): unpack it if it is another archive, save it as .xlsx again, or export the sheet as CSV"
+    )]
+    Workbook {
+        /// The file.
+        file: String,
+        /// What the reader says.
+        why: String,
+    },
+    /// A file of MATLAB that is cut off or damaged.
+    #[error("{file}: is a damaged or cut-off file of MATLAB: write it again with `save('x.mat','-v7')`")]
+    Matlab {
+        /// The file.
+        file: String,
+    },
+    /// A file of MATLAB without columns.
+    #[error(
+        "{file}: holds no numeric vectors: store each column as a variable or as a field of a structure (a `table` is none: `writetable` writes it as CSV)"
+    )]
+    NoVectors {
+        /// The file.
+        file: String,
     },
     /// A file that claims to be Parquet and can't be read as such.
     #[error("{file}: can't be read as Parquet ({why}): {instead}")]
@@ -322,112 +370,68 @@ impl MeasurementError {
         match self {
             Self::TooManyRows { line, .. }
             | Self::LineTooLong { line, .. }
-            | Self::NotUtf8 { line, .. }
             | Self::NulByte { line, .. }
             | Self::OpenQuote { line, .. }
             | Self::NoHeader { line, .. }
             | Self::OneField { line, .. }
-            | Self::NoName { line, .. }
-            | Self::UnknownColumn { line, .. }
             | Self::Unit { line, .. }
-            | Self::NeedlessUnit { line, .. }
             | Self::TwiceTheColumn { line, .. }
-            | Self::BothMotions { line, .. }
             | Self::MissingColumn { line, .. }
             | Self::Ragged { line, .. }
+            | Self::Ambiguous { line, .. }
+            | Self::Absolute { line, .. }
+            | Self::TimeShuffled { line, .. }
             | Self::Cell { line, .. } => Some(*line),
-            Self::Utf16 { .. } => Some(1),
+            Self::Several { complaints, .. } => complaints.first().and_then(Self::line),
             _ => None,
+        }
+    }
+
+    /// Complaints that are listed at most.
+    const MOST_LISTED: usize = 20;
+
+    /// One error of several complaints, of which there is one at least.
+    pub(crate) fn of(mut complaints: Vec<Self>) -> Self {
+        let mut all = Vec::new();
+        let mut more = 0;
+        for complaint in complaints.drain(..) {
+            match complaint {
+                Self::Several { complaints, more: others } => {
+                    all.extend(complaints);
+                    more += others;
+                }
+                other => all.push(other),
+            }
+        }
+        if all.len() == 1 && more == 0 {
+            return all.remove(0);
+        }
+        more += all.len().saturating_sub(Self::MOST_LISTED);
+        all.truncate(Self::MOST_LISTED);
+        Self::Several { complaints: all, more }
+    }
+
+    /// Whether it says already what is wrong with the column of a quantity.
+    pub(crate) fn is_about(&self, quantity: &str) -> bool {
+        match self {
+            Self::Ambiguous { name, .. } | Self::TwiceTheColumn { name, .. } => quantity.contains(*name),
+            Self::Unit { example, .. } => {
+                example.split(' ').next().is_some_and(|name| quantity.contains(name))
+            }
+            // Which quantity it was about isn't said: none is asked for twice.
+            Self::ColumnMap { .. } => true,
+            _ => false,
         }
     }
 }
 
-/// Why a field isn't what its column holds.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum CellError {
-    /// Nothing there.
-    #[error("the field is empty: write the value, or leave out the row (or the column, if it is optional)")]
-    Empty,
-    /// A comma within the number.
-    #[error(
-        "`{text}` has a decimal comma: write `{fixed}`, with a point, in all number columns{}",
-        or_thousands(fixed)
-    )]
-    DecimalComma {
-        /// What is written.
-        text: String,
-        /// The same with a point.
-        fixed: String,
-    },
-    /// Separators between thousands, a typographic minus, the D of Fortran.
-    #[error("`{text}` is not spelt as numbers are read: write `{fixed}`")]
-    Spelling {
-        /// What is written.
-        text: String,
-        /// The same as it is read.
-        fixed: String,
-    },
-    /// A number and a unit.
-    #[error("`{text}` has a unit in the field: write {}, in the unit of the header", alone(fixed.as_ref()))]
-    UnitInside {
-        /// What is written.
-        text: String,
-        /// The number in the unit of the header, if the unit is known.
-        fixed: Option<String>,
-    },
-    /// A time of day.
-    #[error("`{text}` is a time of day: write seconds since the start of the test, such as `12.5`")]
-    Clock {
-        /// What is written.
-        text: String,
-    },
-    /// A comment behind a field.
-    #[error("`{text}` has a comment behind it: put the comment on a line of its own that begins with `#`")]
-    Comment {
-        /// What is written.
-        text: String,
-    },
-    /// Bytes that are no text.
-    #[error("the text is not UTF-8: store it as UTF-8")]
-    NotUtf8,
-    /// Text.
-    #[error("`{text}` is not a number: write one such as `12.5` or `1.25e1`, or leave out the row")]
-    NotANumber {
-        /// What is written.
-        text: String,
-    },
-    /// Infinite, not a number, or beyond what a double holds.
-    #[error("`{text}` is not a finite number: leave out the row, or write what was read")]
-    NotFinite {
-        /// What is written.
-        text: String,
-    },
-    /// Beyond anything that is measured.
-    #[error(
-        "`{text}` is larger than anything that is measured (1e30 in SI units): check the number and its unit"
-    )]
-    TooLarge {
-        /// What is written.
-        text: String,
-    },
-    /// No whole number.
-    #[error("`{text}` is not a whole number: write a count such as `3`")]
-    NotWhole {
-        /// What is written.
-        text: String,
-    },
-    /// No direction.
-    #[error(
-        "`{text}` is not a direction: write `shortening`, `contracting`, `up` or `+1`; `lengthening`, `extending`, `down` or `-1`; `rest` or `0`"
-    )]
-    NotADirection {
-        /// What is written.
-        text: String,
-    },
-}
-
-fn meant(nearest: Option<&String>) -> String {
-    nearest.map_or_else(String::new, |heading| format!("write `{heading}` if that is meant; "))
+/// Complaints, each on a line of its own.
+fn bulleted(complaints: &[MeasurementError], more: usize) -> String {
+    let mut lines: Vec<String> = complaints.iter().map(|complaint| format!("\n  {complaint}")).collect();
+    if more > 0 {
+        lines.push(format!("\n  and {more} more"));
+    }
+    lines.concat()
 }
 
 /// What is wrong with the unit of a heading, after "column `..`".
@@ -449,20 +453,6 @@ fn of_unit(problem: &UnitError) -> String {
         }
         other => format!("has a unit that can't be read ({other})"),
     }
-}
-
-/// "1,234" may be either.
-fn or_thousands(fixed: &str) -> String {
-    let decimals = fixed.split_once('.').map_or("", |(_, decimals)| decimals);
-    if decimals.len() == 3 && decimals.bytes().all(|byte| byte.is_ascii_digit()) {
-        format!(" (or `{}` if it separates thousands)", fixed.replace('.', ""))
-    } else {
-        String::new()
-    }
-}
-
-fn alone(fixed: Option<&String>) -> String {
-    fixed.map_or_else(|| "the number alone".to_owned(), |fixed| format!("`{fixed}`, the number alone"))
 }
 
 fn ragged_cure(found: usize, expected: usize) -> &'static str {

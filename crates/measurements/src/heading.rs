@@ -1,10 +1,8 @@
 //! The columns that measurements have: names, dimensions, and how a heading such as `length [mm]` is read.
 
 use crate::cell;
-use crate::dimension::{Scale, Time};
-use crate::error::{CellError, MeasurementError};
-use crate::quote::quoted;
-use bulge_muscles::units::UnitError;
+use crate::dimension::{Scale, Temperature, Time};
+use bulge_muscles::units::{Quantity, UnitError};
 use bulge_muscles::{Force, Length, Pressure, Ratio, Volume};
 
 /// A column of measurements.
@@ -13,6 +11,8 @@ pub(crate) enum Field {
     Pressure,
     Contraction,
     Length,
+    /// By how much shorter than at rest, as a length.
+    Displacement,
     Force,
     Time,
     Sweep,
@@ -26,10 +26,11 @@ pub(crate) enum Field {
 }
 
 impl Field {
-    pub(crate) const ALL: [Self; 13] = [
+    pub(crate) const ALL: [Self; 14] = [
         Self::Pressure,
         Self::Contraction,
         Self::Length,
+        Self::Displacement,
         Self::Force,
         Self::Time,
         Self::Sweep,
@@ -48,6 +49,7 @@ impl Field {
             Self::Pressure => "pressure [bar]",
             Self::Contraction => "contraction [%]",
             Self::Length => "length [mm]",
+            Self::Displacement => "displacement [mm]",
             Self::Force => "force [N]",
             Self::Time => "time [s]",
             Self::Sweep => "sweep",
@@ -67,17 +69,50 @@ impl Field {
     }
 
     /// The scale of a unit; none for labels and counts.
-    fn scale(self, unit: &str) -> Option<Result<Scale, UnitError>> {
+    pub(crate) fn scale(self, unit: &str) -> Option<Result<Scale, UnitError>> {
         Some(match self {
             Self::Pressure => Scale::of::<Pressure>(unit),
             Self::Contraction => Scale::of::<Ratio>(unit),
-            Self::Length | Self::Diameter => Scale::of::<Length>(unit),
+            Self::Length | Self::Displacement | Self::Diameter => Scale::of::<Length>(unit),
             Self::Force | Self::ForceSd => Scale::of::<Force>(unit),
             Self::Time => Scale::of::<Time>(unit),
             Self::Temperature => Scale::of_temperature(unit),
             Self::Volume => Scale::of::<Volume>(unit),
             Self::Sweep | Self::Specimen | Self::Cycle | Self::Direction => return None,
         })
+    }
+
+    /// Whether it holds labels or counts, which have no unit.
+    pub(crate) const fn is_label(self) -> bool {
+        matches!(self, Self::Sweep | Self::Specimen | Self::Cycle | Self::Direction)
+    }
+
+    /// Whether it says how the muscle moved.
+    pub(crate) const fn is_motion(self) -> bool {
+        matches!(self, Self::Contraction | Self::Length | Self::Displacement)
+    }
+
+    /// Whether an analysis can do without it. Rows of a path without time or run are none.
+    pub(crate) const fn is_optional(self) -> bool {
+        !(self.is_motion()
+            || matches!(self, Self::Pressure | Self::Force | Self::Time | Self::Sweep | Self::Specimen))
+    }
+
+    /// The symbols of its units.
+    pub(crate) fn symbols(self) -> Vec<&'static str> {
+        fn of<Q: Quantity>() -> Vec<&'static str> {
+            Q::UNITS.iter().map(|(symbol, _)| *symbol).filter(|symbol| !symbol.is_empty()).collect()
+        }
+        match self {
+            Self::Pressure => of::<Pressure>(),
+            Self::Contraction => of::<Ratio>(),
+            Self::Length | Self::Displacement | Self::Diameter => of::<Length>(),
+            Self::Force | Self::ForceSd => of::<Force>(),
+            Self::Time => of::<Time>(),
+            Self::Temperature => of::<Temperature>(),
+            Self::Volume => of::<Volume>(),
+            Self::Sweep | Self::Specimen | Self::Cycle | Self::Direction => Vec::new(),
+        }
     }
 }
 
@@ -88,212 +123,21 @@ pub(crate) struct Heading {
     pub(crate) scale: Scale,
     /// As it is written.
     pub(crate) text: String,
+    /// What a displacement says of its sign: it grows when the muscle lengthens.
+    pub(crate) is_lengthening: bool,
+    /// Whether the sign is what it should be: stated by the user.
+    pub(crate) is_settled: bool,
 }
 
 impl Heading {
-    /// A field with a unit gets its number in the unit of the heading.
-    pub(crate) fn with_cure(&self, text: &str, problem: CellError) -> CellError {
-        let CellError::UnitInside { text: shown, .. } = problem else { return problem };
-        let in_si = |(number, unit)| Some(self.field.scale(unit)?.ok()?.si(number));
-        let number = cell::with_unit(text).and_then(in_si).map(|si| self.scale.number(si));
-        // Seven digits are enough for a cure, and hide the rounding of the factors.
-        let rounded = number.and_then(|number| format!("{number:.6e}").parse::<f64>().ok());
-        CellError::UnitInside { text: shown, fixed: rounded.map(|number| number.to_string()) }
+    /// A field with a unit of its own gets its number in SI.
+    pub(crate) fn with_unit_inside(&self, text: &str) -> Option<f64> {
+        let (number, symbol) = cell::with_unit(text)?;
+        Some(crate::unit::unit(self.field, symbol)?.scale.si(number))
     }
 }
 
 /// All headings, for messages.
 pub(crate) fn known() -> String {
     Field::ALL.map(Field::example).join(", ")
-}
-
-/// Reads all headings of a file and checks that they make a data set. `line` is that of the header.
-pub(crate) fn read(file: &str, line: usize, names: &[&str]) -> Result<Vec<Heading>, MeasurementError> {
-    let is_number = |name: &&&str| name.trim().replacen(',', ".", 1).parse::<f64>().is_ok();
-    if let Some(number) = names.first().filter(is_number) {
-        return Err(MeasurementError::NoHeader { file: file.to_owned(), line, text: quoted(number) });
-    }
-    let mut headings: Vec<Heading> = Vec::with_capacity(names.len());
-    for (i, name) in names.iter().enumerate() {
-        let heading = read_one(file, line, i + 1, name)?;
-        if let Some(first) = headings.iter().position(|other| other.field == heading.field) {
-            let (name, first, second) = (heading.field.name(), first + 1, i + 1);
-            return Err(MeasurementError::TwiceTheColumn {
-                file: file.to_owned(),
-                line,
-                name,
-                first,
-                second,
-            });
-        }
-        headings.push(heading);
-    }
-    let has = |field| headings.iter().any(|heading| heading.field == field);
-    let missing = |field: Field, name| MeasurementError::MissingColumn {
-        file: file.to_owned(),
-        line,
-        name,
-        example: field.example(),
-        found: headings.iter().map(|heading| quoted(&heading.text)).collect::<Vec<_>>().join(", "),
-    };
-    if has(Field::Contraction) && has(Field::Length) {
-        return Err(MeasurementError::BothMotions { file: file.to_owned(), line });
-    }
-    if !has(Field::Pressure) {
-        return Err(missing(Field::Pressure, "pressure"));
-    }
-    if !has(Field::Contraction) && !has(Field::Length) {
-        return Err(missing(Field::Length, "length` or `contraction"));
-    }
-    if !has(Field::Force) {
-        return Err(missing(Field::Force, "force"));
-    }
-    Ok(headings)
-}
-
-fn read_one(file: &str, line: usize, place: usize, text: &str) -> Result<Heading, MeasurementError> {
-    let text = text.trim();
-    // What data frames call the column of their row numbers.
-    if ["", "__index_level_0__", "Unnamed: 0"].contains(&text) {
-        return Err(MeasurementError::NoName { file: file.to_owned(), line, place, known: known() });
-    }
-    let (name, unit) = match text.split_once('[') {
-        Some((name, rest)) => (name.trim(), rest.strip_suffix(']').map(str::trim)),
-        None => (text, Some("")),
-    };
-    let plain = name.to_lowercase().replace([' ', '-'], "_");
-    let field = Field::ALL.into_iter().find(|field| field.name() == plain);
-    let (Some(field), Some(unit)) = (field, unit.filter(|unit| !unit.contains(['[', ']']))) else {
-        return Err(MeasurementError::UnknownColumn {
-            file: file.to_owned(),
-            line,
-            place,
-            name: quoted(text),
-            nearest: nearest(text),
-            known: known(),
-        });
-    };
-    let scale = match field.scale(unit) {
-        None if matches!(unit, "" | "-" | "1") => Scale::SI,
-        None => {
-            return Err(MeasurementError::NeedlessUnit {
-                file: file.to_owned(),
-                line,
-                column: quoted(text),
-                name: field.name(),
-            });
-        }
-        Some(found) => found.map_err(|problem| MeasurementError::Unit {
-            file: file.to_owned(),
-            line,
-            column: quoted(text),
-            problem: Box::new(problem),
-            example: field.example(),
-        })?,
-    };
-    Ok(Heading { field, scale, text: quoted(text) })
-}
-
-/// The heading that was probably meant: known words within the text, else few slips of the finger.
-fn nearest(text: &str) -> Option<String> {
-    /// Words that people write for a column.
-    const WORDS: &[(&str, Field)] = &[
-        ("force_sd", Field::ForceSd),
-        ("displacement", Field::Length),
-        ("position", Field::Length),
-        ("stroke", Field::Length),
-        ("strain", Field::Contraction),
-        ("load", Field::Force),
-        ("run", Field::Sweep),
-        ("sample", Field::Specimen),
-        ("muscle", Field::Specimen),
-    ];
-    let lower: String = text.to_lowercase().chars().take(100).collect();
-    let word: String = lower.chars().take_while(|c| c.is_alphabetic() || *c == '_').collect();
-    let close = |name: &str| strsim::damerau_levenshtein(name, &word);
-    let symbol = match word.as_str() {
-        "p" => Some(Field::Pressure),
-        "l" | "x" => Some(Field::Length),
-        "f" => Some(Field::Force),
-        "t" => Some(Field::Time),
-        "e" | "eps" | "epsilon" => Some(Field::Contraction),
-        _ => None,
-    };
-    let slip = Field::ALL.into_iter().min_by_key(|field| close(field.name()));
-    let slip = slip.filter(|field| close(field.name()) * 3 <= word.chars().count());
-    let inside = || Field::ALL.into_iter().rev().find(|field| lower.contains(field.name()));
-    let synonym = || WORDS.iter().find(|(name, _)| lower.contains(name)).map(|(_, field)| *field);
-    // An absolute pressure is not made right by another name.
-    if lower.contains("abs") {
-        return None;
-    }
-    symbol.or(slip).or_else(inside).or_else(synonym).map(|field| field.example().to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    #![expect(clippy::float_cmp, reason = "products of whole numbers are exact")]
-
-    use super::*;
-
-    #[track_caller]
-    fn refuses(names: &[&str], parts: &[&str]) {
-        let error = read("d.csv", 3, names).unwrap_err();
-        let message = error.to_string();
-        assert_eq!(error.line(), Some(3));
-        for part in parts.iter().chain(&["d.csv:3"]) {
-            assert!(message.contains(part), "{message:?} does not say {part:?}");
-        }
-    }
-
-    #[test]
-    fn names_and_units_in_any_order() {
-        let names = [" Force [kN] ", "Force SD [N]", "time[min]", "contraction", "sweep", "pressure [psi]"];
-        let headings = read("d.csv", 1, &names).unwrap();
-        let fields: Vec<_> = headings.iter().map(|heading| heading.field).collect();
-        let expected =
-            [Field::Force, Field::ForceSd, Field::Time, Field::Contraction, Field::Sweep, Field::Pressure];
-        assert_eq!(fields, expected);
-        assert_eq!([0, 2].map(|i: usize| headings[i].scale.si(2.0)), [2000.0, 120.0]);
-    }
-
-    #[test]
-    fn wrong_headers_name_place_and_cure() {
-        let rest = ["contraction [%]", "force [N]"];
-        let with = |first| [first, rest[0], rest[1]];
-        refuses(
-            &with("presure [bar]"),
-            &["column 1", "`presure [bar]`", "write `pressure [bar]`", "force_sd [N]"],
-        );
-        refuses(&with("pressure (bar)"), &["write `pressure [bar]`"]);
-        refuses(&with("pressure_bar"), &["write `pressure [bar]`"]);
-        refuses(&with("pressure [bar"), &["write `pressure [bar]`"]);
-        let absolute = read("d.csv", 3, &with("absolute pressure [bar]")).unwrap_err().to_string();
-        assert!(!absolute.contains("if that is meant"), "{absolute}");
-        refuses(&with("qqq"), &["`qqq`", "known are pressure [bar]"]);
-        for nameless in ["", " ", "__index_level_0__", "Unnamed: 0"] {
-            refuses(&with(nameless), &["column 1 has no name", "`index=False`", "known are pressure [bar]"]);
-        }
-        refuses(&with("p [bar]"), &["column 1", "`p [bar]`", "write `pressure [bar]`"]);
-        refuses(
-            &with("pressure [bar] [bar]"),
-            &["`pressure [bar] [bar]`, which is not known", "write `pressure [bar]`"],
-        );
-        refuses(&with("pressure [bar g]"), &["unknown unit", "did you mean `bar`?", "(known: Pa,"]);
-        refuses(&with("1,5"), &["`1,5` is a number", "header"]);
-        refuses(&with("pressure"), &["`pressure` has no unit (known: ", "`pressure [bar]`", "kPa"]);
-        refuses(
-            &with("pressure [mm]"),
-            &["a unit of length where one of pressure is needed", "`pressure [bar]`"],
-        );
-        refuses(&with("pressure [Bar]"), &["did you mean `bar`"]);
-        refuses(&with("sweep [s]"), &["no unit", "write `sweep`"]);
-        refuses(&with("0.5"), &["`0.5` is a number", "header"]);
-        refuses(&["pressure [bar]", "force [N]"], &["no column `length` or `contraction`", "`length [mm]`"]);
-        refuses(&["pressure [bar]", "length [mm]"], &["no column `force`", "found: pressure [bar]"]);
-        refuses(&rest, &["no column `pressure`"]);
-        refuses(&["pressure [bar]", rest[0], rest[1], "force [kN]"], &["columns 3 and 4", "`force`"]);
-        refuses(&["pressure [bar]", rest[0], rest[1], "length [mm]"], &["leave out"]);
-        refuses(&with("displacement [mm]"), &["write `length [mm]`"]);
-    }
 }

@@ -1,39 +1,61 @@
-//! Measured force maps and histories: CSV and Parquet in, sweeps, directions, repeats and a quality gate.
+//! Measured force maps and histories: files of laboratories in, sweeps, directions, repeats and a quality gate.
 //!
 //! Data only, no model. Numbers are finite and in SI; what a file gets wrong is answered with its line and its cure.
-//! Deliberately absent: cleaning. Nothing is dropped, filtered or interpolated silently; [`Data::quality`] says what looks wrong and where, [`Data::disturbed`] which rows
-//! had better not count.
+//! Deliberately absent: cleaning. Nothing is dropped, filtered or interpolated silently: [`Data::reading`] says what columns were taken for and which
+//! rows can't be used, [`Data::quality`] what looks wrong and where, [`Data::disturbed`] which rows had better not count.
 
+mod assignment;
 mod cell;
+mod cell_error;
+mod clock;
+mod column_map;
 mod columns;
 mod csv_file;
 mod data;
 mod dimension;
+mod encoding;
 mod error;
 mod heading;
 mod history;
 mod isobars;
+mod layout;
+mod line;
+mod matlab;
+mod motion;
+mod names;
+mod order;
 mod parquet_file;
 mod parquet_page;
 mod quality;
 mod quote;
 mod rate;
+mod reading;
 mod repeats;
 mod resolution;
 #[cfg(test)]
 mod simulated;
 mod slot;
 mod source;
+mod spreadsheet;
 mod stretch;
 mod sweep;
+mod table;
+#[cfg(test)]
+mod tests {
+    mod dialects;
+}
 mod turning;
+mod unit;
 mod window;
 
+pub use cell_error::CellError;
+pub use column_map::{ColumnEntry, ColumnMap};
 pub use columns::{Columns, Labels, Trace};
 pub use data::{Data, Motion};
-pub use error::{CellError, MeasurementError};
+pub use error::MeasurementError;
 pub use history::History;
 pub use quality::{Disturbance, Finding, FindingKind, LineRange, Quality, QualityOptions, Severity};
+pub use reading::{ColumnUse, ReadOptions, Reading, SetApart};
 pub use repeats::{Offset, PureError, RepeatGroup, Repeats, Run};
 pub use source::SourceFile;
 pub use sweep::{Sweep, SweepKind};

@@ -1,11 +1,15 @@
 //! Parquet: the same columns and checks as in CSV; a column's name is its heading, such as `length [mm]`.
 
-use crate::csv_file::{MOST_ROWS, Table};
-use crate::error::{CellError, MeasurementError};
-use crate::heading;
+use crate::assignment::{Header, assign};
+use crate::cell::Decimal;
+use crate::cell_error::CellError;
+use crate::csv_file::MOST_ROWS;
+use crate::error::MeasurementError;
 use crate::parquet_page::{CheckedPages, checked_place};
 use crate::quote::quoted;
-use crate::slot::{Slot, columns};
+use crate::reading::ReadOptions;
+use crate::slot::Slot;
+use crate::table::{Draft, Table};
 use parquet::basic::{ConvertedType, LogicalType, Type};
 use parquet::column::reader::ColumnReaderImpl;
 use parquet::data_type::{ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type};
@@ -18,22 +22,33 @@ use std::sync::Arc;
 const BATCH: usize = 1 << 14;
 
 /// Reads Parquet. `file` is its name, for messages.
-pub(crate) fn read<R: ChunkReader + 'static>(file: &str, source: R) -> Result<Table, MeasurementError> {
+pub(crate) fn read<R: ChunkReader + 'static>(
+    file: &str,
+    source: R,
+    options: &ReadOptions,
+) -> Result<Table, MeasurementError> {
     let refused = |error: &ParquetError| refused(file, error);
     let reader = SerializedFileReader::new(source).map_err(|error| refused(&error))?;
     let schema = reader.metadata().file_metadata().schema_descr();
     let names: Vec<String> = schema.columns().iter().map(|column| column.path().string()).collect();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let headings = heading::read(file, 1, &names)?;
-    for (column, heading) in schema.columns().iter().zip(&headings) {
-        checked_type(file, column, &heading.text)?;
+    let header = Header { file, line: 1, names: &names, units: None, first: &[] };
+    let assignment = assign(&header, &options.columns).map_err(MeasurementError::of)?;
+    let (mut places, mut slots) = (Vec::new(), Vec::new());
+    for (place, heading) in assignment.headings.into_iter().enumerate() {
+        if let Some(heading) = heading {
+            checked_type(file, &schema.columns()[place], &heading.text)?;
+            places.push(place);
+            slots.push(Slot::new(heading, 0));
+        }
     }
-    let mut slots: Vec<Slot> = headings.into_iter().map(|heading| Slot::new(heading, 0)).collect();
-    let mut rows = vec![0; slots.len()];
+    let mut draft = Draft::new(slots, assignment.uses, "row");
+    let mut rows = vec![0; places.len()];
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(|error| refused(&error))?;
-        for (i, (slot, rows)) in slots.iter_mut().zip(&mut rows).enumerate() {
-            read_chunk(group.as_ref(), i, slot, rows).map_err(|problem| problem.at(file, *rows + 1, slot))?;
+        for (slot, (place, rows)) in places.iter().zip(&mut rows).enumerate() {
+            let mut column = Column { draft: &mut draft, slot, rows };
+            read_chunk(group.as_ref(), *place, &mut column)
+                .map_err(|problem| problem.at(file, *column.rows))?;
         }
     }
     let expected = rows.first().copied().unwrap_or(0);
@@ -41,11 +56,34 @@ pub(crate) fn read<R: ChunkReader + 'static>(file: &str, source: R) -> Result<Ta
         let why = format!("its columns have {expected} and {found} rows");
         return Err(MeasurementError::Parquet { file: file.to_owned(), why, instead: AGAIN });
     }
-    if expected == 0 {
-        return Err(MeasurementError::NoRows { file: file.to_owned() });
-    }
     let last = u32::try_from(expected).unwrap_or(u32::MAX);
-    Ok(Table { columns: columns(slots), lines: (1..=last).collect() })
+    draft.lines = (1..=last).collect();
+    draft.finish(file, options)
+}
+
+/// A column that is read, with the rows that it has so far.
+struct Column<'a> {
+    draft: &'a mut Draft,
+    slot: usize,
+    rows: &'a mut usize,
+}
+
+impl Column<'_> {
+    /// Takes the next value.
+    fn take(&mut self, push: impl FnOnce(&mut Slot) -> Result<(), CellError>) {
+        if let Err(problem) = push(&mut self.draft.slots[self.slot]) {
+            self.draft.spoilt(self.slot, *self.rows, &problem);
+        }
+        *self.rows += 1;
+    }
+
+    /// Leaves a gap for a value that is missing.
+    fn leave_gap(&mut self) {
+        self.take(|slot| {
+            slot.push_gap();
+            Err(CellError::Empty)
+        });
+    }
 }
 
 /// What to do with a damaged file.
@@ -79,33 +117,26 @@ fn is_unsigned(column: &ColumnDescriptor) -> bool {
 }
 
 /// The rows of one column in one group.
-fn read_chunk(
-    group: &dyn RowGroupReader,
-    column: usize,
-    slot: &mut Slot,
-    rows: &mut usize,
-) -> Result<(), Problem> {
+fn read_chunk(group: &dyn RowGroupReader, place: usize, column: &mut Column<'_>) -> Result<(), Problem> {
     fn chunk<T: DataType>(column: ColumnDescPtr, pages: CheckedPages) -> ColumnReaderImpl<T> {
         ColumnReaderImpl::new(column, Box::new(pages))
     }
-    checked_place(group.metadata().column(column)).map_err(Problem::Reader)?;
-    let description = group.metadata().schema_descr().column(column);
-    let pages = group.get_column_page_reader(column).map_err(Problem::Reader)?;
+    checked_place(group.metadata().column(place)).map_err(Problem::Reader)?;
+    let description = group.metadata().schema_descr().column(place);
+    let pages = group.get_column_page_reader(place).map_err(Problem::Reader)?;
     let pages = CheckedPages::new(pages, Arc::clone(&description));
     match description.physical_type() {
         Type::INT32 if is_unsigned(&description) => {
-            numbers(chunk::<Int32Type>(description, pages), rows, slot, |value| {
-                f64::from(value.cast_unsigned())
-            })
+            numbers(chunk::<Int32Type>(description, pages), column, |value| f64::from(value.cast_unsigned()))
         }
         Type::INT64 if is_unsigned(&description) => {
-            numbers(chunk::<Int64Type>(description, pages), rows, slot, |value| value.cast_unsigned() as f64)
+            numbers(chunk::<Int64Type>(description, pages), column, |value| value.cast_unsigned() as f64)
         }
-        Type::INT32 => numbers(chunk::<Int32Type>(description, pages), rows, slot, |value| f64::from(*value)),
-        Type::INT64 => numbers(chunk::<Int64Type>(description, pages), rows, slot, |value| *value as f64),
-        Type::FLOAT => numbers(chunk::<FloatType>(description, pages), rows, slot, |value| f64::from(*value)),
-        Type::DOUBLE => numbers(chunk::<DoubleType>(description, pages), rows, slot, |value| *value),
-        Type::BYTE_ARRAY => texts(chunk(description, pages), rows, slot),
+        Type::INT32 => numbers(chunk::<Int32Type>(description, pages), column, |value| f64::from(*value)),
+        Type::INT64 => numbers(chunk::<Int64Type>(description, pages), column, |value| *value as f64),
+        Type::FLOAT => numbers(chunk::<FloatType>(description, pages), column, |value| f64::from(*value)),
+        Type::DOUBLE => numbers(chunk::<DoubleType>(description, pages), column, |value| *value),
+        Type::BYTE_ARRAY => texts(chunk(description, pages), column),
         // Refused by `checked_type` already.
         _ => Ok(()),
     }
@@ -157,67 +188,65 @@ fn checked_type(file: &str, column: &ColumnDescriptor, heading: &str) -> Result<
 
 /// Why a column can't be read; the row is the one after those that could.
 enum Problem {
-    Cell(CellError),
     Reader(ParquetError),
     TooMany,
 }
 
 impl Problem {
-    fn at(self, file: &str, line: usize, slot: &Slot) -> MeasurementError {
-        let file = file.to_owned();
+    fn at(self, file: &str, rows: usize) -> MeasurementError {
         match self {
-            Self::Cell(problem) => {
-                MeasurementError::Cell { file, line, column: slot.heading.text.clone(), problem }
+            Self::Reader(error) => refused(file, &error),
+            Self::TooMany => {
+                MeasurementError::TooManyRows { file: file.to_owned(), line: rows + 1, limit: MOST_ROWS }
             }
-            Self::Reader(error) => refused(&file, &error),
-            Self::TooMany => MeasurementError::TooManyRows { file, line, limit: MOST_ROWS },
         }
     }
 }
 
 fn numbers<T: DataType>(
-    column: ColumnReaderImpl<T>,
-    rows: &mut usize,
-    slot: &mut Slot,
+    reader: ColumnReaderImpl<T>,
+    column: &mut Column<'_>,
     number: impl Fn(&T::T) -> f64,
 ) -> Result<(), Problem> {
-    each(column, rows, |value| slot.push_number(number(value)))
+    each(reader, column, |slot, value| slot.push_number(number(value)))
 }
 
-fn texts(column: ColumnReaderImpl<ByteArrayType>, rows: &mut usize, slot: &mut Slot) -> Result<(), Problem> {
-    each(column, rows, |value| {
-        let text = std::str::from_utf8(value.data()).map_err(|_| CellError::NotUtf8)?;
-        slot.push_text(text.trim())
+fn texts(reader: ColumnReaderImpl<ByteArrayType>, column: &mut Column<'_>) -> Result<(), Problem> {
+    each(reader, column, |slot, value| {
+        if let Ok(text) = std::str::from_utf8(value.data()) {
+            return slot.push_text(text.trim(), Decimal::Point);
+        }
+        slot.push_gap();
+        Err(CellError::NotUtf8)
     })
 }
 
-/// Hands over every value of a column; counts the rows that were taken.
+/// Hands over every value of a column.
 fn each<T: DataType>(
-    mut column: ColumnReaderImpl<T>,
-    rows: &mut usize,
-    mut take: impl FnMut(&T::T) -> Result<(), CellError>,
+    mut reader: ColumnReaderImpl<T>,
+    column: &mut Column<'_>,
+    take: impl Fn(&mut Slot, &T::T) -> Result<(), CellError>,
 ) -> Result<(), Problem> {
     let (mut values, mut levels) = (Vec::new(), Vec::new());
     loop {
         values.clear();
         levels.clear();
         let (records, count, _) =
-            column.read_records(BATCH, Some(&mut levels), None, &mut values).map_err(Problem::Reader)?;
+            reader.read_records(BATCH, Some(&mut levels), None, &mut values).map_err(Problem::Reader)?;
         if records == 0 {
             return Ok(());
         }
-        if *rows + records > MOST_ROWS {
+        if *column.rows + records > MOST_ROWS {
             return Err(Problem::TooMany);
         }
-        // A value that is missing has the level 0 of an optional column.
-        let present =
-            if count == records { records } else { levels.iter().take_while(|level| **level > 0).count() };
-        for value in values.iter().take(present) {
-            take(value).map_err(Problem::Cell)?;
-            *rows += 1;
-        }
-        if count != records {
-            return Err(Problem::Cell(CellError::Empty));
+        let mut present = values.iter().take(count);
+        for record in 0..records {
+            // A value that is missing has the level 0 of an optional column.
+            let is_there = count == records || levels.get(record).is_some_and(|level| *level > 0);
+            match is_there.then(|| present.next()).flatten() {
+                Some(value) => column.take(|slot| take(slot, value)),
+                None => column.leave_gap(),
+            }
         }
     }
 }

@@ -1,8 +1,9 @@
 //! A column while it is read: takes fields as text or as numbers, and becomes one of the columns of the data set.
 
-use crate::cell;
+use crate::cell::{self, Decimal};
+use crate::cell_error::CellError;
+use crate::clock::{Clock, instant};
 use crate::columns::{Columns, Labels, Trace};
-use crate::error::CellError;
 use crate::heading::{Field, Heading};
 use crate::quote::quoted;
 
@@ -20,6 +21,7 @@ enum Values {
 pub(crate) struct Slot {
     pub(crate) heading: Heading,
     values: Values,
+    clock: Option<Clock>,
 }
 
 impl Slot {
@@ -31,26 +33,68 @@ impl Slot {
             Field::Direction => Values::Directions(Vec::with_capacity(rows)),
             _ => Values::Numbers(Vec::with_capacity(rows)),
         };
-        Self { heading, values }
+        Self { heading, values, clock: None }
     }
 
-    /// The next field, as text without blanks around it.
-    pub(crate) fn push_text(&mut self, text: &str) -> Result<(), CellError> {
+    /// The next field, as text without blanks around it. What can't be used leaves a gap: a value that no row may keep.
+    pub(crate) fn push_text(&mut self, text: &str, decimal: Decimal) -> Result<(), CellError> {
+        match &mut self.values {
+            Values::Numbers(values) if decimal == Decimal::Point && self.clock.is_none() => {
+                if let Ok(number) = text.parse::<f64>()
+                    && let Ok(value) = cell::measurable(self.heading.scale.si(number), String::new)
+                {
+                    values.push(value);
+                    return Ok(());
+                }
+            }
+            Values::Labels(labels) if !text.is_empty() => {
+                labels.push(text);
+                return Ok(());
+            }
+            _ => {}
+        }
+        let found = self.push_unusual(text, decimal);
+        if found.is_err() {
+            self.push_gap();
+        }
+        found
+    }
+
+    /// The next field, where it isn't a plain number.
+    #[cold]
+    fn push_unusual(&mut self, text: &str, decimal: Decimal) -> Result<(), CellError> {
         match &mut self.values {
             Values::Numbers(values) => {
-                let number = cell::number(text).map_err(|problem| self.heading.with_cure(text, problem))?;
-                values.push(cell::measurable(self.heading.scale.si(number), || quoted(text))?);
+                let found = if self.heading.field == Field::Time {
+                    in_time(text, decimal, &self.heading, &mut self.clock, values.is_empty())
+                } else {
+                    cell::written(text, decimal).map(|number| self.heading.scale.si(number))
+                };
+                let value = match found {
+                    Err(problem @ CellError::UnitInside { .. }) => {
+                        self.heading.with_unit_inside(text).ok_or(problem)?
+                    }
+                    found => found?,
+                };
+                values.push(cell::measurable(value, || quoted(text))?);
             }
-            Values::Counts(values) => values.push(cell::whole(text)?),
+            Values::Counts(values) => values.push(cell::whole(text, decimal)?),
             Values::Directions(values) => values.push(cell::direction(text)?),
-            Values::Labels(_) if text.is_empty() => return Err(CellError::Empty),
-            Values::Labels(labels) => labels.push(text),
+            Values::Labels(_) => return Err(CellError::Empty),
         }
         Ok(())
     }
 
     /// The next field, as a number.
     pub(crate) fn push_number(&mut self, number: f64) -> Result<(), CellError> {
+        let found = self.try_number(number);
+        if found.is_err() {
+            self.push_gap();
+        }
+        found
+    }
+
+    fn try_number(&mut self, number: f64) -> Result<(), CellError> {
         match &mut self.values {
             Values::Numbers(values) => {
                 let value = self.heading.scale.si(number);
@@ -64,6 +108,50 @@ impl Slot {
         }
         Ok(())
     }
+
+    /// A value in the place of one that is missing: its row must go.
+    pub(crate) fn push_gap(&mut self) {
+        match &mut self.values {
+            Values::Numbers(values) => values.push(0.0),
+            Values::Counts(values) => values.push(0),
+            Values::Directions(values) => values.push(0),
+            Values::Labels(labels) => labels.push(""),
+        }
+    }
+
+    /// Its numbers, if it holds any.
+    pub(crate) fn numbers(&self) -> &[f64] {
+        if let Values::Numbers(values) = &self.values { values } else { &[] }
+    }
+
+    /// Its numbers become others, and it itself another column.
+    pub(crate) fn become_column(&mut self, field: Field, change: impl Fn(f64) -> f64) {
+        self.heading.field = field;
+        if let Values::Numbers(values) = &mut self.values {
+            for value in values {
+                *value = change(*value);
+            }
+        }
+    }
+}
+
+/// A time in seconds, or on a clock; the first row decides which.
+fn in_time(
+    text: &str,
+    decimal: Decimal,
+    heading: &Heading,
+    clock: &mut Option<Clock>,
+    is_first: bool,
+) -> Result<f64, CellError> {
+    if let (Some(now), true) = (instant(text), clock.is_some() || is_first) {
+        let since = clock.get_or_insert_default().since_start(now);
+        return since.ok_or_else(|| CellError::Clock { text: quoted(text) });
+    }
+    let number = cell::written(text, decimal)?;
+    if clock.is_some() {
+        return Err(CellError::NoClock { text: quoted(text) });
+    }
+    Ok(heading.scale.si(number))
 }
 
 /// The columns of a file. The headings have been checked: pressure, force and one motion are among them.
@@ -73,7 +161,9 @@ pub(crate) fn columns(slots: Vec<Slot>) -> Columns {
         match (slot.heading.field, slot.values) {
             (Field::Pressure, Values::Numbers(values)) => found.pressure_pa = values,
             (Field::Contraction, Values::Numbers(values)) => found.motion = Trace::Contraction(values),
-            (Field::Length, Values::Numbers(values)) => found.motion = Trace::Length(values),
+            (Field::Length | Field::Displacement, Values::Numbers(values)) => {
+                found.motion = Trace::Length(values);
+            }
             (Field::Force, Values::Numbers(values)) => found.force_n = values,
             (Field::Time, Values::Numbers(values)) => found.time_s = Some(values),
             (Field::Temperature, Values::Numbers(values)) => found.temperature_k = Some(values),

@@ -1,10 +1,15 @@
 //! Files: their format, their fingerprint, and what is read from them.
 
 use crate::cell;
+use crate::cell_error::CellError;
 use crate::columns::Columns;
-use crate::csv_file::{self, Table};
-use crate::error::{CellError, MeasurementError};
+use crate::csv_file;
+use crate::error::MeasurementError;
+use crate::matlab;
 use crate::parquet_file;
+use crate::reading::{ReadOptions, Reading};
+use crate::spreadsheet;
+use crate::table::Table;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fs::File;
@@ -17,20 +22,20 @@ const MOST_BYTES: u64 = 2 << 30;
 const PARQUET_MAGIC: &[u8] = b"PAR1";
 
 /// The first bytes of other files in which people keep measurements, what they are, and what to do.
-const FOREIGN: [(&[u8], &str, &str); 8] = [
-    (
-        b"PK\x03\x04",
-        "a spreadsheet or a ZIP archive",
-        "export the sheet as \"CSV UTF-8\", or unpack the archive",
-    ),
-    (b"\xd0\xcf\x11\xe0", "a spreadsheet of an old kind", "export the sheet as \"CSV UTF-8\""),
+const FOREIGN: [(&[u8], &str, &str); 6] = [
+    (b"\xd0\xcf\x11\xe0", "a spreadsheet of an old kind", "save it as .xlsx, or export the sheet as CSV"),
     (b"\x1f\x8b", "compressed by gzip", "unpack it first"),
     (b"\x28\xb5\x2f\xfd", "compressed by Zstandard", "unpack it first"),
-    (b"MATLAB 5.0", "a MATLAB file", "write CSV with `writetable` or Parquet with `parquetwrite`"),
-    (b"\x89HDF", "an HDF5 file, perhaps of MATLAB", "write CSV or Parquet"),
+    (
+        b"\x89HDF",
+        "an HDF5 file, perhaps of MATLAB 7.3",
+        "in MATLAB, load it and write `save('x.mat','-v7')`; elsewhere write CSV or Parquet",
+    ),
     (b"ARROW1", "an Arrow (Feather) file", "write Parquet or CSV"),
     (b"TDSm", "a TDMS file of LabVIEW", "export CSV"),
 ];
+/// The name of standard input.
+const STDIN: &str = "-";
 
 /// A file of measurements.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -50,47 +55,41 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// Reads a file: Parquet if its first bytes or its extension say so, else CSV.
-    pub(crate) fn read(path: &Path) -> Result<Self, MeasurementError> {
-        let name = path.display().to_string();
-        let unreadable =
-            |why: &std::io::Error| MeasurementError::Unreadable { file: name.clone(), why: why.to_string() };
-        let mut file = File::open(path).map_err(|error| unreadable(&error))?;
-        let metadata = file.metadata().map_err(|error| unreadable(&error))?;
-        let too_large = |bytes| MeasurementError::TooLarge { file: name.clone(), bytes, limit: MOST_BYTES };
-        if metadata.is_dir() {
-            let why = "it is a folder".to_owned();
-            return Err(MeasurementError::Unreadable { file: name, why });
-        }
-        if metadata.len() > MOST_BYTES {
-            return Err(too_large(metadata.len()));
-        }
-        let mut bytes = Vec::new();
-        let found = file.by_ref().take(MOST_BYTES + 1).read_to_end(&mut bytes);
-        found.map_err(|error| unreadable(&error))?;
-        if bytes.len() as u64 > MOST_BYTES {
-            return Err(too_large(bytes.len() as u64));
-        }
+    /// Reads a file of the kind that its first bytes say; text if none does.
+    pub(crate) fn read(path: &Path, options: &ReadOptions) -> Result<Self, MeasurementError> {
+        let is_stdin = path == Path::new(STDIN);
+        let name = if is_stdin { "standard input".to_owned() } else { path.display().to_string() };
+        let bytes = if is_stdin { read_all(&name, std::io::stdin().lock()) } else { read_file(&name, path) }?;
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        if !bytes.starts_with(PARQUET_MAGIC) {
-            if !["parquet", "pq"].contains(&extension.as_str()) {
-                return Self::csv(&name, &bytes);
-            }
+        let is_parquet = bytes.starts_with(PARQUET_MAGIC);
+        if !is_parquet && ["parquet", "pq"].contains(&extension.as_str()) {
             let why = "it does not begin as Parquet does".to_owned();
             let instead = "if it is CSV, name it `.csv`; else write it again";
             return Err(MeasurementError::Parquet { file: name, why, instead });
         }
+        if !is_parquet {
+            return Self::bytes(&name, &bytes, options);
+        }
         let sha256 = fingerprint(&bytes);
-        drop(bytes);
-        Ok(Self::new(&name, sha256, parquet_file::read(&name, file)?))
+        Ok(Self::new(&name, sha256, parquet_file::read(&name, bytes::Bytes::from(bytes), options)?))
     }
 
-    /// Reads CSV.
-    pub(crate) fn csv(name: &str, bytes: &[u8]) -> Result<Self, MeasurementError> {
-        if let Some((_, what, instead)) = FOREIGN.iter().find(|(start, _, _)| bytes.starts_with(start)) {
-            return Err(MeasurementError::OtherFormat { file: name.to_owned(), what, instead });
-        }
-        Ok(Self::new(name, fingerprint(bytes), csv_file::read(name, bytes)?))
+    /// Reads what is in memory: a workbook, MATLAB, else text.
+    pub(crate) fn bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Self, MeasurementError> {
+        let foreign = |file: String| {
+            let known = FOREIGN.iter().find(|(start, _, _)| bytes.starts_with(start));
+            known.map(|(_, what, instead)| MeasurementError::OtherFormat { file, what, instead })
+        };
+        let table = if spreadsheet::is_one(bytes) {
+            spreadsheet::read(name, bytes, options)?
+        } else if let Some(error) = foreign(name.to_owned()) {
+            return Err(error);
+        } else if matlab::is_one(bytes) {
+            matlab::read(name, bytes, options)?
+        } else {
+            csv_file::read(name, bytes, options)?
+        };
+        Ok(Self::new(name, fingerprint(bytes), table))
     }
 
     /// Checks the columns of a program.
@@ -110,7 +109,7 @@ impl Source {
         columns.cycle.iter().flatten().for_each(|cycle| hash.update(cycle.to_le_bytes()));
         columns.direction.iter().flatten().for_each(|direction| hash.update(direction.to_le_bytes()));
         let last = u32::try_from(columns.len()).unwrap_or(u32::MAX);
-        let table = Table { columns, lines: (1..=last).collect() };
+        let table = Table { columns, lines: (1..=last).collect(), reading: Reading::default() };
         Ok(Self::new(name, hexadecimal(&hash.finalize()), table))
     }
 
@@ -118,6 +117,33 @@ impl Source {
         let file = SourceFile { name: name.to_owned(), sha256, rows: table.lines.len() };
         Self { file, table }
     }
+}
+
+fn unreadable(file: &str, why: &std::io::Error) -> MeasurementError {
+    MeasurementError::Unreadable { file: file.to_owned(), why: why.to_string() }
+}
+
+fn too_large(file: &str, bytes: u64) -> MeasurementError {
+    MeasurementError::TooLarge { file: file.to_owned(), bytes, limit: MOST_BYTES }
+}
+
+fn read_file(name: &str, path: &Path) -> Result<Vec<u8>, MeasurementError> {
+    let file = File::open(path).map_err(|error| unreadable(name, &error))?;
+    let metadata = file.metadata().map_err(|error| unreadable(name, &error))?;
+    if metadata.is_dir() {
+        let why = "it is a folder".to_owned();
+        return Err(MeasurementError::Unreadable { file: name.to_owned(), why });
+    }
+    if metadata.len() > MOST_BYTES {
+        return Err(too_large(name, metadata.len()));
+    }
+    read_all(name, file)
+}
+
+fn read_all(name: &str, source: impl Read) -> Result<Vec<u8>, MeasurementError> {
+    let mut bytes = Vec::new();
+    source.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| unreadable(name, &error))?;
+    if bytes.len() as u64 > MOST_BYTES { Err(too_large(name, bytes.len() as u64)) } else { Ok(bytes) }
 }
 
 /// Equal lengths, finite numbers, known directions.

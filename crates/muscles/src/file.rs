@@ -112,6 +112,13 @@ impl<'a> Reader<'a> {
         if let Some(instruments) = instruments {
             muscle = muscle.with_instruments(instruments_in(&instruments)?);
         }
+        if let Some(data) = self.table("data")?
+            && let Some(columns) = table(&data, "data", "columns")?
+        {
+            for (quantity, _) in columns.names() {
+                muscle = muscle.with_data_column(quantity, columns.text(quantity)?.unwrap_or_default());
+            }
+        }
         if let Some(specimens) = self.root.table("specimens", "`[specimens]`", &[])? {
             muscle = specimens_in(&specimens, muscle)?;
         }

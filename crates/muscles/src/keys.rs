@@ -24,7 +24,6 @@ const TABLES: &[(&str, Keys)] = &[
             ("effects", "effects.end-radius = { radius = \"16 mm\" }"),
             ("instruments", "instruments.force = { noise = \"4 N\" }"),
             ("specimens", "specimens.short = { length = \"60 mm\" }"),
-            // Of who reads measurements.
             ("data", "data.columns = { force = \"F1 [N]\" }"),
         ],
     ),
@@ -77,6 +76,27 @@ const TABLES: &[(&str, Keys)] = &[
     ("instruments.force", &[("noise", "noise = \"4 N\""), ("zero", "zero = \"1 N\""), GAIN]),
     ("instruments.pressure", &[("noise", "noise = \"30 Pa\""), ("zero", "zero = \"200 Pa\""), GAIN]),
     ("instruments.length", &[("noise", "noise = \"5 um\""), ("zero", "zero = \"0.05 mm\""), GAIN]),
+    ("data", &[("columns", "columns = { force = \"F1 [N]\" }")]),
+    (
+        "data.columns",
+        &[
+            ("pressure", "pressure = \"P1 [psi]\""),
+            ("contraction", "contraction = \"eps [%]\""),
+            ("length", "length = \"L [mm]\""),
+            ("displacement", "displacement = \"Weg [mm]\""),
+            ("force", "force = \"Force_N [N]\""),
+            ("time", "time = \"t [s]\""),
+            ("sweep", "sweep = \"Sweep\""),
+            ("specimen", "specimen = \"Specimen\""),
+            ("cycle", "cycle = \"Cycle\""),
+            ("direction", "direction = \"Direction\""),
+            ("temperature", "temperature = \"T [degC]\""),
+            ("diameter", "diameter = \"D [mm]\""),
+            ("volume", "volume = \"V [ml]\""),
+            ("force_sd", "force_sd = \"sF [N]\""),
+            ("ignore", "ignore = \"Ignore\""),
+        ],
+    ),
 ];
 
 const PRESSURE: (&str, &str) = ("pressure", "pressure = { noise = \"30 Pa\" }");

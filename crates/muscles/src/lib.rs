@@ -46,6 +46,7 @@ mod learnt;
 mod learnt_table;
 mod material;
 mod muscle;
+pub mod output;
 mod parameter;
 mod presets;
 mod quantity;

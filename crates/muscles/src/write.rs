@@ -47,6 +47,13 @@ pub fn to_toml(muscle: &Muscle) -> String {
         };
         lines.extend(specimen.numbers().iter().map(number));
     }
+    if !muscle.data_columns().is_empty() {
+        lines.push("\n[data.columns]".to_owned());
+        let line = |(quantity, column): &(String, String)| {
+            format!("{quantity} = {}", toml::Value::String(column.clone()))
+        };
+        lines.extend(muscle.data_columns().iter().map(line));
+    }
     lines.push(String::new());
     lines.join("\n")
 }

@@ -1,9 +1,9 @@
 //! Sweeps: a plan that travels as text, chunks run into a folder or made as bytes, the manifest and the table.
 
-use bulge_muscles::{Quantity as _, to_toml};
+use bulge_muscles::{Quantity as _, output, to_toml};
 use bulge_sweep::{
     Built, Plan, Promise, RunOptions, SWEEP_EXAMPLE, TableDescription, begin, complete, manifest, piece, run,
-    tabulate, write_durably,
+    tabulate,
 };
 use bulge_table::Table;
 use pyo3::prelude::*;
@@ -104,7 +104,7 @@ impl Sweep {
     #[staticmethod]
     fn write(py: Python<'_>, path: PathBuf, content: Vec<u8>) -> PyResult<()> {
         let wrong = |error: std::io::Error| input(format!("cannot write {}: {error}", path.display()));
-        py.detach(|| write_durably(&path, &content)).map_err(wrong)
+        py.detach(|| output::write(&path, &content)).map_err(wrong)
     }
 
     /// Makes a folder ready for the chunks.

@@ -128,15 +128,15 @@ def test_quality(plain, rubbed):
 
 #: Text of a file, and what must be said of it.
 MISTAKES = {
-    "no number": ("pressure [bar],contraction [%],force [N]\n1,10,500\n1,x,300\n", r"bad\.csv:3: column `contraction \[%\]`: `x` is not a number.*12\.5"),
+    "no number": ("pressure [bar],contraction [%],force [N]\n1,10,500\n1,x,300\n", r"bad\.csv: 1 of 2 rows.*`contraction \[%\]` is not a number \(line 3\)"),
     "no force": ("pressure [bar],contraction [%]\n1,10\n", r"bad\.csv:1: there is no column `force`: add one"),
     "unit of another": ("pressure [N],contraction [%],force [N]\n1,10,5\n", r"bad\.csv:1: column `pressure \[N\]` has a unit of force.*pressure \[bar\]"),
     "no unit": ("pressure,contraction [%],force [N]\n1,10,3\n", r"bad\.csv:1: column `pressure` has no unit.*pressure \[bar\]"),
     "no row": ("pressure [bar],contraction [%],force [N]\n", r"bad\.csv: has a header but no row"),
-    "few fields": ("pressure [bar],contraction [%],force [N]\n1,10\n", r"bad\.csv:2: the row has 2 fields, the header has 3"),
-    "not finite": ("pressure [bar],contraction [%],force [N]\n1,1,1\n1,10,nan\n", r"bad\.csv:3: column `force \[N\]`: `nan` is not a finite number"),
+    "few fields": ("pressure [bar],contraction [%],force [N]\n1,10\n", r"bad\.csv: 1 of 1 rows.*fewer fields than the header \(line 2\)"),
+    "not finite": ("pressure [bar],contraction [%],force [N]\n1,1,1\n1,10,nan\n", r"bad\.csv: 1 of 2 rows.*`force \[N\]` is not a finite number \(line 3\)"),
     "empty": ("", r"bad\.csv: is empty: write a header"),
-    "decimal comma": ("pressure [bar];contraction [%];force [N]\n1,5;10;3\n", r"bad\.csv:2: .*decimal comma: write `1\.5`"),
+    "absolute": ("pressure [bara],contraction [%],force [N]\n1.5,10,3\n", r"bad\.csv:1: column `pressure \[bara\]` is an absolute pressure.*subtract"),
 }
 
 

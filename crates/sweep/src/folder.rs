@@ -11,14 +11,12 @@
 //! Every file is written under another name, forced to the disk, renamed, and its folder forced to the disk. What a crash or a power loss leaves is
 //! either the whole file or none; a chunk whose file doesn't have the hash of its promise is computed again.
 
+use bulge_muscles::output::{UNFINISHED, sync};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};
-use std::io::{self, Read, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-
-/// Beginning of the names of files that aren't finished.
-const UNFINISHED: &str = ".unfinished-";
 
 /// What a finished chunk promises.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -192,30 +190,4 @@ fn hexadecimal(bytes: &[u8]) -> String {
         let _ = write!(text, "{byte:02x}");
         text
     })
-}
-
-/// Writes a file so that it is there whole or not at all, whatever happens.
-///
-/// # Errors
-/// What the system says; nothing is left of the file then.
-pub fn write_durably(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut name = tempfile::Builder::new();
-    name.prefix(UNFINISHED);
-    #[cfg(unix)]
-    {
-        // As any new file: readable by whom the user's mask allows, not by the owner alone.
-        use std::os::unix::fs::PermissionsExt;
-        name.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let mut file = name.tempfile_in(folder)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(path).map_err(|error| error.error)?;
-    sync(folder)
-}
-
-/// Forces a folder's list of names to the disk, where the system knows how.
-fn sync(folder: &Path) -> io::Result<()> {
-    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
 }

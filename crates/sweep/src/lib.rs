@@ -25,7 +25,7 @@ pub use design::{Coordinate, Layout};
 pub use family::{Family, Member};
 pub use family_error::FamilyError;
 pub use file::SWEEP_EXAMPLE;
-pub use folder::{Promise, write_durably};
+pub use folder::Promise;
 pub use joint::{
     Closed, Drive, FourBar, JOINT_EXAMPLE, Joint, JointError, JointField, JointMuscle, JointOutput, Linkage,
     Outside, Readings, Side, SideStand, Stand,

@@ -1,5 +1,6 @@
 //! Running a sweep: chunks in parallel, each written whole, and only those that aren't there yet.
 
+use bulge_muscles::output;
 use parquet::errors::ParquetError;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -15,7 +16,7 @@ use crate::chunk::{Chunk, Computer};
 use crate::design::Layout;
 use crate::difference::difference;
 use crate::family_error::FamilyError;
-use crate::folder::{Folder, Promise, Standing, hash, write_durably};
+use crate::folder::{Folder, Promise, Standing, hash};
 use crate::plan::Plan;
 
 /// Format of the folder.
@@ -400,7 +401,7 @@ fn at(path: &Path) -> impl Fn(io::Error) -> SweepError {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
-    write_durably(path, bytes).map_err(at(path))
+    output::write(path, bytes).map_err(at(path))
 }
 
 /// Makes the folder ready, or says why it can't be this sweep's.

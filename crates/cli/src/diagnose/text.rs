@@ -25,6 +25,8 @@ const UNTESTED: &str = "  could not be looked for ";
 pub(crate) struct Call {
     /// Data files.
     pub(crate) data: Vec<String>,
+    /// Which column is which, as given.
+    pub(crate) columns: Option<String>,
     /// Muscle as given.
     pub(crate) muscle: String,
     /// Effects that the base had.
@@ -262,8 +264,10 @@ fn accept(out: &mut String, diagnosis: &Diagnosis, call: &Call) {
     let with: Vec<&str> = call.with.iter().map(String::as_str).chain(missing).collect();
     let data: Vec<String> = call.data.iter().map(|path| quoted(path)).collect();
     let own = call.effects.as_ref().map_or_else(String::new, |file| format!(" --effects {}", quoted(file)));
+    let columns =
+        call.columns.as_ref().map_or_else(String::new, |columns| format!(" --columns {}", quoted(columns)));
     let rest = format!(
-        "{} --muscle {}{own} --with {}",
+        "{}{columns} --muscle {}{own} --with {}",
         data.join(" "),
         quoted(&call.muscle),
         quoted(&with.join(","))
@@ -306,6 +310,7 @@ mod tests {
     fn call() -> Call {
         Call {
             data: vec!["my loops.csv".to_owned(), "b.csv".to_owned()],
+            columns: None,
             muscle: "braid.toml".to_owned(),
             with: vec!["end-taper".to_owned()],
             effects: Some("own.toml".to_owned()),

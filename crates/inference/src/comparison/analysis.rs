@@ -101,7 +101,8 @@ impl<'a> Analysis<'a> {
     ) -> Result<Self, InferenceError> {
         let used = used(data);
         if !used.mask.contains(&true) {
-            let left_out = if data.is_empty() { "the file has none" } else { "all are slack" };
+            let left_out =
+                if data.is_empty() { "the file has none" } else { "all are slack or without pressure" };
             return Err(InferenceError::NoRows { left_out: left_out.to_owned() });
         }
         for effect in &options.effects {
@@ -393,6 +394,7 @@ impl<'a> Analysis<'a> {
             used: self.rows().count(),
             left_out: self.used.left_out.clone(),
             findings: self.findings.clone(),
+            reading: self.used.reading.clone(),
             sha256: self.data.sha256(),
             files: self.data.files().iter().map(|file| file.name.clone()).collect(),
             sweeps: self.record.sweeps().len(),

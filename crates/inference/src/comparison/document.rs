@@ -1,6 +1,6 @@
 //! A comparison as a value: everything that text, JSON and report show, and nothing that they would have to compute.
 
-use bulge_measurements::Finding;
+use bulge_measurements::{Finding, Reading};
 use serde::Serialize;
 
 use crate::fit::document::Fit;
@@ -51,6 +51,9 @@ pub struct DataSummary {
     pub left_out: Vec<LeftOut>,
     /// Units, signs and scales that can't be true, with the evidence.
     pub findings: Vec<Mismatch>,
+    /// What the columns were taken for, and the rows that can't be used.
+    #[serde(flatten)]
+    pub reading: Reading,
     /// SHA-256 of the file, or of the digests of several.
     pub sha256: String,
     /// Names of the files.

@@ -1,6 +1,7 @@
 //! Which rows enter errors and fits, and how rows are named to people.
 
-use bulge_measurements::Data;
+use bulge_measurements::{Data, Reading};
+use bulge_muscles::units::significant;
 use std::fmt::Write;
 
 use crate::comparison::document::LeftOut;
@@ -14,6 +15,8 @@ const MOST_IDLE: f64 = 0.8;
 pub(crate) struct Used {
     pub(crate) mask: Vec<bool>,
     pub(crate) left_out: Vec<LeftOut>,
+    /// How the data were read, with the rows that no equilibrium has.
+    pub(crate) reading: Reading,
 }
 
 impl Used {
@@ -27,6 +30,27 @@ impl Used {
             self.mask[*row] = false;
         }
         self.left_out.push(LeftOut { why, lines: lines(data, &rows), rows: rows.len() });
+    }
+
+    /// Leaves out rows whose gauge pressure is 0 or, by the noise of a zero, below: nothing balances the fibres there.
+    fn leave_out_unpressurised(&mut self, data: &Data) {
+        let pressure = data.pressure();
+        let rows: Vec<usize> = (0..pressure.len()).filter(|row| pressure[*row] <= 0.0).collect();
+        for row in &rows {
+            self.mask[*row] = false;
+            let (file, line) = data.line(*row);
+            let file = data.files().get(file).map_or("", |file| file.name.as_str());
+            let reason =
+                format!("a gauge pressure of {} Pa has no equilibrium", significant(pressure[*row], 4));
+            self.reading.add(file, line, reason);
+        }
+        if !rows.is_empty() {
+            self.left_out.push(LeftOut {
+                why: "no gauge pressure: nothing balances the fibres".to_owned(),
+                lines: lines(data, &rows),
+                rows: rows.len(),
+            });
+        }
     }
 
     /// Leaves out spikes that only show when the model's force is taken off.
@@ -57,7 +81,9 @@ pub(crate) fn used(data: &Data) -> Used {
     let lowest = force.iter().copied().fold(f64::INFINITY, f64::min);
     let is_cut = |row: &usize| force[*row].total_cmp(&lowest).is_eq();
     let cut: Vec<usize> = (0..force.len()).filter(is_cut).collect();
-    let mut used = Used { mask: vec![true; force.len()], left_out: Vec::new() };
+    let mut used =
+        Used { mask: vec![true; force.len()], left_out: Vec::new(), reading: data.reading().clone() };
+    used.leave_out_unpressurised(data);
     if cut.len() >= 2 && lowest.abs() <= 0.01 * full {
         let why = format!("slack: {lowest} N, the lowest reading, says only that the muscle didn't pull");
         used.leave_out(data, cut, why);

@@ -1,5 +1,6 @@
 //! A diagnosis as a value: everything that text, JSON and report show.
 
+use bulge_measurements::Reading;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -77,6 +78,9 @@ pub struct DiagnosedData {
     pub used: usize,
     /// Rows that count as independent, under the noise law.
     pub effective_rows: f64,
+    /// What the columns were taken for, and the rows that can't be used.
+    #[serde(flatten)]
+    pub reading: Reading,
     /// SHA-256 of the file, or of the digests of several.
     pub sha256: String,
     /// Number of sweeps.

@@ -83,6 +83,7 @@ pub struct Plot {
 /// #     used: 2,
 /// #     left_out: Vec::new(),
 /// #     findings: Vec::new(),
+/// #     reading: bulge_measurements::Reading::default(),
 /// #     sha256: String::new(),
 /// #     files: vec!["isobars.csv".to_owned()],
 /// #     sweeps: 1,

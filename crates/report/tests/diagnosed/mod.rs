@@ -16,6 +16,7 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
             rows: comparison.data.rows,
             used: comparison.data.used,
             effective_rows: 0.2 * comparison.data.used as f64,
+            reading: comparison.data.reading.clone(),
             sha256: comparison.data.sha256.clone(),
             sweeps: comparison.data.sweeps,
             specimens: comparison.data.specimens.len(),

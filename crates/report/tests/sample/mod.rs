@@ -462,6 +462,7 @@ pub(crate) fn rich(recipe: &Recipe) -> Comparison {
             used: rows.len(),
             left_out: vec![LeftOut { why: "slack: no force at all".to_owned(), lines: "12, 33–48".to_owned(), rows: 17 }],
             findings: Vec::new(),
+            reading: bulge_measurements::Reading::default(),
             sha256: "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".to_owned(),
             files: vec!["loops-a.csv".to_owned()],
             sweeps: rows.last().map_or(0, |row| row.sweep + 1),

@@ -1,0 +1,106 @@
+//! Measured rows on the command line: the files, which column is which, and how they were read.
+
+use bulge_measurements::{ColumnMap, Data, ReadOptions, Reading};
+use bulge_muscles::{Muscle, Quantity};
+use clap::Args;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use crate::failure::Failure;
+use crate::text::table;
+
+/// Rows set apart and columns that are shown to people.
+const MOST_SHOWN: usize = 3;
+const MOST_COLUMNS: usize = 40;
+
+/// What every command takes that reads measurements.
+#[derive(Debug, Args)]
+pub(crate) struct DataArguments {
+    /// Measured rows, with columns of pressure, force, and length, contraction or displacement: CSV and other text, Excel (.xlsx), MATLAB (.mat) or
+    /// Parquet; "-" is standard input; several files make one analysis
+    #[arg(required = true, value_name = "DATA")]
+    pub(crate) data: Vec<PathBuf>,
+    /// Which column is which, where the headings don't say it: "force=Force_N [N], pressure=P1 [psi], length=-Weg" (a minus turns the sign); the
+    /// table `[data.columns]` of the muscle file says the same
+    #[arg(long, value_name = "QUANTITY=COLUMN,...")]
+    pub(crate) columns: Option<String>,
+}
+
+impl DataArguments {
+    /// Reads the files of a muscle's measurements.
+    pub(crate) fn read(&self, muscle: &Muscle) -> Result<Data, Failure> {
+        let mut stated = ColumnMap::default();
+        for (quantity, column) in muscle.data_columns() {
+            stated.add(quantity, column)?;
+        }
+        let columns = match &self.columns {
+            Some(text) => text.parse::<ColumnMap>()?.or(&stated),
+            None => stated,
+        };
+        let options = ReadOptions { columns, l0_m: Some(muscle.length().si()) };
+        Ok(Data::read_with(&self.data, &options)?)
+    }
+
+    /// The names of the files, as they were given.
+    pub(crate) fn names(&self) -> Vec<String> {
+        self.data.iter().map(|path| path.display().to_string()).collect()
+    }
+}
+
+/// How files were read, for people: what the columns were taken for where this was guessed, and which rows can't be used.
+pub(crate) fn told(reading: &Reading) -> String {
+    let mut out = String::new();
+    if reading.is_guessed() {
+        out.push_str(&columns(reading));
+    }
+    for note in &reading.notes {
+        let _ = writeln!(out, "  {note}");
+    }
+    if let Some(first) = reading.set_apart.first() {
+        let lines: Vec<String> = reading
+            .set_apart
+            .iter()
+            .take(MOST_SHOWN)
+            .map(|row| format!("line {}: {}", row.row, row.reason))
+            .collect();
+        let count = reading.set_apart_rows;
+        let more =
+            if count > lines.len() { format!("; and {} more", count - lines.len()) } else { String::new() };
+        let plural = if count == 1 { "row" } else { "rows" };
+        let _ = writeln!(out, "  set apart {count} {plural} of {}: {}{more}", first.file, lines.join("; "));
+    }
+    if !out.is_empty() {
+        out.push('\n');
+    }
+    out
+}
+
+/// One table: column, quantity, unit, first values; the columns that aren't read are named once.
+fn columns(reading: &Reading) -> String {
+    let mut rows = vec![["column", "taken for", "unit", "first values", ""].map(String::from).to_vec()];
+    let is_read = |column: &&bulge_measurements::ColumnUse| column.quantity.is_some();
+    for column in reading.columns.iter().filter(is_read).take(MOST_COLUMNS) {
+        rows.push(vec![
+            column.column.clone(),
+            column.quantity.clone().unwrap_or_default(),
+            column.unit.clone().unwrap_or_default(),
+            column.first.join(" "),
+            column.says.clone().unwrap_or_default(),
+        ]);
+    }
+    let mut out = table(&rows);
+    let ignored: Vec<String> = reading
+        .columns
+        .iter()
+        .filter(|column| column.quantity.is_none())
+        .map(|column| match column.says.as_deref().and_then(|says| says.strip_prefix("ignored: ")) {
+            Some(why) => format!("{} ({why})", column.column),
+            None => column.column.clone(),
+        })
+        .collect();
+    if !ignored.is_empty() {
+        let _ = writeln!(out, "  ignored: {}", ignored.join(", "));
+    }
+    out.push_str("  wrong? say which column is which: --columns \"force=Force_N [N], ...\"\n");
+    out
+}

@@ -1,0 +1,398 @@
+//! Which column is which quantity: as written, as the user says, else guessed; and what was taken for what.
+
+use crate::column_map::{ColumnEntry, ColumnMap, IGNORE};
+use crate::error::MeasurementError;
+use crate::heading::{Field, Heading};
+use crate::names::{Guess, Strength, assumed, guesses};
+use crate::quote::quoted;
+use crate::reading::ColumnUse;
+use crate::unit::{problem, unit};
+use bulge_muscles::units::UnitError;
+
+/// Columns beyond these aren't looked at, but where the user names them.
+pub(crate) const MOST_COLUMNS: usize = 4096;
+
+/// What is known of the columns of a file before its rows are read.
+pub(crate) struct Header<'a> {
+    pub(crate) file: &'a str,
+    pub(crate) line: usize,
+    /// Headings as they are written.
+    pub(crate) names: &'a [String],
+    /// The row of units beneath, where there is one.
+    pub(crate) units: Option<&'a [String]>,
+    /// The first values of each column.
+    pub(crate) first: &'a [Vec<String>],
+}
+
+/// Columns that are read, by place, and what each column of the file was taken for.
+pub(crate) struct Assignment {
+    pub(crate) headings: Vec<Option<Heading>>,
+    pub(crate) uses: Vec<ColumnUse>,
+}
+
+/// A column for a quantity.
+struct Choice {
+    place: usize,
+    guess: Guess,
+    /// None: guessed.
+    entry: Option<ColumnEntry>,
+}
+
+/// Decides, or says all that keeps it from deciding.
+pub(crate) fn assign(header: &Header, map: &ColumnMap) -> Result<Assignment, Vec<MeasurementError>> {
+    let mut complaints = Vec::new();
+    let (mut chosen, ignored) = stated(header, map, &mut complaints);
+    let free = |place: &usize, chosen: &[Choice]| {
+        !ignored.contains(place) && chosen.iter().all(|choice| choice.place != *place)
+    };
+    let beneath = |place: usize| header.units.and_then(|units| units.get(place)).map(String::as_str);
+    let open: Vec<(usize, Vec<Guess>)> = (0..header.names.len().min(MOST_COLUMNS))
+        .filter(|place| free(place, &chosen))
+        .map(|place| (place, guesses(&header.names[place], beneath(place))))
+        .collect();
+    for field in Field::ALL {
+        let is_stated = |choice: &Choice| {
+            choice.guess.field == field
+                || (choice.entry.is_some() && field.is_motion() && choice.guess.field.is_motion())
+        };
+        if chosen.iter().any(is_stated) {
+            continue;
+        }
+        let taken: Vec<usize> = chosen.iter().map(|choice| choice.place).collect();
+        chosen.extend(guessed(header, field, &open, &taken, &mut complaints));
+    }
+    settle_motion(&mut chosen);
+    for (name, is_it) in [
+        ("pressure", (|field| field == Field::Pressure) as fn(Field) -> bool),
+        ("length` or `contraction", Field::is_motion),
+        ("force", |field| field == Field::Force),
+    ] {
+        // A quantity that was complained of already isn't missing as well.
+        let is_there = chosen.iter().any(|choice| is_it(choice.guess.field));
+        if !is_there && !complaints.iter().any(|complaint: &MeasurementError| complaint.is_about(name)) {
+            complaints.push(missing(header, name));
+        }
+    }
+    let mut assignment = Assignment { headings: vec![None; header.names.len()], uses: Vec::new() };
+    for choice in &chosen {
+        match heading(header, choice) {
+            Ok(heading) => assignment.headings[choice.place] = Some(heading),
+            Err(complaint) => complaints.push(complaint),
+        }
+    }
+    if !complaints.is_empty() {
+        return Err(complaints);
+    }
+    assignment.uses = uses(header, &chosen);
+    Ok(assignment)
+}
+
+/// The columns that the user names, and those that he wants ignored.
+fn stated(
+    header: &Header,
+    map: &ColumnMap,
+    complaints: &mut Vec<MeasurementError>,
+) -> (Vec<Choice>, Vec<usize>) {
+    let (mut chosen, mut ignored): (Vec<Choice>, Vec<usize>) = (Vec::new(), Vec::new());
+    for entry in map.entries() {
+        let place = match find(header, &entry.column) {
+            Ok(place) => place,
+            Err(complaint) => {
+                complaints.push(complaint);
+                continue;
+            }
+        };
+        if entry.quantity == IGNORE {
+            ignored.push(place);
+            continue;
+        }
+        let Some(field) = Field::ALL.into_iter().find(|field| field.name() == entry.quantity) else {
+            continue;
+        };
+        if let Some(other) = chosen.iter().find(|choice| choice.place == place) {
+            let what = format!(
+                "the column `{}` is both `{}` and `{}`: give each quantity a column of its own",
+                quoted(&header.names[place]),
+                other.guess.field.name(),
+                field.name()
+            );
+            complaints.push(MeasurementError::ColumnMap { what });
+            continue;
+        }
+        let beneath = header.units.and_then(|units| units.get(place)).map(String::as_str);
+        let own = guesses(&header.names[place], beneath).into_iter().find(|guess| guess.field == field);
+        let found = match &entry.unit {
+            Some(text) => unit(field, text),
+            None => {
+                own.and_then(|guess| guess.unit).or_else(|| unit_in(field, &header.names[place], beneath))
+            }
+        };
+        if let (Some(text), None, false) = (&entry.unit, &found, field.is_label())
+            && let Some(error) = problem(field, text)
+        {
+            complaints.push(unit_error(header, field, &entry.column, error));
+            continue;
+        }
+        let guess = Guess { field, strength: Strength::Exact, unit: found, is_lengthening: false };
+        chosen.push(Choice { place, guess, entry: Some(entry.clone()) });
+    }
+    (chosen, ignored)
+}
+
+/// A unit in a heading whose name says nothing.
+fn unit_in(field: Field, name: &str, beneath: Option<&str>) -> Option<crate::unit::Unit> {
+    let inside = name.find(['[', '(']).map(|at| name[at + 1..].trim_end_matches([']', ')', ' ']));
+    let tail = name.rsplit(['/', '_', ' ']).next();
+    [beneath, inside, tail].into_iter().flatten().find_map(|text| unit(field, text))
+}
+
+/// The column that a user names: by its heading, by this without the unit, or by its number.
+fn find(header: &Header, column: &str) -> Result<usize, MeasurementError> {
+    let plain = |text: &str| text.trim().to_lowercase();
+    let bare = |text: &str| plain(text.split(['[', '(']).next().unwrap_or_default());
+    let wanted = plain(column);
+    let by = |name: &dyn Fn(&str) -> String, wanted: &str| -> Vec<usize> {
+        (0..header.names.len()).filter(|place| name(&header.names[*place]) == wanted).collect()
+    };
+    let without_unit = wanted.rsplit_once('[').map_or(wanted.as_str(), |(name, _)| name.trim());
+    let all = [by(&plain, &wanted), by(&plain, without_unit), by(&bare, without_unit)];
+    match all.iter().find(|places| !places.is_empty()).map(Vec::as_slice) {
+        Some([place]) => return Ok(*place),
+        Some(places) => {
+            let what = format!(
+                "{}:{}: {} columns are called `{}`: name one by its number, such as `{}`",
+                header.file,
+                header.line,
+                places.len(),
+                quoted(column),
+                places[0] + 1
+            );
+            return Err(MeasurementError::ColumnMap { what });
+        }
+        None => {}
+    }
+    let number = without_unit.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
+    if let Some(place) = number.filter(|place| *place < header.names.len()) {
+        return Ok(place);
+    }
+    let slips = |name: &&String| strsim::damerau_levenshtein(&bare(name), without_unit);
+    let near = header
+        .names
+        .iter()
+        .min_by_key(slips)
+        .filter(|name| slips(name) <= (without_unit.chars().count() / 3).max(1));
+    let what = format!(
+        "{}:{}: there is no column `{}`: {}there are {}",
+        header.file,
+        header.line,
+        quoted(column),
+        near.map_or_else(String::new, |name| format!("did you mean `{}`? ", quoted(name))),
+        listed(header)
+    );
+    Err(MeasurementError::ColumnMap { what })
+}
+
+/// Whether a file has a column that a user names by its heading.
+pub(crate) fn has_named(header: &Header, column: &str) -> bool {
+    !header.names.is_empty()
+        && find(header, column).is_ok_and(|place| {
+            // A number is that of any header.
+            let bare = column.split('[').next().unwrap_or_default().trim();
+            bare.parse::<usize>().is_err() || header.names[place].trim() == bare
+        })
+}
+
+/// The headings of a file, at most as many as a message holds.
+fn listed(header: &Header) -> String {
+    const MOST: usize = 15;
+    let mut shown: Vec<String> =
+        header.names.iter().take(MOST).map(|name| format!("`{}`", quoted(name))).collect();
+    if header.names.len() > MOST {
+        shown.push(format!("{} more", header.names.len() - MOST));
+    }
+    shown.join(", ")
+}
+
+/// The column that is probably the one of a quantity.
+fn guessed(
+    header: &Header,
+    field: Field,
+    open: &[(usize, Vec<Guess>)],
+    taken: &[usize],
+    complaints: &mut Vec<MeasurementError>,
+) -> Option<Choice> {
+    let mut all: Vec<(usize, &Guess)> = open
+        .iter()
+        .filter(|(place, _)| !taken.contains(place))
+        .filter_map(|(place, guesses)| Some((*place, guesses.iter().find(|guess| guess.field == field)?)))
+        .collect();
+    let best = all.iter().map(|(_, guess)| guess.strength).max()?;
+    all.retain(|(_, guess)| guess.strength == best);
+    let first = |place: usize| header.first.get(place);
+    let is_same = all.iter().all(|(place, _)| first(*place) == first(all[0].0));
+    match all.as_slice() {
+        [(place, guess)] => Some(Choice { place: *place, guess: (*guess).clone(), entry: None }),
+        // Each channel of a recorder has a time of its own, and all are the same.
+        [(place, guess), ..] if field == Field::Time && (is_same || best < Strength::Exact) => {
+            Some(Choice { place: *place, guess: (*guess).clone(), entry: None })
+        }
+        _ if best == Strength::Exact => {
+            complaints.push(MeasurementError::TwiceTheColumn {
+                file: header.file.to_owned(),
+                line: header.line,
+                name: field.name(),
+                first: all[0].0 + 1,
+                second: all[1].0 + 1,
+            });
+            None
+        }
+        // Which of them it is doesn't matter: none is read.
+        _ if field.is_optional() || field.is_label() => None,
+        _ => {
+            let candidates = all.iter().map(|(place, _)| format!("`{}`", quoted(&header.names[*place])));
+            let unit = all[0].1.unit.as_ref().map_or("UNIT", |unit| unit.name.as_str());
+            complaints.push(MeasurementError::Ambiguous {
+                file: header.file.to_owned(),
+                line: header.line,
+                name: field.name(),
+                candidates: candidates.collect::<Vec<_>>().join(", "),
+                instead: entry_text(field, &header.names[all[0].0], unit),
+            });
+            None
+        }
+    }
+}
+
+/// What to write behind `--columns`.
+fn entry_text(field: Field, name: &str, unit: &str) -> String {
+    let bare = name.split(['[', '(']).next().unwrap_or_default().trim();
+    let bare = if bare.is_empty() { name } else { bare };
+    let quotes = if bare.contains([',', '=']) { "\"" } else { "" };
+    format!("--columns \"{}={quotes}{}{quotes} [{unit}]\"", field.name(), quoted(bare)).replace("\"\"", "'\"")
+}
+
+/// One motion: the surest, else the length (most rigs measure it), and beside it a contraction that may have been computed from it.
+fn settle_motion(chosen: &mut Vec<Choice>) {
+    let motions = chosen.iter().filter(|choice| choice.guess.field.is_motion());
+    let Some(best) = motions.map(|choice| choice.guess.strength).max() else { return };
+    chosen.retain(|choice| !choice.guess.field.is_motion() || choice.guess.strength == best);
+    let has = |field| chosen.iter().any(|choice| choice.guess.field == field);
+    let (has_length, has_contraction) = (has(Field::Length), has(Field::Contraction));
+    chosen.retain(|choice| choice.guess.field != Field::Displacement || !(has_length || has_contraction));
+}
+
+fn missing(header: &Header, name: &'static str) -> MeasurementError {
+    let field = match name {
+        "pressure" => Field::Pressure,
+        "force" => Field::Force,
+        _ => Field::Length,
+    };
+    // Its name may be there, with a unit of something else.
+    let has_name = |name: &&String| {
+        let plain = name.split('[').next().unwrap_or_default().trim().to_lowercase();
+        plain == field.name() || (field == Field::Length && plain == Field::Contraction.name())
+    };
+    if let Some(name) = header.names.iter().find(has_name).filter(|name| name.contains('[')) {
+        let is_contraction = field == Field::Length && !name.to_lowercase().starts_with(Field::Length.name());
+        let field = if is_contraction { Field::Contraction } else { field };
+        let inside = name.split_once('[').map_or("", |(_, rest)| rest.trim_end_matches([']', ' ']));
+        if let Some(problem) = problem(field, inside) {
+            return unit_error(header, field, name, problem);
+        }
+    }
+    MeasurementError::MissingColumn {
+        file: header.file.to_owned(),
+        line: header.line,
+        name,
+        example: field.example(),
+        field: field.name(),
+        found: listed(header),
+    }
+}
+
+/// The heading of a column that is read, with its scale.
+fn heading(header: &Header, choice: &Choice) -> Result<Heading, MeasurementError> {
+    let (field, name) = (choice.guess.field, &header.names[choice.place]);
+    let column = || quoted(name);
+    let scale = match &choice.guess.unit {
+        Some(unit) if unit.is_absolute => {
+            return Err(MeasurementError::Absolute {
+                file: header.file.to_owned(),
+                line: header.line,
+                column: column(),
+            });
+        }
+        Some(unit) => unit.scale,
+        // A clock has no unit, and one day's times none that is written.
+        None => match assumed(field) {
+            Some((scale, _)) => scale,
+            None => return Err(no_unit(header, field, name)),
+        },
+    };
+    let is_reversed = choice.entry.as_ref().is_some_and(|entry| entry.is_reversed);
+    Ok(Heading {
+        field,
+        scale: if is_reversed { scale.reversed() } else { scale },
+        text: column(),
+        is_lengthening: choice.guess.is_lengthening,
+        is_settled: choice.entry.is_some(),
+    })
+}
+
+fn no_unit(header: &Header, field: Field, name: &str) -> MeasurementError {
+    // What stands in brackets and is no unit, or nothing.
+    let inside = name.split_once('[').map_or("", |(_, rest)| rest.trim_end_matches([']', ' ']));
+    match problem(field, inside) {
+        Some(problem) => unit_error(header, field, name, problem),
+        None => missing(header, field.name()),
+    }
+}
+
+fn unit_error(header: &Header, field: Field, column: &str, problem: UnitError) -> MeasurementError {
+    MeasurementError::Unit {
+        file: header.file.to_owned(),
+        line: header.line,
+        column: quoted(column),
+        problem: Box::new(problem),
+        example: field.example(),
+    }
+}
+
+/// What every column was taken for.
+fn uses(header: &Header, chosen: &[Choice]) -> Vec<ColumnUse> {
+    let of = |place: usize| {
+        let choice = chosen.iter().find(|choice| choice.place == place);
+        let unit = choice.map(|choice| match (&choice.guess.unit, assumed(choice.guess.field)) {
+            (Some(unit), _) => unit.name.clone(),
+            (None, Some((_, name))) => name.to_owned(),
+            (None, None) => String::new(),
+        });
+        let is_reversed = choice.and_then(|c| c.entry.as_ref()).is_some_and(|entry| entry.is_reversed);
+        let is_guessed = choice.is_none_or(|c| c.entry.is_none() && c.guess.strength != Strength::Exact);
+        ColumnUse {
+            file: header.file.to_owned(),
+            column: quoted(&header.names[place]),
+            quantity: choice.map(|choice| choice.guess.field.name().to_owned()),
+            unit: unit.filter(|unit| !unit.is_empty()),
+            first: header
+                .first
+                .get(place)
+                .map_or_else(Vec::new, |texts| texts.iter().map(|t| quoted(t)).collect()),
+            guessed: is_guessed,
+            says: match choice {
+                None => Some("ignored".to_owned()),
+                Some(_) if is_reversed => Some("with the other sign".to_owned()),
+                Some(c)
+                    if c.guess.unit.is_none()
+                        && assumed(c.guess.field).is_some_and(|(_, n)| !n.is_empty())
+                        && c.guess.field != Field::Contraction =>
+                {
+                    Some("no unit is written".to_owned())
+                }
+                Some(_) => None,
+            },
+        }
+    };
+    let is_named = |place: &usize| !header.names[*place].trim().is_empty();
+    (0..header.names.len().min(MOST_COLUMNS)).filter(is_named).map(of).collect()
+}

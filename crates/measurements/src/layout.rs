@@ -1,0 +1,335 @@
+//! Where the table of a text begins: metadata before it, its header, units beneath, the separator, the decimal sign.
+
+use crate::assignment::{Header, MOST_COLUMNS};
+use crate::cell::{Decimal, is_in_thousands};
+use crate::clock::instant;
+use crate::column_map::{ColumnMap, IGNORE};
+use crate::error::MeasurementError;
+use crate::heading::Field;
+use crate::line::{SEPARATORS, Separator, checked_length, is_comment, unpad, without_line_end};
+use crate::names::{Strength, guesses};
+use crate::unit::unit;
+use std::borrow::Cow;
+
+/// Lines among which the header is looked for.
+const LOOKED_AT: usize = 500;
+/// Longest line that is looked at for a header, in bytes, unless it is the first.
+const LONGEST: usize = 50_000;
+/// Lines between a header and its first row: units, rules, blank lines.
+const BETWEEN: usize = 4;
+/// Rows whose values are shown.
+const SHOWN: usize = 3;
+/// Rows that show the decimal sign.
+const TRIED: usize = 500;
+/// The end of the metadata of a recorder's file, by which it is known for certain.
+const END_OF_METADATA: &str = "***End_of_Header***";
+
+/// How a text is laid out.
+pub(crate) struct Layout {
+    pub(crate) separator: Separator,
+    pub(crate) decimal: Decimal,
+    /// Line of the header, counted from 1; 0 if there is none and the columns go by their numbers.
+    pub(crate) line: usize,
+    pub(crate) names: Vec<String>,
+    pub(crate) units: Option<Vec<String>>,
+    /// The first values of each column.
+    pub(crate) first: Vec<Vec<String>>,
+    /// Index of the first line that may be a row.
+    pub(crate) rows_from: usize,
+    pub(crate) notes: Vec<String>,
+}
+
+/// A header that may be one.
+struct Candidate {
+    /// Index of its line.
+    at: usize,
+    separator: Separator,
+    names: Vec<String>,
+    units: Option<Vec<String>>,
+    rows_from: usize,
+    /// How many of pressure, motion and force it names, or of the columns that the user names.
+    score: usize,
+}
+
+/// Finds the table of a text.
+pub(crate) fn find(
+    file: &str,
+    text: &str,
+    (line_end, separator): (char, Option<Separator>),
+    map: &ColumnMap,
+) -> Result<Layout, MeasurementError> {
+    let lines: Vec<&str> = text.split(line_end).take(LOOKED_AT).map(without_line_end).collect();
+    let Some(start) = lines.iter().position(|line| is_content(line.trim())) else {
+        // A header may stand in a comment, but its rows don't.
+        return Err(MeasurementError::Empty { file: file.to_owned() });
+    };
+    checked_length(file, start + 1, lines[start])?;
+    let plain = plain(lines[start], separator).map(|(separator, names)| {
+        let score = score(&names, None, map);
+        Candidate { at: start, separator, names, units: None, rows_from: start + 1, score }
+    });
+    let chosen = match plain {
+        Some(plain) if map.entries().is_empty() && is_exact(&plain.names) => plain,
+        plain => best(&lines, start, separator, map).or(plain).ok_or_else(|| MeasurementError::OneField {
+            file: file.to_owned(),
+            line: start + 1,
+            text: crate::quote::quoted(lines[start]),
+            known: crate::heading::known(),
+        })?,
+    };
+    let chosen = without_header(&lines, start, map, chosen);
+    let mut notes = Vec::new();
+    let before = lines[..chosen.at.min(lines.len())].iter().filter(|line| is_content(line.trim())).count();
+    if before > 0 && chosen.rows_from > chosen.at {
+        notes.push(format!(
+            "{before} lines before the header on line {} are no part of the table",
+            chosen.at + 1
+        ));
+    }
+    let is_headless = chosen.rows_from == chosen.at;
+    let rows = || text.split(line_end).skip(chosen.rows_from).map(without_line_end);
+    let sign = if chosen.separator == Separator::Byte(b',') { '"' } else { ',' };
+    let decimal = if text.contains(sign) { decimal(rows(), chosen.separator) } else { Decimal::Point };
+    if decimal != Decimal::Point {
+        notes.push("numbers have decimal commas".to_owned());
+    }
+    Ok(Layout {
+        first: first(rows(), chosen.separator, chosen.names.len()),
+        decimal,
+        separator: chosen.separator,
+        line: if is_headless { 0 } else { chosen.at + 1 },
+        names: chosen.names,
+        units: chosen.units,
+        rows_from: chosen.rows_from,
+        notes,
+    })
+}
+
+/// Whether a line is more than a comment, blanks, separators, or a spreadsheet's hint at its separator.
+fn is_content(line: &str) -> bool {
+    let is_hint = line.len() == 5 && line.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("sep="));
+    let is_empty = line.bytes().all(|byte| SEPARATORS.contains(&byte));
+    !(is_empty || is_comment(line) || is_hint)
+}
+
+type Fields = (Separator, Vec<String>);
+
+/// The fields of a line with the separator that it has most of; one field if it has none.
+fn plain(line: &str, separator: Option<Separator>) -> Option<Fields> {
+    let separator = separator.or_else(|| Separator::of(line)).unwrap_or(Separator::Byte(b','));
+    Some((separator, fields(line, separator)?))
+}
+
+fn fields(line: &str, separator: Separator) -> Option<Vec<String>> {
+    let mut fields: Vec<Cow<'_, str>> = Vec::new();
+    separator.split(line.trim_matches([' ', '\r', '\u{feff}']), &mut fields)?;
+    unpad(&mut fields, 1);
+    Some(fields.into_iter().map(Cow::into_owned).collect())
+}
+
+/// Whether pressure, force and a motion are named as they should be.
+fn is_exact(names: &[String]) -> bool {
+    let exact: Vec<Field> = names
+        .iter()
+        .take(MOST_COLUMNS)
+        .filter_map(|name| guesses(name, None).into_iter().find(|guess| guess.strength == Strength::Exact))
+        .map(|guess| guess.field)
+        .collect();
+    exact.contains(&Field::Pressure)
+        && exact.contains(&Field::Force)
+        && exact.iter().any(|field| field.is_motion())
+}
+
+/// How many of pressure, motion and force, or of the columns that the user names, a header has.
+fn score(names: &[String], units: Option<&[String]>, map: &ColumnMap) -> usize {
+    let beneath = |place: usize| units.and_then(|units| units.get(place)).map(String::as_str);
+    let all: Vec<Field> = names
+        .iter()
+        .enumerate()
+        .take(MOST_COLUMNS)
+        .flat_map(|(place, name)| guesses(name, beneath(place)))
+        .map(|guess| guess.field)
+        .collect();
+    let stated: Vec<&str> = map.entries().iter().map(|entry| entry.quantity.as_str()).collect();
+    let kinds: [&dyn Fn(Field) -> bool; 3] =
+        [&|field| field == Field::Pressure, &|field| field == Field::Force, &Field::is_motion];
+    let guessed = kinds.iter().filter(|is_it| {
+        all.iter().any(|field| is_it(*field))
+            && !Field::ALL.iter().any(|f| is_it(*f) && stated.contains(&f.name()))
+    });
+    let header = Header { file: "", line: 0, names, units, first: &[] };
+    let named = map
+        .entries()
+        .iter()
+        .filter(|entry| entry.quantity != IGNORE && crate::assignment::has_named(&header, &entry.column));
+    // A column that the user names says more than a guess.
+    guessed.count() + 2 * named.count()
+}
+
+/// The header with most of what is looked for, above a row of numbers; the first of equals.
+fn best(lines: &[&str], start: usize, separator: Option<Separator>, map: &ColumnMap) -> Option<Candidate> {
+    let after =
+        lines.iter().rposition(|line| line.trim_start().starts_with(END_OF_METADATA)).map_or(0, |at| at + 1);
+    let mut best: Option<Candidate> = None;
+    for at in after..lines.len() {
+        let line = lines[at].trim();
+        // A comment may hold the header where the row beneath it is the first content.
+        let is_header_in_comment = at < start && !is_content(line) && !line.is_empty();
+        if line.is_empty() || line.len() > LONGEST || !(is_content(line) || is_header_in_comment) {
+            continue;
+        }
+        let line = if is_header_in_comment { line.trim_start_matches(['#', '%', ' ']) } else { lines[at] };
+        let line = line.trim_start_matches('%');
+        for found in candidates(lines, at, line, separator, map) {
+            if best.as_ref().is_none_or(|best| found.score > best.score) {
+                best = Some(found);
+            }
+        }
+    }
+    best
+}
+
+/// The ways in which a line can be the header of the rows beneath it.
+fn candidates(
+    lines: &[&str],
+    at: usize,
+    line: &str,
+    known: Option<Separator>,
+    map: &ColumnMap,
+) -> Vec<Candidate> {
+    let separators = SEPARATORS.map(Separator::Byte).into_iter().chain([Separator::Blanks]);
+    let separators = separators.filter(|separator| known.is_none_or(|known| known == *separator));
+    let of = |separator: Separator| {
+        let mut names = match separator {
+            // Names may hold single blanks.
+            Separator::Blanks if line.trim().contains("  ") => line
+                .trim()
+                .split("  ")
+                .map(|name| name.trim().to_owned())
+                .filter(|name| !name.is_empty())
+                .collect(),
+            _ => fields(line, separator)?,
+        };
+        let is_text = |name: &String| !name.is_empty() && !is_number(name);
+        if names.len() < 2 || names.iter().filter(|name| is_text(name)).count() < 2 {
+            return None;
+        }
+        let (units, row) = beneath(lines, at, separator)?;
+        let width = fields(lines[row], separator)?.len();
+        if matches!(separator, Separator::Blanks) && width != names.len() {
+            names = fields(line, separator)?;
+            if width != names.len() {
+                return None;
+            }
+        }
+        let score = score(&names, units.as_deref(), map);
+        // Recorders name a last column of comments that most rows don't have.
+        (2 * width >= names.len()).then_some(Candidate { at, separator, units, rows_from: row, score, names })
+    };
+    separators.filter_map(of).collect()
+}
+
+/// The row of units beneath a header, if there is one, and the index of the first row.
+fn beneath(lines: &[&str], at: usize, separator: Separator) -> Option<(Option<Vec<String>>, usize)> {
+    let mut units = None;
+    let below = lines.iter().enumerate().skip(at + 1).filter(|(_, line)| is_content(line.trim()));
+    for (row, line) in below.take(BETWEEN) {
+        let found = fields(line, separator)?;
+        if is_row(&found) {
+            return Some((units, row));
+        }
+        let is_rule = line.bytes().all(|byte| b"-=_+| \t,;".contains(&byte));
+        if units.is_none() && are_units(&found) {
+            units = Some(found);
+        } else if !is_rule {
+            return None;
+        }
+    }
+    None
+}
+
+/// Whether fields are a row: two numbers at least, and as many as texts.
+fn is_row(fields: &[String]) -> bool {
+    let filled = fields.iter().filter(|field| !field.is_empty());
+    let (numbers, texts): (Vec<&String>, Vec<&String>) = filled.partition(|field| is_number(field));
+    numbers.len() >= 2 && numbers.len() >= texts.len()
+}
+
+fn is_number(field: &str) -> bool {
+    field.parse::<f64>().is_ok()
+        || (field.contains(',') && field.replace('.', "").replacen(',', ".", 1).parse::<f64>().is_ok())
+        || instant(field).is_some()
+        || crate::cell::with_unit(field).is_some_and(|(_, rest)| rest.len() < 8)
+}
+
+/// Whether fields are units: most of those that aren't empty, and two at least.
+fn are_units(fields: &[String]) -> bool {
+    let bare = |field: &String| field.trim_matches(['[', ']', '(', ')', ' ']).to_owned();
+    let filled: Vec<String> =
+        fields.iter().map(bare).filter(|field| !field.is_empty() && field != "-").collect();
+    let known =
+        filled.iter().filter(|text| Field::ALL.iter().any(|field| unit(*field, text).is_some())).count();
+    known >= 2 && 2 * known >= filled.len()
+}
+
+/// Columns by their numbers, where the user names them so and the first line is a row already.
+fn without_header(lines: &[&str], start: usize, map: &ColumnMap, chosen: Candidate) -> Candidate {
+    let by_number =
+        |column: &str| column.split('[').next().is_some_and(|text| text.trim().parse::<usize>().is_ok());
+    let are_numbers = !map.entries().is_empty() && map.entries().iter().all(|entry| by_number(&entry.column));
+    if !are_numbers || chosen.score >= 3 {
+        return chosen;
+    }
+    let separators = [Separator::of(lines[start]), Some(Separator::Blanks)];
+    let row = separators.into_iter().flatten().find_map(|separator| {
+        let found = fields(lines[start], separator)?;
+        is_row(&found).then_some((separator, found))
+    });
+    let Some((separator, found)) = row else { return chosen };
+    let names = (1..=found.len()).map(|number| number.to_string()).collect();
+    Candidate { at: start, separator, names, units: None, rows_from: start, score: 0 }
+}
+
+/// The first values of each column.
+fn first<'a>(rows: impl Iterator<Item = &'a str>, separator: Separator, width: usize) -> Vec<Vec<String>> {
+    let mut found = vec![Vec::new(); width];
+    let mut fields = Vec::new();
+    for line in rows.filter(|line| !separator.is_blank(line) && line.len() < 100_000).take(SHOWN) {
+        if separator.split(line, &mut fields).is_some() {
+            found.iter_mut().zip(&fields).for_each(|(column, field)| column.push(field.to_string()));
+        }
+    }
+    found
+}
+
+/// What stands before the decimals, from rows that have a comma within a field.
+fn decimal<'a>(rows: impl Iterator<Item = &'a str>, separator: Separator) -> Decimal {
+    let has_comma = |line: &&str| {
+        let bytes = line.as_bytes();
+        bytes.contains(&b',')
+            && (separator != Separator::Byte(b',') || bytes.contains(&b'"'))
+            && !separator.is_blank(line)
+    };
+    let (mut commas, mut points, mut fields) = (0, 0, Vec::new());
+    for line in rows.filter(has_comma).take(TRIED) {
+        if separator.split(line, &mut fields).is_none() {
+            continue;
+        }
+        for field in &fields {
+            match (field.contains(','), field.contains('.')) {
+                (true, false) if field.replacen(',', ".", 1).parse::<f64>().is_ok() => commas += 1,
+                (false, true) if field.parse::<f64>().is_ok() && !is_in_thousands(field) => points += 1,
+                // 1,234.5
+                (true, true) if field.rfind('.') > field.rfind(',') => points += 1,
+                _ => {}
+            }
+        }
+    }
+    match (commas, points) {
+        (0, _) => Decimal::Point,
+        (_, 0) => Decimal::Comma,
+        // In quotes between commas, the odd one is more likely one of thousands.
+        _ if separator == Separator::Byte(b',') => Decimal::Point,
+        _ => Decimal::Either,
+    }
+}

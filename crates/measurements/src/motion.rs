@@ -1,0 +1,141 @@
+//! One motion of the muscle: a displacement becomes a length, and of length and contraction the measured one is kept.
+
+use crate::error::MeasurementError;
+use crate::heading::Field;
+use crate::reading::{ReadOptions, Reading};
+use crate::slot::Slot;
+use crate::table::place_of;
+
+/// A displacement whose readings all lie between these shares of the muscle's length is the length itself.
+const LENGTHS: [f64; 2] = [0.4, 1.6];
+/// How far a contraction may be from the one that follows from the length.
+const SAME: f64 = 5e-3;
+/// A force that changes by a smaller share of its mean was held: a weight.
+const HELD: f64 = 0.1;
+
+/// Leaves one motion among the columns; `is_good` are the rows that count.
+pub(crate) fn settle(
+    file: &str,
+    slots: &mut Vec<Slot>,
+    is_good: &[bool],
+    options: &ReadOptions,
+    reading: &mut Reading,
+) -> Result<(), MeasurementError> {
+    if let Some(place) = place_of(slots, Field::Displacement) {
+        return displacement(file, slots, place, is_good, options, reading);
+    }
+    let (Some(length), Some(contraction)) =
+        (place_of(slots, Field::Length), place_of(slots, Field::Contraction))
+    else {
+        return Ok(());
+    };
+    let pairs: Vec<[f64; 2]> =
+        rows(is_good).map(|row| [slots[length].numbers()[row], slots[contraction].numbers()[row]]).collect();
+    if !are_one(&pairs) {
+        return Err(MeasurementError::BothMotions { file: file.to_owned() });
+    }
+    let text = slots[contraction].heading.text.clone();
+    note(reading, &text, None, "ignored: it follows from the length".to_owned());
+    slots.remove(contraction);
+    Ok(())
+}
+
+fn rows(is_good: &[bool]) -> impl Iterator<Item = usize> + '_ {
+    (0..is_good.len()).filter(|row| is_good[*row])
+}
+
+/// Whether contraction = 1 - length/l0, with the l0 that fits best: least squares of length = l0 (1 - contraction).
+fn are_one(pairs: &[[f64; 2]]) -> bool {
+    let (mut both, mut square) = (0.0, 0.0);
+    for [length, contraction] in pairs {
+        both += length * (1.0 - contraction);
+        square += (1.0 - contraction).powi(2);
+    }
+    let l0 = both / square;
+    l0.is_finite() && l0 > 0.0 && pairs.iter().all(|[length, c]| (1.0 - length / l0 - c).abs() <= SAME)
+}
+
+/// A displacement is measured from the unpressurised length; which way it counts is seen from the force.
+fn displacement(
+    file: &str,
+    slots: &mut [Slot],
+    place: usize,
+    is_good: &[bool],
+    options: &ReadOptions,
+    reading: &mut Reading,
+) -> Result<(), MeasurementError> {
+    let heading = slots[place].heading.clone();
+    let Some(l0) = options.l0_m.filter(|l0| l0.is_finite() && *l0 > 0.0) else {
+        return Err(MeasurementError::NoRestLength { file: file.to_owned(), column: heading.text });
+    };
+    let values = slots[place].numbers();
+    let is_length = !heading.is_settled
+        && rows(is_good).next().is_some()
+        && rows(is_good).all(|row| (LENGTHS[0] * l0..=LENGTHS[1] * l0).contains(&values[row]));
+    if is_length {
+        slots[place].become_column(Field::Length, |value| value);
+        let says = "taken for the length itself: its readings are about as long as the muscle".to_owned();
+        note(reading, &heading.text, Some("length"), says);
+        return Ok(());
+    }
+    let sign = if heading.is_settled {
+        Sign { shortens: true, why: "as stated" }
+    } else if heading.is_lengthening {
+        Sign { shortens: false, why: "as its name says" }
+    } else {
+        sign(slots, place, is_good)
+    };
+    let factor = if sign.shortens { -1.0 } else { 1.0 };
+    slots[place].become_column(Field::Length, |value| l0 + factor * value);
+    let says = format!(
+        "{} from {} mm ({})",
+        if sign.shortens { "shortening" } else { "lengthening" },
+        bulge_muscles::units::rounded(1e3 * l0, 6),
+        sign.why
+    );
+    note(reading, &heading.text, Some("displacement"), says);
+    Ok(())
+}
+
+/// Which way a displacement counts, and why.
+struct Sign {
+    shortens: bool,
+    why: &'static str,
+}
+
+/// The force falls as a muscle shortens at constant pressure: force = a + b pressure + c displacement, and the sign of c. Under a weight a muscle
+/// shortens as the pressure rises.
+fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
+    let numbers = |field| place_of(slots, field).map_or(&[][..], |place| slots[place].numbers());
+    let (pressure, force, way) = (numbers(Field::Pressure), numbers(Field::Force), slots[place].numbers());
+    let count = rows(is_good).count().max(1) as f64;
+    let mean = |values: &[f64]| rows(is_good).map(|row| values[row]).sum::<f64>() / count;
+    let means = [pressure, force, way].map(mean);
+    let covariance = |a: (&[f64], f64), b: (&[f64], f64)| {
+        rows(is_good).map(|row| (a.0[row] - a.1) * (b.0[row] - b.1)).sum::<f64>() / count
+    };
+    let (p, f, d) = ((pressure, means[0]), (force, means[1]), (way, means[2]));
+    let (pp, dd, pd) = (covariance(p, p), covariance(d, d), covariance(p, d));
+    if covariance(f, f).sqrt() < HELD * means[1].abs() && pd != 0.0 {
+        return Sign { shortens: pd > 0.0, why: "at a held force it goes with the pressure" };
+    }
+    let (pf, df) = (covariance(p, f), covariance(d, f));
+    // c = (df pp - pf pd) / (pp dd - pd^2); at one pressure pp and pd vanish.
+    let slope = if pp > 0.0 && pp * dd > 1.0001 * pd * pd { df * pp - pf * pd } else { df };
+    match slope {
+        slope if slope < 0.0 => Sign { shortens: true, why: "the force falls as it grows" },
+        slope if slope > 0.0 => Sign { shortens: false, why: "the force rises as it grows" },
+        _ => Sign { shortens: true, why: "nothing shows which way it counts" },
+    }
+}
+
+/// Says of a column what became of it.
+fn note(reading: &mut Reading, column: &str, quantity: Option<&str>, says: String) {
+    if let Some(used) =
+        reading.columns.iter_mut().find(|used| used.column == column && used.quantity.is_some())
+    {
+        used.quantity = quantity.map(str::to_owned);
+        used.guessed |= quantity.is_some();
+        used.says = Some(says);
+    }
+}

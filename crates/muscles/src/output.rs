@@ -1,0 +1,234 @@
+//! Files that appear whole or not at all, and targets that are no regular file.
+
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Beginning of the names of files that aren't finished: what a killed process leaves is told by it.
+pub const UNFINISHED: &str = ".unfinished-";
+/// More links in a row are a circle, as for the system.
+const MOST_LINKS: usize = 40;
+/// Folders in which a name stands for something that a process has open.
+const OPEN_FILES: [&str; 2] = ["/proc", "/dev/fd"];
+
+/// Where bytes go that are written to a name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Target {
+    /// A regular file, perhaps a new one: it is replaced as a whole.
+    File(PathBuf),
+    /// A FIFO, a device, or a file that a process has open: bytes are written into it.
+    Stream(PathBuf),
+}
+
+/// Writes a file so that it is there whole or not at all: under a temporary name beside it, forced to the disk, then renamed.
+///
+/// A link is followed: what it points at is replaced, and the link stays. A FIFO, a device or another target that is no regular file is written into,
+/// never replaced. A file that is replaced keeps its permissions.
+///
+/// # Errors
+/// What the system says; nothing is left of the file then, and an older one stands as it was.
+pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    match target(path)? {
+        Target::File(path) => replace(&path, bytes),
+        Target::Stream(path) => {
+            // Appending: another program's output may be in the same file, as behind /dev/stdout.
+            let mut stream = File::options().append(true).open(path)?;
+            stream.write_all(bytes)?;
+            stream.flush()
+        }
+    }
+}
+
+/// Forces a folder's list of names to the disk, where the system knows how.
+///
+/// # Errors
+/// What the system says.
+pub fn sync(folder: &Path) -> io::Result<()> {
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}
+
+/// Follows links to what is really written.
+fn target(path: &Path) -> io::Result<Target> {
+    // What is at the end of all links: the system alone can say it of what a process has open.
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => {
+            return Err(io::Error::new(
+                io::ErrorKind::IsADirectory,
+                "it is a folder; give the name of a file",
+            ));
+        }
+        Ok(found) if !found.is_file() => return Ok(Target::Stream(path.to_owned())),
+        _ => {}
+    }
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        if is_open_file(&path) {
+            return Ok(Target::Stream(path));
+        }
+        // The first name that is no link, or nothing yet, is the file.
+        let Ok(next) = fs::read_link(&path) else { return Ok(Target::File(path)) };
+        path = folder_of(&path).join(next);
+    }
+    Err(io::Error::other("its links go in a circle; give the name of a file"))
+}
+
+/// Whether a name is one of a file that some process has open, such as /proc/self/fd/1.
+fn is_open_file(path: &Path) -> bool {
+    OPEN_FILES.iter().any(|folder| path.starts_with(folder))
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let folder = folder_of(path);
+    let (temporary, file) = unfinished(folder, path.file_name().unwrap_or_default())?;
+    let published = fill(file, path, bytes).and_then(|()| fs::rename(&temporary, path));
+    if let Err(error) = published {
+        // The first error is the one to report.
+        let _ = fs::remove_file(&temporary);
+        return Err(error);
+    }
+    sync(folder)
+}
+
+/// A new file with a name of its own.
+fn unfinished(folder: &Path, name: &OsStr) -> io::Result<(PathBuf, File)> {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    // A name of the full length leaves no room for more.
+    let name: String = name.to_string_lossy().chars().take(40).collect();
+    loop {
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let path = folder.join(format!("{UNFINISHED}{}-{count}-{name}", std::process::id()));
+        match File::create_new(&path) {
+            // Left by a process that was killed and had the same number.
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            found => return found.map(|file| (path, file)),
+        }
+    }
+}
+
+fn fill(mut file: File, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if let Ok(older) = fs::metadata(path) {
+        // Where the file system has none, there is nothing to keep.
+        let _ = file.set_permissions(older.permissions());
+    }
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn new(name: &str) -> Self {
+            let path = std::env::temp_dir().join(format!("bulge-output-{name}-{}", std::process::id()));
+            fs::create_dir_all(&path).unwrap();
+            Self(path)
+        }
+
+        fn names(&self) -> Vec<String> {
+            let entries = fs::read_dir(&self.0).unwrap();
+            let mut names: Vec<String> =
+                entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+            names.sort();
+            names
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn replaces_an_older_file_as_a_whole() {
+        let folder = Folder::new("whole");
+        let path = folder.0.join("a");
+        write(&path, b"a longer text").unwrap();
+        write(&path, b"short").unwrap();
+        assert_eq!((fs::read(&path).unwrap(), folder.names()), (b"short".to_vec(), vec!["a".to_owned()]));
+    }
+
+    #[test]
+    fn what_fails_leaves_nothing_behind() {
+        let folder = Folder::new("fails");
+        let occupied = folder.0.join("occupied");
+        fs::create_dir_all(&occupied).unwrap();
+        assert_eq!(write(&occupied, b"x").unwrap_err().kind(), io::ErrorKind::IsADirectory);
+        // A rename that fails at the last moment.
+        assert!(replace(&occupied, b"x").is_err());
+        assert!(write(&folder.0.join("absent").join("a"), b"x").is_err());
+        assert_eq!(folder.names(), ["occupied"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_stay_and_what_they_point_at_is_replaced() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = Folder::new("links");
+        let inner = folder.0.join("inner");
+        fs::create_dir_all(&inner).unwrap();
+        fs::write(inner.join("real"), "old").unwrap();
+        fs::set_permissions(inner.join("real"), fs::Permissions::from_mode(0o600)).unwrap();
+        symlink("inner/real", folder.0.join("link")).unwrap();
+        symlink("link", folder.0.join("link-of-link")).unwrap();
+        symlink("inner/new", folder.0.join("dangling")).unwrap();
+        symlink("circle", folder.0.join("circle")).unwrap();
+        write(&folder.0.join("link-of-link"), b"new").unwrap();
+        write(&folder.0.join("dangling"), b"first").unwrap();
+        assert!(write(&folder.0.join("circle"), b"x").is_err());
+        for link in ["link", "link-of-link", "dangling", "circle"] {
+            assert!(folder.0.join(link).is_symlink(), "{link}");
+        }
+        assert_eq!(fs::read(inner.join("real")).unwrap(), b"new");
+        assert_eq!(fs::metadata(inner.join("real")).unwrap().permissions().mode() & 0o777, 0o600);
+        assert_eq!(fs::read(inner.join("new")).unwrap(), b"first");
+        assert_eq!(fs::read_dir(&inner).unwrap().count(), 2, "no temporary file");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_fifo_is_written_into() {
+        use std::os::unix::fs::FileTypeExt;
+        let folder = Folder::new("fifo");
+        let fifo = folder.0.join("fifo");
+        if !std::process::Command::new("mkfifo").arg(&fifo).status().is_ok_and(|status| status.success()) {
+            println!("not tried: this system makes no FIFO");
+            return;
+        }
+        let link = folder.0.join("link");
+        std::os::unix::fs::symlink("fifo", &link).unwrap();
+        for name in [&fifo, &link] {
+            let reader = std::thread::spawn({
+                let fifo = fifo.clone();
+                move || fs::read(fifo).unwrap()
+            });
+            write(name, &[7; 100_000]).unwrap();
+            assert_eq!(reader.join().unwrap(), [7; 100_000]);
+        }
+        assert!(fs::symlink_metadata(&fifo).unwrap().file_type().is_fifo() && link.is_symlink());
+        assert_eq!(folder.names(), ["fifo", "link"]);
+    }
+
+    /// What a process has open is written into: a rename would leave the open file behind.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn open_files_are_written_into() {
+        use std::os::fd::AsRawFd;
+        let folder = Folder::new("open");
+        let path = folder.0.join("a");
+        let file = File::create(&path).unwrap();
+        let name = PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()));
+        assert_eq!(target(&name).unwrap(), Target::Stream(name.clone()));
+        write(&name, b"through").unwrap();
+        assert_eq!((fs::read(&path).unwrap(), folder.names()), (b"through".to_vec(), vec!["a".to_owned()]));
+    }
+}
