@@ -2,7 +2,7 @@
 
 use crate::FibreError;
 use crate::net::Net;
-use crate::shooting::{Effort, Ending, USUAL, Unknowns, newton, straight_contraction};
+use crate::shooting::{Effort, Ending, USUAL, Unknowns, is_limited, newton, straight_contraction};
 use crate::start::start;
 
 /// On the way to the asked equilibrium.
@@ -76,7 +76,12 @@ pub(crate) fn continuation(
         }
     };
     // d(unknowns)/d ln(part) of a shallow bulge, where B, k and 1/T grow with the root of the contraction.
-    let mut rate = [if net.lobes.is_some() && at.side > 0.0 { -1.0 } else { 0.5 }, 0.5];
+    let first = match (is_limited(net, at.side), net.turn == 0.0) {
+        (true, true) => -1.0,
+        (true, false) => -0.5,
+        (false, _) => 0.5,
+    };
+    let mut rate = [first, 0.5];
     let mut grow: f64 = 2.0;
     while part < 1.0 {
         let next = (part * grow).min(1.0);

@@ -241,15 +241,83 @@ impl<D: Real> Net<D> {
         (force - self.wall(sigma, r).w_1) / sigma
     }
 
-    /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis at radius `r` with A'(r) = `push`:
-    /// A' - h = k N.
+    /// A'(r) less the hoop term of the cloth: what fibres and bladder carry.
+    pub(crate) fn push(&self, r: D) -> D {
+        match &self.cloth {
+            Some(cloth) => self.area_r(r) - cloth.scale() * (r - cloth.radius) * 2.0,
+            None => self.area_r(r),
+        }
+    }
+
+    /// The bulge B > 0 for which the [`Net::push`] at the radius of the fitting and B is B exp(y): it falls with y.
+    ///
+    /// Where lobes or a stiff cloth limit the radius, the push is the small difference of two numbers, and B exp(y) has it exactly.
+    pub(crate) fn bulge(&self, y: D) -> Option<D> {
+        let Some(lobes) = &self.lobes else { return self.bulge_of_polygon(y) };
+        let Some(cloth) = &self.cloth else { return lobes.bulge(self.end_radius + self.depth, -y) };
+        let free = lobes.bulge(self.end_radius + self.depth, -y)?;
+        let room = cloth.radius - self.end_radius;
+        if free.value() <= room.value() {
+            return Some(free);
+        }
+        // Between the cloth's radius and what the lobes alone would do: the gap rises steadily.
+        let rate = y.exp();
+        let gap = |bulge: D| {
+            let r = self.end_radius + bulge;
+            let acting = self.acting_at(r.value().max(cloth.radius.value() * (1.0 + 1e-15)));
+            let slope = rate - acting.section(r).area_rr + cloth.scale() * 2.0;
+            (bulge * rate - acting.push(r), slope)
+        };
+        let (mut low, mut high) = (room.value().max(0.0), free.value());
+        let mut at = 0.5 * (low + high);
+        for _ in 0..200 {
+            let (value, slope) = gap(D::from(at));
+            if value.value() > 0.0 { high = at } else { low = at }
+            let newton = at - value.value() / slope.value();
+            if (newton - at).abs() <= 1e-9 * at {
+                let (value, slope) = gap(D::from(newton));
+                return Some(-(value / slope.value()) + newton);
+            }
+            at = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        }
+        None
+    }
+
+    fn bulge_of_polygon(&self, y: D) -> Option<D> {
+        let rate = y.exp();
+        let area_rr = self.area_factor * (2.0 * PI);
+        let end = area_rr * (self.end_radius + self.depth);
+        let free = end / (rate - area_rr);
+        let Some(cloth) = &self.cloth else { return (free.value() > 0.0).then_some(free) };
+        let room = cloth.radius - self.end_radius;
+        if free.value() > 0.0 && free.value() <= room.value() {
+            return Some(free);
+        }
+        let stiff = cloth.scale() * 2.0;
+        let held = (end + stiff * room) / (rate - area_rr + stiff);
+        (held.value() > 0.0).then_some(held)
+    }
+
+    /// The largest bulge at which there is a push; infinite where nothing limits it.
+    pub(crate) fn most_bulge(&self) -> f64 {
+        let net = self.constant();
+        let lobes = net.lobes.map_or(f64::INFINITY, |lobes| lobes.limit() - net.depth - net.end_radius);
+        let held = net.bulge(-700.0).unwrap_or(f64::INFINITY);
+        lobes.min(held)
+    }
+
+    /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis at radius `r` with the [`Net::push`]
+    /// `push`: push - h = k N, with h of fibres and bladder.
     ///
     /// Linear in T for inextensible fibres; else a bracketed Newton's method on the values and one step more for the derivatives.
     /// `None` if there is none with a positive tension, or the fibres can't reach that radius.
     pub(crate) fn tension_at_equator(&self, r: D, push: D, curvature: D) -> Option<D> {
+        // The cloth's force acts, and its hoop term is in the push.
+        let bare = Net { cloth: None, ..*self };
+        let pull = self.cloth.map_or(D::from(0.0), |cloth| cloth.energy(r));
         let gap = |tension: D| {
-            let local = self.local(r, tension);
-            let gap = push - local.hoop - curvature * local.force;
+            let local = bare.local(r, tension);
+            let gap = push - local.hoop - curvature * (local.force + pull);
             (gap, local.hoop_t + curvature * local.force_t)
         };
         let (at_zero, slope) = gap(D::from(0.0));
@@ -382,7 +450,12 @@ impl<D: Real> Cloth<D> {
         self.stiffness * PI / self.radius
     }
 
-    /// sigma u(r) with u = pi K (r - r_u)^2/r_u.
+    /// u = pi K (r - r_u)^2/r_u.
+    fn energy(&self, r: D) -> D {
+        self.scale() * (r - self.radius).squared()
+    }
+
+    /// sigma u(r).
     fn add(&self, wall: &mut Wall<D>, sigma: D, r: D) {
         let excess = r - self.radius;
         let scale = self.scale();
@@ -481,7 +554,7 @@ pub(crate) mod tests {
     fn tension_at_equator_meets_the_curvature() {
         let net: Net<f64> = rich();
         for curvature in [-0.05, 1e-12, 0.3, 1.0] {
-            let tension = net.tension_at_equator(1.4, net.area_r(1.4), curvature).unwrap();
+            let tension = net.tension_at_equator(1.4, net.push(1.4), curvature).unwrap();
             let local = net.local(1.4, tension);
             assert!((net.area_r(1.4) - local.hoop - curvature * local.force).abs() < 1e-12 * local.force);
         }

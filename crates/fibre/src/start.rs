@@ -138,7 +138,7 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     };
     let end = net.acting_at(net.end_radius);
     let strain = end
-        .tension_at_equator(end.end_radius, end.area_r(end.end_radius), 0.0)
+        .tension_at_equator(end.end_radius, end.push(end.end_radius), 0.0)
         .map_or(0.0, |t| net.compliance * t);
     let end_distance = |bulge: f64| {
         let mid = net.end_radius + side * bulge;
