@@ -91,7 +91,7 @@ fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32)
     // Hardly any tension, and still the wall holds more than the pressure.
     let (r, gap, _) = residual(SLACK.ln());
     if r.is_finite() && gap < 0.0 {
-        return Err(FibreError::Slack { contraction });
+        return Err(FibreError::Slack { contraction, limit: None });
     }
     Err(FibreError::NotConverged { contraction, residual: last, iterations: 100 })
 }

@@ -176,11 +176,13 @@ pub enum FibreError {
         "there is nothing to shoot at in a muscle with ends = \"cylinder\": its meridian is straight; use the method `auto`, or ends = \"clamped\""
     )]
     NothingToShoot,
-    /// The rubber alone carries the pressure: no equilibrium with taut fibres.
-    #[error("at contraction {:.4} % the fibres are slack: the bladder alone carries more than the pressure; more pressure or less contraction makes them taut", 100.0 * contraction)]
+    /// The rubber carries more than the pressure: there is no equilibrium with taut fibres, and one with slack ones isn't computed.
+    #[error("at contraction {:.4} % the fibres are slack{}: the bladder alone carries more than the pressure there; more pressure or less contraction makes them taut", 100.0 * contraction, slack_from(limit))]
     Slack {
         /// Asked contraction.
         contraction: f64,
+        /// The contraction at which they become slack at this pressure, where it was asked for.
+        limit: Option<f64>,
     },
     /// Newton's method did not converge.
     #[error("the equilibrium at contraction {:.4} % did not converge: residual {residual:.2e} after {iterations} iterations; try a contraction nearer to the middle of the muscle's range", 100.0 * contraction)]
@@ -192,6 +194,10 @@ pub enum FibreError {
         /// Iterations spent.
         iterations: u32,
     },
+}
+
+fn slack_from(limit: &Option<f64>) -> String {
+    limit.map_or_else(String::new, |limit| format!(", as they are from {:.4} % on", 100.0 * limit))
 }
 
 impl FibreError {

@@ -23,7 +23,8 @@ pub use isobars::{Isobar, isobars};
 pub use linearised::{Linear, Linearised, Repeated, Start};
 pub use outcome::Approach;
 pub use problem::{
-    BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, PLEATED_SLENDERNESS, Problem, Variable, WIDEST_FITTING,
+    BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, PLEATED_SLENDERNESS, Problem, Variable,
+    WIDEST_FITTING,
 };
 pub use shape::{Convergence, MeridianPoint, Method, Response, Shape};
 pub use solve::{ADIABATIC, AMBIENT_PRESSURE, Given, Gradient};

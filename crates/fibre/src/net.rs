@@ -28,6 +28,11 @@ use std::f64::consts::PI;
 
 use crate::lobes::{Lobes, Section};
 
+/// Radii at which fibres may be found slack.
+const SAMPLES: u32 = 16;
+/// Part of H by which it must be too small for that.
+const SLACK: f64 = 1e-12;
+
 /// Rubber bladder that follows the net point by point: Mooney-Rivlin W = c10 (I1 - 3) + c01 (I2 - 3), incompressible, plane stress,
 /// stretches l1 = sigma/cos(alpha0) along the meridian and l2 = r/r0 around it.
 #[derive(Debug, Clone, Copy)]
@@ -272,7 +277,11 @@ impl<D: Real> Net<D> {
         let mut at = 0.5 * (low + high);
         for _ in 0..200 {
             let (value, slope) = gap(D::from(at));
-            if value.value() > 0.0 { high = at } else { low = at }
+            if value.value() > 0.0 {
+                high = at
+            } else {
+                low = at
+            }
             let newton = at - value.value() / slope.value();
             if (newton - at).abs() <= 1e-9 * at {
                 let (value, slope) = gap(D::from(newton));
@@ -310,7 +319,7 @@ impl<D: Real> Net<D> {
     /// `push`: push - h = k N, with h of fibres and bladder.
     ///
     /// Linear in T for inextensible fibres; else a bracketed Newton's method on the values and one step more for the derivatives.
-    /// `None` if there is none with a positive tension, or the fibres can't reach that radius.
+    /// `None` if there is none with a positive tension (with a bladder: with a positive meridional force), or the fibres can't reach that radius.
     pub(crate) fn tension_at_equator(&self, r: D, push: D, curvature: D) -> Option<D> {
         // The cloth's force acts, and its hoop term is in the push.
         let bare = Net { cloth: None, ..*self };
@@ -323,7 +332,16 @@ impl<D: Real> Net<D> {
         let (at_zero, slope) = gap(D::from(0.0));
         let linear = at_zero / slope;
         if self.compliance.value() == 0.0 {
-            return (linear.value() > 0.0 && linear.value().is_finite()).then_some(linear);
+            // Rubber may carry more than the pressure: what fibres that can be pushed would do there tells when they become slack.
+            let holds = if self.bladder.is_some() {
+                (bare.local(r, linear).force + pull).value() > 0.0
+            } else {
+                linear.value() > 0.0
+            };
+            return (holds && linear.value().is_finite()).then_some(linear);
+        }
+        if linear.value() <= 0.0 && self.bladder.is_some() {
+            return pushed(gap, linear);
         }
         // Stretching makes the true tension smaller than the linear estimate by up to a power of the stretch.
         let mut tension = linear.value().abs() / (linear.value().abs() * self.compliance.value() + 1.0);
@@ -350,6 +368,41 @@ impl<D: Real> Net<D> {
             }
         }
         None
+    }
+}
+
+/// The root of a `gap` with its slope at a negative tension, by Newton's method from the linear estimate.
+fn pushed<D: Real>(gap: impl Fn(D) -> (D, D), linear: D) -> Option<D> {
+    let mut tension = linear.value();
+    for _ in 0..30 {
+        let (residual, slope) = gap(D::from(tension));
+        let step = (residual / slope).value();
+        if step.abs() <= 1e-9 * tension.abs() {
+            return Some(residual / slope + tension);
+        }
+        tension += step;
+    }
+    None
+}
+
+impl Net<f64> {
+    /// Whether fibres are slack somewhere between mid-length and the fitting. With the tension T and f = sigma w_1 - w of the walls on fibres
+    /// of their own length, H = sigma N - w is the same all along, and T has the sign of H - f.
+    pub(crate) fn is_slack(&self, mid_radius: f64, mid_tension: f64) -> bool {
+        if self.bladder.is_none() {
+            return false;
+        }
+        let middle = self.acting_at(mid_radius);
+        let local = middle.local(mid_radius, mid_tension);
+        let stored = 0.5 * self.compliance * mid_tension.powi(2) + middle.wall(local.sigma, mid_radius).w;
+        let energy = local.sigma * local.force - stored;
+        (0..=SAMPLES).any(|i| {
+            let r = mid_radius + (self.end_radius - mid_radius) * f64::from(i) / f64::from(SAMPLES);
+            let sigma = (1.0 - (self.turn * r).powi(2)).sqrt();
+            let wall = self.acting_at(r).wall(sigma, r);
+            // Where fibres of their own length don't reach, sigma is none, and they are taut.
+            energy < sigma * wall.w_1 - wall.w - SLACK * energy.abs()
+        })
     }
 }
 
@@ -451,7 +504,7 @@ impl<D: Real> Cloth<D> {
     }
 
     /// u = pi K (r - r_u)^2/r_u.
-    fn energy(&self, r: D) -> D {
+    pub(crate) fn energy(&self, r: D) -> D {
         self.scale() * (r - self.radius).squared()
     }
 

@@ -173,7 +173,10 @@ impl Problem {
     fn elastic_group(&self) -> (f64, f64) {
         let net = &self.net;
         if net.turn != 0.0 {
-            return (net.area_factor * net.compliance * std::f64::consts::TAU / (net.turn * net.turn), BURSTING);
+            return (
+                net.area_factor * net.compliance * std::f64::consts::TAU / (net.turn * net.turn),
+                BURSTING,
+            );
         }
         let size = net.half_fibre * net.half_fibre;
         (net.area_factor * net.compliance * std::f64::consts::TAU * size, BALLOONING)
@@ -264,6 +267,9 @@ fn by_shooting<const N: usize>(
     (ending, way): (Ending, Way),
 ) -> Result<Outcome<N>, FibreError> {
     let (unknowns, effort) = shooting::solve(plain, contraction, from, ending)?;
+    if unknowns.is_slack(plain) {
+        return Err(FibreError::Slack { contraction, limit: None });
+    }
     let found = shooting::finish(net, contraction, unknowns, way)?;
     let run = &found.trajectory;
     let volume = Total {

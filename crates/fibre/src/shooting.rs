@@ -27,9 +27,9 @@ use crate::start::start;
 pub(crate) const TOLERANCE: f64 = 4e-12;
 /// Newton iterations after which the solve is given up.
 const MAX_ITERATIONS: u32 = 40;
-/// Evaluations of the right-hand side (or of the integrands) after which the search for an equilibrium that may not exist ends (some 20 ms). The longest braid takes
-/// under 10 000.
-const MOST_EVALUATIONS: u32 = 200_000;
+/// Evaluations of the right-hand side (or of the integrands) after which the search for an equilibrium that may not exist ends (some 10 ms). The longest braid takes
+/// under 5000.
+const MOST_EVALUATIONS: u32 = 100_000;
 /// Largest steps of ln|B| and ln|k|.
 const MAX_STEP: [f64; 2] = [0.8, 4.0];
 /// Residual below which Newton's method is trusted not to need backtracking (early residuals are integrated loosely).
@@ -65,7 +65,7 @@ pub(crate) const USUAL: Ending =
 pub(crate) const EXACT: Ending =
     Ending { step: 3e-5, tolerance: 2.5e-10, first: 2.5e-10, last_but_one: 2.5e-10, most: MOST_EVALUATIONS };
 /// The same in a fit, which asks thousands of times and may ask far from sense: nothing that is found takes more.
-pub(crate) const FITTED: Ending = Ending { most: 40_000, ..EXACT };
+pub(crate) const FITTED: Ending = Ending { most: 20_000, ..EXACT };
 /// Newton iterations from a start that was given, after which the search begins anew: a good one takes two or three.
 const MOST_FROM_NEAR: u32 = 8;
 /// Where the meridian is a quadrature, which has no tolerance and costs little: the step after which the next one is as small as rounding lets it be.
@@ -150,6 +150,12 @@ impl Unknowns {
         let hoop = if linear { at_cylinder.hoop_t * excess } else { local.hoop - at_cylinder.hoop };
         let curvature = -(hoop / local.force);
         (curvature.value() < 0.0).then_some(Middle { bulge, curvature, tension, straight })
+    }
+
+    /// Whether fibres are slack somewhere.
+    pub(crate) fn is_slack(&self, net: &Net<f64>) -> bool {
+        let slack = |middle: Middle<f64>| net.is_slack(net.end_radius + middle.bulge, middle.tension);
+        net.bladder.is_some() && self.middle(net, |value, _| value).is_some_and(slack)
     }
 
     fn seeded<const N: usize>(&self, net: &Net<Dual<N>>) -> Option<Middle<Dual<N>>> {
@@ -238,9 +244,16 @@ pub(crate) fn solve(
         start(net, contraction).and_then(|start| newton(net, contraction, start, cold, &mut effort).ok());
     let found = match direct {
         Some(found) => Ok(found),
-        None if net.cloth.is_some() || net.bladder.is_some() => stiffening(net, contraction, &mut effort)
-            .or_else(|_| continuation(net, contraction, &mut Effort::of_at_most(ending.most))),
-        None => continuation(net, contraction, &mut effort),
+        None => match continuation(net, contraction, &mut effort) {
+            Err(FibreError::NotConverged { .. }) if net.cloth.is_some() || net.bladder.is_some() => {
+                let mut more = Effort::of_at_most(ending.most);
+                let found = stiffening(net, contraction, &mut more);
+                effort.iterations += more.iterations;
+                effort.evaluations += more.evaluations;
+                found
+            }
+            other => other,
+        },
     };
     Ok((found?, effort))
 }

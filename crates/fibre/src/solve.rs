@@ -95,13 +95,25 @@ impl Problem {
     /// # Errors
     /// See [`FibreError`].
     pub fn follow(&self, contraction: f64, approach: Approach) -> Result<Response, FibreError> {
-        self.at(self.method(approach)?, contraction, None).map(|found| found.response)
+        let found = self.at(self.method(approach)?, contraction, None);
+        found.map(|found| found.response).map_err(|error| self.told(error, contraction, approach))
+    }
+
+    /// Where no equilibrium was found beyond the limit, as a long braid or a soft one would bulge in more than one place: that is what is told.
+    pub(crate) fn told(&self, error: FibreError, contraction: f64, approach: Approach) -> FibreError {
+        if !matches!(error, FibreError::NotConverged { .. }) {
+            return error;
+        }
+        match self.contraction_limit(approach) {
+            Ok(limit) if contraction > limit => FibreError::BeyondLimit { contraction, limit },
+            _ => error,
+        }
     }
 
     /// The contraction at which the force vanishes.
     ///
     /// # Errors
-    /// [`FibreError::NotConverged`].
+    /// [`FibreError::NotConverged`], or [`FibreError::Slack`] with its limit where the fibres become slack before.
     pub fn contraction_limit(&self, approach: Approach) -> Result<f64, FibreError> {
         let method = self.method(approach)?;
         let start = self.contraction_start();
@@ -155,14 +167,16 @@ impl Problem {
         let error = match self.at(method, contraction, None) {
             Ok(found) if self.pulls(&found.response) => return Ok(found),
             Ok(found) => FibreError::WouldPush { contraction, force_n: found.response.force_n },
-            Err(error @ FibreError::NotConverged { .. }) => error,
+            Err(error @ (FibreError::NotConverged { .. } | FibreError::Slack { .. })) => error,
             Err(error) => return Err(error),
         };
         // Say where the limit is, if that can be found.
-        if let Ok(limit) = self.contraction_limit(approach)
-            && contraction > limit
-        {
-            return Err(FibreError::BeyondLimit { contraction, limit });
+        match self.contraction_limit(approach) {
+            Ok(limit) if contraction > limit => return Err(FibreError::BeyondLimit { contraction, limit }),
+            Err(FibreError::Slack { limit: Some(limit), .. }) if contraction > limit => {
+                return Err(FibreError::Slack { contraction, limit: Some(limit) });
+            }
+            _ => {}
         }
         match self.longest() {
             Some(limit) if contraction <= limit => Err(FibreError::TooLong { contraction, limit }),
@@ -218,9 +232,10 @@ impl Problem {
         let start = self.contraction_start().min(limit - 0.05 * limit.abs());
         match self.root(method, start, &mut seen, |found| volume - found.response.volume_m3) {
             Ok(found) if self.pulls(&found.response) => Ok(found),
-            Err(FibreError::NotConverged { .. }) if seen.volume > volume => {
+            Err(_) if seen.volume > volume => {
                 Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: seen.volume })
             }
+            Err(error @ FibreError::Slack { .. }) => Err(error),
             _ => Err(FibreError::VolumeNotFound { volume_m3: volume }),
         }
     }
@@ -274,6 +289,9 @@ impl Problem {
                     x = if step > 0.0 && x + step < barrier { x + step } else { 0.5 * (x + barrier) };
                 }
                 Ok(_) => break x,
+                Err(FibreError::Slack { contraction, .. }) if barrier - low < 1e-9 => {
+                    return Err(FibreError::Slack { contraction, limit: Some(barrier) });
+                }
                 Err(error) if barrier - low < 1e-9 => return Err(error),
                 Err(_) => {
                     barrier = x;
