@@ -177,7 +177,7 @@ pub enum FibreError {
     )]
     NothingToShoot,
     /// The rubber carries more than the pressure: there is no equilibrium with taut fibres, and one with slack ones isn't computed.
-    #[error("at contraction {:.4} % the fibres are slack{}: the bladder alone carries more than the pressure there; more pressure or less contraction makes them taut", 100.0 * contraction, slack_from(limit))]
+    #[error("at contraction {:.4} % the fibres are slack{}: the bladder alone carries more than the pressure there; more pressure or less contraction makes them taut", 100.0 * contraction, slack_from(*limit))]
     Slack {
         /// Asked contraction.
         contraction: f64,
@@ -196,7 +196,7 @@ pub enum FibreError {
     },
 }
 
-fn slack_from(limit: &Option<f64>) -> String {
+fn slack_from(limit: Option<f64>) -> String {
     limit.map_or_else(String::new, |limit| format!(", as they are from {:.4} % on", 100.0 * limit))
 }
 

@@ -3,6 +3,7 @@ pub mod closed_form;
 mod continuation;
 mod cylinder;
 mod draw;
+mod equator;
 mod error;
 mod groups;
 mod isobars;

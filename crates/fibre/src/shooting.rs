@@ -27,9 +27,9 @@ use crate::start::start;
 pub(crate) const TOLERANCE: f64 = 4e-12;
 /// Newton iterations after which the solve is given up.
 const MAX_ITERATIONS: u32 = 40;
-/// Evaluations of the right-hand side (or of the integrands) after which the search for an equilibrium that may not exist ends (some 10 ms). The longest braid takes
+/// Evaluations of the right-hand side (or of the integrands) after which the search for an equilibrium that may not exist ends (some 3 ms). The longest braid takes
 /// under 5000.
-const MOST_EVALUATIONS: u32 = 100_000;
+const MOST_EVALUATIONS: u32 = 30_000;
 /// Largest steps of ln|B| and ln|k|.
 const MAX_STEP: [f64; 2] = [0.8, 4.0];
 /// Residual below which Newton's method is trusted not to need backtracking (early residuals are integrated loosely).
@@ -65,7 +65,7 @@ pub(crate) const USUAL: Ending =
 pub(crate) const EXACT: Ending =
     Ending { step: 3e-5, tolerance: 2.5e-10, first: 2.5e-10, last_but_one: 2.5e-10, most: MOST_EVALUATIONS };
 /// The same in a fit, which asks thousands of times and may ask far from sense: nothing that is found takes more.
-pub(crate) const FITTED: Ending = Ending { most: 20_000, ..EXACT };
+pub(crate) const FITTED: Ending = Ending { most: 15_000, ..EXACT };
 /// Newton iterations from a start that was given, after which the search begins anew: a good one takes two or three.
 const MOST_FROM_NEAR: u32 = 8;
 /// Where the meridian is a quadrature, which has no tolerance and costs little: the step after which the next one is as small as rounding lets it be.

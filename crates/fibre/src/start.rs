@@ -57,9 +57,9 @@ fn open_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     // r = r* - room exp(-u): the end has a logarithm at r*. The last piece of it is linear. Stiff cloth is taut on a small part of the room.
     let taut = net.cloth.map_or(room, |cloth| (limit - cloth.radius).clamp(1e-12 * room, room));
     let last = 6.0 + (room / taut).ln();
-    let panels = 4 + (0.5 * last).ceil() as u32;
+    let panels = if last > 8.0 { 24 } else { 6 };
     let along = |f: &dyn Fn(f64) -> f64| -> f64 {
-        let piece = |i: u32| {
+        let piece = |i: i32| {
             let (from, to) = (last * f64::from(i) / f64::from(panels), last / f64::from(panels));
             gauss::integrate(|part| {
                 let z = room * (-(from + part * to)).exp();
