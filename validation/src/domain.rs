@@ -109,7 +109,7 @@ impl Count {
     }
 
     fn add(&mut self, case: impl FnOnce() -> String, ending: Ending) {
-        let mut keep = |what: &str| {
+        let keep = |what: &str| {
             if self.cases.len() < KEPT {
                 self.cases.push(format!("{what}: {}", case()));
             }
@@ -138,7 +138,7 @@ impl Count {
 }
 
 /// Questions of the check, and of them those that may not converge.
-const SAMPLE: (usize, f64) = (600, 1e-2);
+const SAMPLE: (usize, f64) = (2000, 1e-2);
 
 /// A sample of the map: none wrong, no panic, evaluations bounded, and hardly any that didn't converge.
 pub(crate) fn sample() -> Check {
@@ -147,7 +147,7 @@ pub(crate) fn sample() -> Check {
         name: "random muscles of 15 kinds, one question each: part that is neither solved nor refused with a limit",
         source: "residuals, first integral",
         tolerance: SAMPLE.1,
-        why: "measured 0.5 %, nearly all of them braids with several extras; anything wrong, a panic or too many evaluations counts as all",
+        why: "measured 0.7 %, most all of them braids with several extras; anything wrong, a panic or too many evaluations counts as all",
     }
     .run(|tally| {
         let counts = map(1, SAMPLE.0);
