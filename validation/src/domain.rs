@@ -147,7 +147,7 @@ pub(crate) fn sample() -> Check {
         name: "random muscles of 15 kinds, one question each: part that is neither solved nor refused with a limit",
         source: "residuals, first integral",
         tolerance: SAMPLE.1,
-        why: "measured 0.7 %, most all of them braids with several extras; anything wrong, a panic or too many evaluations counts as all",
+        why: "measured 0.7 %, most of them braids with several extras; anything wrong, a panic or too many evaluations counts as all",
     }
     .run(|tally| {
         let counts = map(1, SAMPLE.0);
