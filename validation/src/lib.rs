@@ -9,6 +9,7 @@ mod closed_form;
 mod derivative;
 mod design;
 mod difference;
+pub mod domain;
 mod energy;
 mod fluidic_muscle;
 mod force_laws;
@@ -57,6 +58,7 @@ pub const CHECKS: &[fn() -> Check] = &[
     derivative::linearised,
     derivative::stiffness,
     isobars::one_by_one,
+    domain::sample,
     membrane::spheres::sphere,
     membrane::spheres::limit_points,
     membrane::spheres::triangles,

@@ -85,11 +85,7 @@ impl CurveCommand {
                 what: format!("{twice} stands twice in the list"),
             });
         }
-        let first = pressures.first().copied().unwrap_or(Pressure::pa(0.0));
-        let contractions = self.contractions(&extended, first)?;
-        let isobars = extended
-            .isobars(&pressures, &contractions, self.method.approach())
-            .map_err(about_extended(&muscle, first))?;
+        let isobars = self.isobars(&extended, &pressures)?;
         for isobar in &isobars {
             if let (true, Some((_, error))) = (isobar.points.is_empty(), isobar.without.first()) {
                 return Err(about(&muscle, Pressure::pa(isobar.pressure_pa))(error.clone()));
@@ -128,7 +124,28 @@ impl CurveCommand {
         within("--frames", self.frames, 2, MAX_FRAMES)
     }
 
-    /// The contractions, from the option or over the range in which the muscle pulls at the first pressure.
+    /// The characteristics, each over the range in which the muscle pulls at its pressure where the option doesn't give one for all.
+    fn isobars(&self, extended: &Extended, pressures: &[Pressure]) -> Result<Vec<Isobar>, Failure> {
+        let mut found = Vec::with_capacity(pressures.len());
+        let mut rest = pressures;
+        while let Some(first) = rest.first() {
+            let contractions = self.contractions(extended, *first)?;
+            // Those with the same range are solved together: where the shape doesn't depend on the pressure, once.
+            let mut same = 1;
+            for pressure in &rest[1..] {
+                if self.contractions(extended, *pressure)? != contractions {
+                    break;
+                }
+                same += 1;
+            }
+            let isobars = extended.isobars(&rest[..same], &contractions, self.method.approach());
+            found.extend(isobars.map_err(about_extended(extended.muscle(), *first))?);
+            rest = &rest[same..];
+        }
+        Ok(found)
+    }
+
+    /// The contractions, from the option or over the range in which the muscle pulls at the pressure.
     fn contractions(&self, extended: &Extended, pressure: Pressure) -> Result<Vec<f64>, Failure> {
         let [low, high] = if let Some(text) = &self.contraction {
             range::<Ratio>("--contraction", text)?

@@ -2,11 +2,14 @@
 
 use crate::FibreError;
 use crate::net::Net;
-use crate::shooting::{Effort, Ending, USUAL, Unknowns, newton, straight_contraction};
-use crate::start::start;
+use crate::shooting::{Effort, Ending, USUAL, Unknowns, is_limited, newton, straight_contraction};
+use crate::start::{linear_start, start};
 
 /// On the way to the asked equilibrium.
 const ON_THE_WAY: (Ending, f64) = (USUAL, USUAL.first);
+
+/// Least growth of the contraction from one equilibrium to the next.
+const SMALLEST: f64 = 1.0005;
 
 /// The same contraction with a bladder and a cloth that are soft at first and stiffen, by steps that adapt: the starts know nothing of them.
 pub(crate) fn stiffening(
@@ -44,7 +47,7 @@ pub(crate) fn stiffening(
             grow = (1.0 + (grow - 1.0) * 1.5).min(10.0);
         } else {
             grow = 1.0 + (grow - 1.0) * 0.4;
-            if grow < 1.005 || effort.is_spent() {
+            if grow < SMALLEST || effort.is_spent() {
                 return Err(failed(effort));
             }
         }
@@ -62,12 +65,14 @@ pub(crate) fn continuation(
     let failed =
         FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: effort.iterations };
     let whole = contraction - straight;
+    let slack = |at: &Unknowns| at.is_slack(net).then_some(FibreError::Slack { contraction, limit: None });
     let mut part = 0.02;
     let mut at = loop {
         let there = straight + part * whole;
-        if let Some(start) = start(net, there)
-            && let Ok(found) = newton(net, there, start, ON_THE_WAY, effort)
-        {
+        let starts = [start(net, there), linear_start(net, there)];
+        let found =
+            starts.into_iter().flatten().find_map(|start| newton(net, there, start, ON_THE_WAY, effort).ok());
+        if let Some(found) = found {
             break found;
         }
         part *= 0.2;
@@ -75,8 +80,16 @@ pub(crate) fn continuation(
             return Err(failed);
         }
     };
+    if let Some(error) = slack(&at) {
+        return Err(error);
+    }
     // d(unknowns)/d ln(part) of a shallow bulge, where B, k and 1/T grow with the root of the contraction.
-    let mut rate = [if net.lobes.is_some() && at.side > 0.0 { -1.0 } else { 0.5 }, 0.5];
+    let first = match (is_limited(net, at.side), net.turn == 0.0) {
+        (true, true) => -1.0,
+        (true, false) => -0.5,
+        (false, _) => 0.5,
+    };
+    let mut rate = [first, 0.5];
     let mut grow: f64 = 2.0;
     while part < 1.0 {
         let next = (part * grow).min(1.0);
@@ -86,11 +99,15 @@ pub(crate) fn continuation(
             Ok(found) => {
                 rate = [(found.logs[0] - at.logs[0]) / jump, (found.logs[1] - at.logs[1]) / jump];
                 (at, part) = (found, next);
+                // Once slack, they are so further on.
+                if let Some(error) = slack(&at) {
+                    return Err(error);
+                }
                 grow = (1.0 + (grow - 1.0) * 1.5).min(2.0);
             }
             Err(error) => {
                 grow = 1.0 + (grow - 1.0) * 0.4;
-                if grow < 1.002 || effort.is_spent() {
+                if grow < SMALLEST || effort.is_spent() {
                     return Err(match error {
                         FibreError::NotConverged { residual, iterations, .. } => {
                             FibreError::NotConverged { contraction, residual, iterations }

@@ -27,11 +27,17 @@ pub(crate) struct Cylinder<D> {
     pub(crate) iterations: u32,
 }
 
-/// Radius and radial imbalance A' - h at a tension.
-fn balance<D: Real>(net: &Net<D>, sigma: D, tension: D) -> (D, D) {
-    let stretch = net.compliance * tension + 1.0;
-    let radius = (stretch * stretch - sigma * sigma).sqrt() / net.turn;
-    (radius, net.area_r(radius) - net.acting_at(radius.value()).local(radius, tension).hoop)
+/// Radius, tension and radial imbalance A' - h with a tension `more` beyond the one that stretches the fibres to the end distance:
+/// `q^2 r^2 = (1 + e)^2 - sigma^2` without a difference of two nearly equal numbers.
+fn balance<D: Real>(net: &Net<D>, sigma: D, more: D) -> (D, D, D) {
+    let stretch = net.compliance * more;
+    let (least, square) = if sigma.value() > 1.0 {
+        ((sigma - 1.0) / net.compliance, stretch * (stretch + sigma * 2.0))
+    } else {
+        (D::from(0.0), -(sigma * sigma) + 1.0 + stretch * (stretch + 2.0))
+    };
+    let (radius, tension) = (square.sqrt() / net.turn, least + more);
+    (radius, tension, net.area_r(radius) - net.acting_at(radius.value()).local(radius, tension).hoop)
 }
 
 /// The cylinder at a contraction.
@@ -46,8 +52,8 @@ pub(crate) fn solve<D: Real>(net: &Net<D>, contraction: D) -> Result<Cylinder<D>
         let limit = 1.0 - 1.0 / net.cos_rest.value();
         return Err(FibreError::TooLong { contraction: contraction.value(), limit });
     }
-    let (tension, iterations) = tension(net, sigma, contraction.value())?;
-    let (radius, _) = balance(net, sigma, tension);
+    let (more, iterations) = tension(net, sigma, contraction.value())?;
+    let (radius, tension, _) = balance(net, sigma, more);
     let local = net.acting_at(radius.value()).local(radius, tension);
     let section = net.section(radius);
     let force = local.force - section.area;
@@ -55,18 +61,16 @@ pub(crate) fn solve<D: Real>(net: &Net<D>, contraction: D) -> Result<Cylinder<D>
     Ok(Cylinder { radius, tension, force, volume, iterations })
 }
 
-/// The tension of the radial balance: linear for inextensible fibres, else Newton's method in ln T on the values and one step more for the
+/// The tension of the radial balance, see [`balance`]: linear for inextensible fibres, else Newton's method in ln T on the values and one step more for the
 /// derivatives.
 fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32), FibreError> {
     let plain = net.constant();
     let s = sigma.value();
     let residual = |ln_t: f64| {
-        let (r, gap) = balance(&plain.lift::<1>(), Dual::from(s), Dual::<1>::variable(ln_t, 0).exp());
+        let (r, _, gap) = balance(&plain.lift::<1>(), Dual::from(s), Dual::<1>::variable(ln_t, 0).exp());
         (r.value(), gap.value(), gap.gradient()[0])
     };
-    // Fibres must be stretched at least to the end distance, and a little more to have a radius.
-    let least = if net.compliance.value() > 0.0 { ((s - 1.0) / plain.compliance).max(0.0) } else { 0.0 };
-    let mut ln_t = (plain.area_r(1.0) / (plain.turn * plain.turn) + 1.001 * least).ln();
+    let mut ln_t = (plain.area_r(1.0) / (plain.turn * plain.turn)).ln();
     let mut last = f64::INFINITY;
     for iteration in 1..=100 {
         let (r, gap, slope) = residual(ln_t);
@@ -78,7 +82,7 @@ fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32)
         last = gap.abs();
         if step.abs() < 1e-9 {
             let at = D::from(ln_t.exp());
-            let (_, gap) = balance(net, sigma, at);
+            let (_, _, gap) = balance(net, sigma, at);
             let tension = at - gap * (ln_t.exp() / slope);
             return if tension.value() > 0.0 { Ok((tension, iteration)) } else { break };
         }
@@ -87,7 +91,7 @@ fn tension<D: Real>(net: &Net<D>, sigma: D, contraction: f64) -> Result<(D, u32)
     // Hardly any tension, and still the wall holds more than the pressure.
     let (r, gap, _) = residual(SLACK.ln());
     if r.is_finite() && gap < 0.0 {
-        return Err(FibreError::Slack { contraction });
+        return Err(FibreError::Slack { contraction, limit: None });
     }
     Err(FibreError::NotConverged { contraction, residual: last, iterations: 100 })
 }

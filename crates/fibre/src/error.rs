@@ -2,6 +2,8 @@
 
 use bulge_muscles::Fault;
 
+use crate::problem::WIDEST_FITTING;
+
 /// No equilibrium, or none was found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FibreError {
@@ -55,6 +57,14 @@ pub enum FibreError {
         /// Radius of the braid, or of its fittings \[m\].
         radius_m: f64,
     },
+    /// Fittings on which the fibres of the braid would lie along the parallels.
+    #[error("the fittings have a radius of {:.4} mm, and this braid can't be wider than {:.4} mm, where its fibres lie along the circumference: at most {:.4} mm", 1e3 * end_m, 1e3 * widest_m, 1e3 * WIDEST_FITTING * widest_m)]
+    FittingTooWide {
+        /// Radius of the fittings \[m\].
+        end_m: f64,
+        /// r0/sin(alpha0) \[m\].
+        widest_m: f64,
+    },
     /// A derivative by something that the muscle doesn't have.
     #[error("this muscle has no `{name}` to differentiate by: give it one first, with `Muscle::with`")]
     NoVariable {
@@ -97,7 +107,7 @@ pub enum FibreError {
     },
     /// The fibres are so soft that the muscle balloons: no equilibrium with a fibre strain below 1.
     #[error(
-        "no equilibrium: the fibres are too soft and the muscle balloons (p sin(2 pi/n) l0^2/(4 EA) = {group:.3}, the limit is about {limit}); raise fibre.stiffness or lower the pressure"
+        "no equilibrium: the fibres are too soft and the muscle balloons (p sin(2 pi/n) l0^2/(4 EA) of straight fibres, 2 pi p r0^2/(n EA sin^2(alpha0)) of a braid, is {group:.3}; the limit is about {limit}); raise fibre.stiffness or lower the pressure"
     )]
     TooSoft {
         /// The elastic group of one fibre times the squared slenderness.
@@ -132,12 +142,22 @@ pub enum FibreError {
         high_m3: f64,
     },
     /// Less than the muscle holds when it is as long as its fibres.
-    #[error("no equilibrium with a volume of {:.4} ml: it must be greater than the {:.4} ml of the straight muscle", 1e6 * volume_m3, 1e6 * low_m3)]
+    #[error("no equilibrium with a volume of {:.4} ml: it must be greater than the {:.4} ml of the muscle drawn out", 1e6 * volume_m3, 1e6 * low_m3)]
     VolumeTooSmall {
         /// Asked volume \[m^3\].
         volume_m3: f64,
-        /// Volume of the straight muscle \[m^3\].
+        /// Volume of the muscle drawn out as far as it goes \[m^3\].
         low_m3: f64,
+    },
+    /// A pull beyond what was found at any length.
+    #[error("no equilibrium with a force of {force_n:.6} N: the largest force found is {high_n:.6} N, at contraction {:.4} %", 100.0 * contraction)]
+    ForceTooLarge {
+        /// Asked force \[N\].
+        force_n: f64,
+        /// Largest force \[N\].
+        high_n: f64,
+        /// Where.
+        contraction: f64,
     },
     /// No contraction with this volume was found at which the muscle pulls.
     #[error("no pulling equilibrium with a volume of {:.4} ml was found; `bulge curve` shows the volumes of this muscle", 1e6 * volume_m3)]
@@ -156,11 +176,13 @@ pub enum FibreError {
         "there is nothing to shoot at in a muscle with ends = \"cylinder\": its meridian is straight; use the method `auto`, or ends = \"clamped\""
     )]
     NothingToShoot,
-    /// The rubber alone carries the pressure: no equilibrium with taut fibres.
-    #[error("at contraction {:.4} % the fibres are slack: the bladder alone carries more than the pressure; more pressure or less contraction makes them taut", 100.0 * contraction)]
+    /// The rubber carries more than the pressure: there is no equilibrium with taut fibres, and one with slack ones isn't computed.
+    #[error("at contraction {:.4} % the fibres are slack{}: the bladder alone carries more than the pressure there; more pressure or less contraction makes them taut", 100.0 * contraction, slack_from(*limit))]
     Slack {
         /// Asked contraction.
         contraction: f64,
+        /// The contraction at which they become slack at this pressure, where it was asked for.
+        limit: Option<f64>,
     },
     /// Newton's method did not converge.
     #[error("the equilibrium at contraction {:.4} % did not converge: residual {residual:.2e} after {iterations} iterations; try a contraction nearer to the middle of the muscle's range", 100.0 * contraction)]
@@ -174,6 +196,10 @@ pub enum FibreError {
     },
 }
 
+fn slack_from(limit: Option<f64>) -> String {
+    limit.map_or_else(String::new, |limit| format!(", as they are from {:.4} % on", 100.0 * limit))
+}
+
 impl FibreError {
     /// Whose fault it is.
     #[must_use]
@@ -185,6 +211,7 @@ impl FibreError {
             | Self::NotPositive { .. }
             | Self::ClothTooNarrow { .. }
             | Self::WallTooThick { .. }
+            | Self::FittingTooWide { .. }
             | Self::NoClosedForm { .. }
             | Self::NothingToShoot => Fault::Input,
             _ => Fault::NoSolution,

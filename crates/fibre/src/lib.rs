@@ -3,6 +3,7 @@ pub mod closed_form;
 mod continuation;
 mod cylinder;
 mod draw;
+mod equator;
 mod error;
 mod groups;
 mod isobars;
@@ -24,6 +25,7 @@ pub use linearised::{Linear, Linearised, Repeated, Start};
 pub use outcome::Approach;
 pub use problem::{
     BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, PLEATED_SLENDERNESS, Problem, Variable,
+    WIDEST_FITTING,
 };
 pub use shape::{Convergence, MeridianPoint, Method, Response, Shape};
 pub use solve::{ADIABATIC, AMBIENT_PRESSURE, Given, Gradient};

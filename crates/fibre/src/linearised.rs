@@ -179,8 +179,8 @@ impl Problem {
             Found::Shooting(shot) => Some(shot.towards(self, ask.contraction)),
             Found::ClosedForm(_) => None,
         });
-        let outcome =
-            self.outcome_of_many(self.method(ask.approach)?, ask.contraction, &net, from, FITTED)?;
+        let outcome = self.outcome_of_many(self.method(ask.approach)?, ask.contraction, &net, from, FITTED);
+        let outcome = outcome.map_err(|error| self.told(error, ask.contraction, ask.approach))?;
         let with_contraction = |total: &Total<N>| {
             let mut gradient = total.by_parameter;
             gradient[0] = total.by_contraction;

@@ -54,7 +54,7 @@ pub(crate) struct Trajectory<D> {
     pub(crate) mid_tension: D,
     pub(crate) steps: u32,
     pub(crate) evaluations: u32,
-    /// |N cos(chi) - A - F| at the fitting, relative to N at mid-length.
+    /// |N cos(chi) - A - F| at the fitting, relative to the largest of these forces there and at mid-length.
     pub(crate) first_integral: f64,
 }
 
@@ -126,6 +126,17 @@ impl<D: Real> Flow<D> {
         self.net.local(r, y[TENSION]).force * y[COS] - self.net.area(r)
     }
 
+    fn departure(&self, y: &State<D>, force: D) -> D {
+        (self.axial_force(y) - force).abs()
+    }
+
+    /// The largest of the forces that the first integral adds up, here and at mid-length.
+    fn largest(&self, y: &State<D>, mid_force: D) -> D {
+        let r = self.mid_radius - y[RHO];
+        let here = [self.net.local(r, y[TENSION]).force.abs(), self.net.area(r).abs()];
+        here.into_iter().fold(mid_force.abs(), |a, b| if b.value() > a.value() { b } else { a })
+    }
+
     /// Fibre length to the target rho by the local parabola, if it leads there.
     fn distance_to(&self, y: &State<D>, slope: &State<D>, target: f64) -> Option<f64> {
         let sign = target.signum();
@@ -154,9 +165,39 @@ pub(crate) struct Middle<D> {
     pub(crate) curvature: D,
     /// Tension of all fibres; it belongs to the curvature by [`Net::tension_at_equator`].
     pub(crate) tension: D,
+    /// Fibre length from mid-length to there, on which the meridian can't be told from a cylinder; usually 0.
+    pub(crate) straight: D,
 }
 
 impl<D: Real> Middle<D> {
+    /// A middle whose curvature is exp(-`below`) of the one stated. Along a saddle, `rho'' = lambda^2 rho` with
+    ///
+    /// ```text
+    /// lambda^2 = sigma^2 (h_r - A'')/N
+    /// ```
+    ///
+    /// the curvature grows by the factor exp(lambda s): the way from it to the stated one is a cylinder. None if there is no saddle.
+    pub(crate) fn beyond(mut self, net: &Net<D>, below: D) -> Option<Self> {
+        let r = net.end_radius + self.bulge;
+        let net = net.acting_at(r.value());
+        let local = net.local(r, self.tension);
+        let square = local.sigma.squared() * (local.hoop_r - net.section(r).area_rr) / local.force;
+        self.straight = below / square.sqrt();
+        self.straight.value().is_finite().then_some(self)
+    }
+
+    /// The state at the fitting with the shortening and the volume of the cylinder; `net` is that of the middle.
+    pub(crate) fn with_straight(&self, net: &Net<D>, mut end: State<D>) -> State<D> {
+        if self.straight.value() == 0.0 {
+            return end;
+        }
+        let middle = Flow { net: *net, mid_radius: net.end_radius + self.bulge };
+        let rates = middle.slope(&self.state());
+        end[SHORTENING] += rates[SHORTENING] * self.straight;
+        end[VOLUME] += rates[VOLUME] * self.straight;
+        end
+    }
+
     fn state(&self) -> State<D> {
         let zero = D::from(0.0);
         [zero, zero, zero, D::from(1.0), self.curvature, self.tension, zero]
@@ -169,7 +210,7 @@ pub(crate) fn trajectory<D: Real>(
     middle: Middle<D>,
     tolerance: f64,
 ) -> Result<Trajectory<D>, NoTrajectory> {
-    let Middle { bulge, curvature, tension: mid_tension } = middle;
+    let Middle { bulge, curvature, tension: mid_tension, straight } = middle;
     let mid_radius = net.end_radius + bulge;
     let mut y = middle.state();
     let at_middle = net.acting_at(mid_radius.value());
@@ -217,11 +258,12 @@ pub(crate) fn trajectory<D: Real>(
         }
     }
     let (steps, evaluations) = (run.accepted, run.evaluations);
-    let first_integral = (flow.axial_force(&y) - force).value().abs() / mid.force.value().abs();
+    let first_integral = flow.departure(&y, force).value() / flow.largest(&y, mid.force).value();
     if !first_integral.is_finite() {
         return Err(NoTrajectory { evaluations });
     }
-    Ok(Trajectory { half_fibre: fibre, end: y, force, mid_tension, steps, evaluations, first_integral })
+    let (half_fibre, end) = (fibre + straight, middle.with_straight(&at_middle, y));
+    Ok(Trajectory { half_fibre, end, force, mid_tension, steps, evaluations, first_integral })
 }
 
 /// Where the law changes on the way to the fitting, and the fitting itself, as values of rho in the order in which they are met: one smooth law
@@ -254,7 +296,7 @@ pub(crate) struct Station {
 }
 
 /// The meridian at `pieces + 1` points, equally spaced in fibre length, from mid-length to the fitting at `half_fibre`; and the largest departure
-/// from the first integral over all of them, relative to N at mid-length.
+/// from the first integral over all of them, relative to the largest of its forces.
 pub(crate) fn stations(
     net: &Net<f64>,
     middle: Middle<f64>,
@@ -272,17 +314,23 @@ pub(crate) fn stations(
     let mut run = Dop853::new(half_fibre / pieces as f64, tolerance);
     let mut departure: f64 = 0.0;
     let mut found = Vec::with_capacity(pieces + 1);
-    let mut fibre = 0.0;
+    let mut fibre = middle.straight;
     for i in 0..=pieces {
         let target = half_fibre * i as f64 / pieces as f64;
+        if target < middle.straight {
+            let x = target * flow_at(&y).net.local(mid_radius, tension).sigma;
+            found.push(Station { fibre: target, x, r: mid_radius, chi: 0.0, tension });
+            continue;
+        }
         while target - fibre > 1e-13 * half_fibre {
             fibre += run
                 .advance(&mut f, |a, b| scale(a, b, mid_radius, floor), &mut y, &mut slope, target - fibre)
                 .map_err(|_| NoTrajectory { evaluations: run.evaluations })?;
         }
         let r = mid_radius - y[RHO];
-        departure = departure.max(((flow_at(&y).axial_force(&y) - force) / mid_force).abs());
-        let x = net.cos_rest * fibre - y[SHORTENING];
+        let flow = flow_at(&y);
+        departure = departure.max(flow.departure(&y, force) / flow.largest(&y, mid_force));
+        let x = net.cos_rest * fibre - middle.with_straight(&net.acting_at(mid_radius), y)[SHORTENING];
         found.push(Station { fibre, x, r, chi: y[SIN].atan2(y[COS]), tension: y[TENSION] });
     }
     Ok((found, departure))

@@ -77,9 +77,9 @@ pub(crate) struct Net<D> {
 }
 
 /// Derivatives of the stored energy of bladder and cloth: w_1 = d/dsigma, w_2 = d/dr.
-struct Wall<D> {
-    w: D,
-    w_1: D,
+pub(crate) struct Wall<D> {
+    pub(crate) w: D,
+    pub(crate) w_1: D,
     w_2: D,
     w_11: D,
     w_12: D,
@@ -151,7 +151,7 @@ impl<D: Real> Net<D> {
         self.section(r).area_r
     }
 
-    fn wall(&self, sigma: D, r: D) -> Wall<D> {
+    pub(crate) fn wall(&self, sigma: D, r: D) -> Wall<D> {
         let zero = D::from(0.0);
         let mut wall = Wall { w: zero, w_1: zero, w_2: zero, w_11: zero, w_12: zero, w_22: zero };
         if let Some(bladder) = &self.bladder {
@@ -239,49 +239,6 @@ impl<D: Real> Net<D> {
     /// The tension of inextensible fibres from the meridional force N = T sigma + w_1.
     pub(crate) fn tension_of(&self, r: D, sigma: D, force: D) -> D {
         (force - self.wall(sigma, r).w_1) / sigma
-    }
-
-    /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis at radius `r` with A'(r) = `push`:
-    /// A' - h = k N.
-    ///
-    /// Linear in T for inextensible fibres; else a bracketed Newton's method on the values and one step more for the derivatives.
-    /// `None` if there is none with a positive tension, or the fibres can't reach that radius.
-    pub(crate) fn tension_at_equator(&self, r: D, push: D, curvature: D) -> Option<D> {
-        let gap = |tension: D| {
-            let local = self.local(r, tension);
-            let gap = push - local.hoop - curvature * local.force;
-            (gap, local.hoop_t + curvature * local.force_t)
-        };
-        let (at_zero, slope) = gap(D::from(0.0));
-        let linear = at_zero / slope;
-        if self.compliance.value() == 0.0 {
-            return (linear.value() > 0.0 && linear.value().is_finite()).then_some(linear);
-        }
-        // Stretching makes the true tension smaller than the linear estimate by up to a power of the stretch.
-        let mut tension = linear.value().abs() / (linear.value().abs() * self.compliance.value() + 1.0);
-        let (mut low, mut high) = (0.0, f64::INFINITY);
-        for _ in 0..200 {
-            let (residual, slope) = gap(D::from(tension));
-            let newton = tension + (residual / slope).value();
-            if residual.value() > 0.0 {
-                low = tension;
-            } else {
-                high = tension;
-            }
-            if (newton - tension).abs() <= 1e-9 * tension {
-                // The quadratic step from here also settles the derivatives.
-                return Some(residual / slope + tension);
-            }
-            tension = match (newton > low && newton < high, high.is_finite()) {
-                (true, _) => newton.min(4.0 * tension),
-                (false, true) => 0.5 * (low + high),
-                (false, false) => 4.0 * tension,
-            };
-            if !tension.is_finite() || tension <= 0.0 {
-                break;
-            }
-        }
-        None
     }
 }
 
@@ -382,7 +339,12 @@ impl<D: Real> Cloth<D> {
         self.stiffness * PI / self.radius
     }
 
-    /// sigma u(r) with u = pi K (r - r_u)^2/r_u.
+    /// u = pi K (r - r_u)^2/r_u.
+    pub(crate) fn energy(&self, r: D) -> D {
+        self.scale() * (r - self.radius).squared()
+    }
+
+    /// sigma u(r).
     fn add(&self, wall: &mut Wall<D>, sigma: D, r: D) {
         let excess = r - self.radius;
         let scale = self.scale();
@@ -481,7 +443,7 @@ pub(crate) mod tests {
     fn tension_at_equator_meets_the_curvature() {
         let net: Net<f64> = rich();
         for curvature in [-0.05, 1e-12, 0.3, 1.0] {
-            let tension = net.tension_at_equator(1.4, net.area_r(1.4), curvature).unwrap();
+            let tension = net.tension_at_equator(1.4, net.push(1.4), curvature).unwrap();
             let local = net.local(1.4, tension);
             assert!((net.area_r(1.4) - local.hoop - curvature * local.force).abs() < 1e-12 * local.force);
         }

@@ -16,6 +16,9 @@ use crate::shooting::{self, Ending, Total, USUAL, Unknowns, Way};
 /// kappa L^2 = F^2/4, and F is at most 1.854 where the force vanishes (m = 1/2).
 const BALLOONING: f64 = 0.859;
 
+/// The same of a long net: its hoop term T q^2 r/((1 + e) sigma), with sigma about 1 + e, carries 2 pi p r up to e/(1 + e)^2 = 1/4 (at e = 1).
+const BURSTING: f64 = 0.25;
+
 /// Which method computes an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Approach {
@@ -151,27 +154,32 @@ impl Problem {
         if self.is_singular() && contraction <= 0.0 {
             return Err(FibreError::TooLong { contraction, limit: 0.0 });
         }
-        let group = self.elastic_group();
+        let (group, limit) = self.elastic_group();
         match outcome() {
-            Err(FibreError::NotConverged { .. }) if group > 0.7 * BALLOONING => {
-                Err(FibreError::TooSoft { group, limit: BALLOONING })
+            Err(FibreError::NotConverged { .. }) if group > 0.7 * limit => {
+                Err(FibreError::TooSoft { group, limit })
             }
             Ok(outcome)
                 if group > 0.0 && self.net.compliance * outcome.tension > 1.0 && contraction > -0.5 =>
             {
-                Err(FibreError::TooSoft { group, limit: BALLOONING })
+                Err(FibreError::TooSoft { group, limit })
             }
             other => other,
         }
     }
 
-    /// p sin(2 pi/n) l0^2/(4 EA) of one straight fibre; 0 for a net.
-    fn elastic_group(&self) -> f64 {
+    /// The group that decides whether fibres are too soft, with its limit: p sin(2 pi/n) l0^2/(4 EA) of one straight fibre, 2 pi p r0^2/(n EA sin^2(alpha0))
+    /// of a net.
+    fn elastic_group(&self) -> (f64, f64) {
         let net = &self.net;
         if net.turn != 0.0 {
-            return 0.0;
+            return (
+                net.area_factor * net.compliance * std::f64::consts::TAU / (net.turn * net.turn),
+                BURSTING,
+            );
         }
-        net.area_factor * net.compliance * std::f64::consts::TAU * net.half_fibre * net.half_fibre
+        let size = net.half_fibre * net.half_fibre;
+        (net.area_factor * net.compliance * std::f64::consts::TAU * size, BALLOONING)
     }
 }
 
@@ -259,6 +267,9 @@ fn by_shooting<const N: usize>(
     (ending, way): (Ending, Way),
 ) -> Result<Outcome<N>, FibreError> {
     let (unknowns, effort) = shooting::solve(plain, contraction, from, ending)?;
+    if unknowns.is_slack(plain) {
+        return Err(FibreError::Slack { contraction, limit: None });
+    }
     let found = shooting::finish(net, contraction, unknowns, way)?;
     let run = &found.trajectory;
     let volume = Total {

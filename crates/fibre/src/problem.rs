@@ -47,6 +47,9 @@ pub const BRAIDED_SLENDERNESS: [f64; 2] = [1.0, 100.0];
 /// Range of the braid angle at rest of braids with clamped ends, degrees.
 pub const BRAID_ANGLE: [f64; 2] = [5.0, 50.0];
 
+/// Largest radius of the fittings over r0/sin(alpha0), at which the fibres of a braid lie along the circumference.
+pub const WIDEST_FITTING: f64 = 0.995;
+
 /// Range of the number of fibres with lobes between them: with more, rounding is larger than the errors that the integration keeps to.
 pub const LOBED_FIBRES: [f64; 2] = [3.0, 300.0];
 /// Largest n l0/r* of n fibres with lobes between them that can open to the radius r*: how far the middle of a longer muscle is from a
@@ -67,8 +70,8 @@ impl Problem {
     ///
     /// # Errors
     /// [`FibreError::PressureNotPositive`], [`FibreError::NotFinite`], [`FibreError::OutOfRange`] outside
-    /// [`PLEATED_SLENDERNESS`], [`BRAIDED_SLENDERNESS`], [`BRAID_ANGLE`], [`LOBED_FIBRES`] and [`LOBED_LENGTH`], [`FibreError::ClothTooNarrow`] or
-    /// [`FibreError::WallTooThick`].
+    /// [`PLEATED_SLENDERNESS`], [`BRAIDED_SLENDERNESS`], [`BRAID_ANGLE`], [`LOBED_FIBRES`] and [`LOBED_LENGTH`], [`FibreError::ClothTooNarrow`],
+    /// [`FibreError::WallTooThick`] or [`FibreError::FittingTooWide`].
     pub fn new(muscle: &Muscle, pressure: Pressure) -> Result<Self, FibreError> {
         check_ranges(muscle)?;
         Self::checked(Arc::new(muscle.clone()), pressure)
@@ -281,7 +284,13 @@ fn check_ranges(muscle: &Muscle) -> Result<(), FibreError> {
                 muscle.end_radius().si() / muscle.radius().si(),
                 [0.2, 2.0],
             )?;
-            inside("braid angle in degrees", braided.braid_angle().si().to_degrees(), BRAID_ANGLE)
+            inside("braid angle in degrees", braided.braid_angle().si().to_degrees(), BRAID_ANGLE)?;
+            let (end_m, widest_m) =
+                (muscle.end_radius().si(), muscle.radius().si() / braided.braid_angle().si().sin());
+            if end_m > WIDEST_FITTING * widest_m {
+                return Err(FibreError::FittingTooWide { end_m, widest_m });
+            }
+            Ok(())
         }
         Construction::Braided(_) => Ok(()),
     }

@@ -18,8 +18,8 @@
 //! Divided differences of y^2, 1/y, 1/sigma^2, sigma and r are known without cancellation (for one, sigma[y, y_m] = -q^2/(sigma + sigma_m)), and
 //! a product fg has f_m g[m, m, y] + f[m, m] g[m, y] + f[m, m, y] g(y).
 //!
-//! z = (g_1/g_2) sinh^2(u) takes both the square root at mid-length and the long way along a saddle out of the integrands, which become smooth in
-//! u. A Gauss-Kronrod pair of 10 and 21 points (R. Piessens et al., *QUADPACK*, Springer 1983) places the points from the values; the
+//! z = rho (r_mid + r) with rho = |r_mid - r| = (g_1/(2 r_mid g_2)) sinh^2(u) takes both the square root at mid-length and the long way along a
+//! saddle out of the integrands, which become smooth in u. (In z itself they would have 1/r, singular at the axis, not far beyond a fitting.) A Gauss-Kronrod pair of 10 and 21 points (R. Piessens et al., *QUADPACK*, Springer 1983) places the points from the values; the
 //! integrals of numbers with derivatives are then sums over them.
 
 use arrayvec::ArrayVec;
@@ -52,7 +52,7 @@ const ANGLE: f64 = 1e-2;
 const PIECE: f64 = 1.5;
 /// Pieces after which an integral is given up.
 const MOST_PIECES: usize = 60;
-/// Least ratio of the span to g_1/g_2: from here on the map changes nothing.
+/// Least ratio of z to g_1/g_2 at the fitting: from here on the map changes nothing.
 const LEAST_RATIO: f64 = 0.1;
 /// Largest 1 - cos(chi), as in the integration of the ODE.
 const MOST_TURNED: f64 = 1.999;
@@ -66,10 +66,10 @@ pub(crate) fn suits<D: Real>(net: &Net<D>) -> bool {
 struct Law<D> {
     /// +1: bulge, -1: waist.
     side: f64,
-    /// z at the fitting.
-    span: D,
+    /// r_mid - r at the fitting, and its size.
+    bulge: D,
+    size: D,
     r_m: D,
-    y_m: D,
     sigma_m: D,
     q2: D,
     /// F + A - u at mid-length, with u the cloth's energy.
@@ -103,7 +103,7 @@ struct Local<D> {
     turned: D,
 }
 
-/// A point of the quadrature: z over its span, weight, and whether the cloth is slack there although it is taut at mid-length.
+/// A point of the quadrature: rho over its value at the fitting, weight, and whether the cloth is slack there although it is taut at mid-length.
 #[derive(Debug, Clone, Copy)]
 struct Point {
     part: f64,
@@ -145,9 +145,9 @@ impl<D: Real> Law<D> {
         }
         Self {
             side,
-            span: middle.bulge * (r_m + net.end_radius) * side,
+            bulge: middle.bulge,
+            size: middle.bulge * side,
             r_m,
-            y_m,
             sigma_m,
             q2,
             pull,
@@ -164,13 +164,14 @@ impl<D: Real> Law<D> {
 
     #[inline]
     fn at(&self, part: f64, slack: bool) -> Local<D> {
-        let z = self.span * part;
-        let y = self.y_m - z * self.side;
-        let r = y.sqrt();
+        let r = self.r_m - self.bulge * part;
+        let sum = r + self.r_m;
+        let z = self.size * sum * part;
+        let y = r * r;
         let v = -(self.q2 * y) + 1.0;
         let sigma = v.sqrt();
         // First divided differences of r, sigma and A - u, and the second ones.
-        let r_1 = D::from(1.0) / (r + self.r_m);
+        let r_1 = D::from(1.0) / sum;
         let sigma_1 = -(self.q2 / (sigma + self.sigma_m));
         let area_1 = self.area[0] + self.area[1] * r_1;
         let area_2 = -(self.area[1] * r_1 * r_1 * self.halves[0]);
@@ -191,7 +192,7 @@ impl<D: Real> Law<D> {
         Local { y, r, sigma, g, curve, whole, turned: rise / whole }
     }
 
-    /// dS, dd and dV over `dz/(2 sqrt(z span))`; none where the fibres can't be.
+    /// dS, dd and dV over `d(rho)/(2 sqrt(rho size))`; none where the fibres can't be.
     #[inline]
     fn rates(&self, point: &Point) -> Option<[D; 3]> {
         let at = self.at(point.part, point.slack);
@@ -201,7 +202,8 @@ impl<D: Real> Law<D> {
         if !exists || turned.is_nan() {
             return None;
         }
-        let fibre = (self.span * at.whole / (at.g * (-at.turned + 2.0))).sqrt() / (at.r * at.sigma);
+        let square = self.size * at.whole / (at.g * (-at.turned + 2.0) * (at.r + self.r_m));
+        let fibre = square.sqrt() * 2.0 / at.sigma;
         let angle = self.q2 * at.y - self.sin2_rest;
         let shortening = angle / (self.cos_rest + at.sigma) + at.sigma * at.turned;
         let section = (at.r + self.depth).squared() * at.sigma * (-at.turned + 1.0) * PI;
@@ -219,14 +221,14 @@ impl Plan {
     /// Not as a value: moving it would cost as much as making it.
     fn fill(&mut self, law: &Law<f64>, end_radius: f64) -> Result<(), NoTrajectory> {
         let start = law.at(0.0, false);
-        let ratio = (law.span * start.curve / law.slope).max(LEAST_RATIO);
+        let ratio = (2.0 * law.r_m * law.size * start.curve / law.slope).max(LEAST_RATIO);
         let end = ratio.sqrt().asinh();
         if !(end.is_finite() && end > 0.0) {
             return Err(NoTrajectory { evaluations: 1 });
         }
         // Between two pieces the cloth comes taut.
         let kink = law.cloth.filter(|cloth| cloth.radius > end_radius).map(|cloth| {
-            let part = (law.y_m - cloth.radius * cloth.radius) / law.span;
+            let part = (law.r_m - cloth.radius) / law.size;
             (ratio * part).sqrt().asinh().min(end)
         });
         // On the stack: a solve allocates nothing.
@@ -301,6 +303,7 @@ pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Tra
         bulge: middle.bulge.value(),
         curvature: middle.curvature.value(),
         tension: middle.tension.value(),
+        straight: 0.0,
     };
     let plain = net.constant();
     let mut plan = Plan { points: ArrayVec::new(), evaluations: 0 };
@@ -320,13 +323,14 @@ pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Tra
     let force = mid_force - at_middle.area(mid_radius);
     let end = end(net, &law, middle.bulge, sums);
     let departure = (end.force * end.state[crate::meridian::COS] - net.area(net.end_radius) - force).value();
-    let first_integral = departure.abs() / mid_force.value().abs();
+    let sizes = [mid_force, end.force, net.area(net.end_radius)].map(|size| size.value().abs());
+    let first_integral = departure.abs() / sizes.into_iter().fold(0.0, f64::max);
     if !first_integral.is_finite() {
         return Err(none);
     }
     Ok(Trajectory {
-        half_fibre: sums[0],
-        end: end.state,
+        half_fibre: sums[0] + middle.straight,
+        end: middle.with_straight(&at_middle, end.state),
         force,
         mid_tension: middle.tension,
         steps: u32::try_from(plan.points.len() / 21).unwrap_or(u32::MAX),

@@ -36,7 +36,7 @@ pub struct Convergence {
     pub steps: u32,
     /// Largest relative residual of the end conditions (radius, fibre length, end distance).
     pub residual: f64,
-    /// Largest relative departure from the first integral `N cos(psi) = F + p A(r)` along the meridian.
+    /// Largest departure from the first integral `N cos(psi) = F + p A(r)` along the meridian, relative to the largest of these forces.
     pub first_integral: f64,
 }
 

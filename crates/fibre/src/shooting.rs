@@ -8,8 +8,8 @@
 //! ```
 //!
 //! In these variables the problem is nearly linear at both ends: for a shallow bulge S = sqrt(2 B/k), and in a long braid S grows with -ln k.
-//! Where lobes limit the radius, B is nearly the same for all of them and T = A'/k a ratio of two numbers near 0: the first unknown is then
-//! ln(T/B), from which A'(r_mid) = k B (T/B) fixes B (for an angle or cloth besides, A'/(k B) takes the place of T/B).
+//! Where lobes or cloth limit the radius, B is nearly the same for all of them and N = push/k a ratio of two numbers near 0 (push: A' less the hoop
+//! term of the cloth): the first unknown is then ln(push/(k B)), from which push(r_mid) = k B (N/B) fixes B; ln(push/B) where an angle carries a part.
 //!
 //! Newton's method takes exact derivatives from the integration of dual numbers, loosely at first; or from the quadrature of the same meridian
 //! (see `quadrature`), which costs a tenth, where the fibres don't stretch.
@@ -27,9 +27,9 @@ use crate::start::start;
 pub(crate) const TOLERANCE: f64 = 4e-12;
 /// Newton iterations after which the solve is given up.
 const MAX_ITERATIONS: u32 = 40;
-/// Evaluations of the right-hand side (or of the integrands) after which the search for an equilibrium that may not exist ends (some 20 ms). The longest braid takes
-/// under 10 000.
-const MOST_EVALUATIONS: u32 = 200_000;
+/// Evaluations of the right-hand side (or of the integrands) after which the search for an equilibrium that may not exist ends (some 3 ms). The longest braid takes
+/// under 5000.
+const MOST_EVALUATIONS: u32 = 30_000;
 /// Largest steps of ln|B| and ln|k|.
 const MAX_STEP: [f64; 2] = [0.8, 4.0];
 /// Residual below which Newton's method is trusted not to need backtracking (early residuals are integrated loosely).
@@ -65,7 +65,7 @@ pub(crate) const USUAL: Ending =
 pub(crate) const EXACT: Ending =
     Ending { step: 3e-5, tolerance: 2.5e-10, first: 2.5e-10, last_but_one: 2.5e-10, most: MOST_EVALUATIONS };
 /// The same in a fit, which asks thousands of times and may ask far from sense: nothing that is found takes more.
-pub(crate) const FITTED: Ending = Ending { most: 40_000, ..EXACT };
+pub(crate) const FITTED: Ending = Ending { most: 15_000, ..EXACT };
 /// Newton iterations from a start that was given, after which the search begins anew: a good one takes two or three.
 const MOST_FROM_NEAR: u32 = 8;
 /// Where the meridian is a quadrature, which has no tolerance and costs little: the step after which the next one is as small as rounding lets it be.
@@ -78,9 +78,12 @@ const LAST_BUT_ONE: f64 = 1e-2;
 pub(crate) struct Unknowns {
     /// +1: bulge, -1: waist.
     pub(crate) side: f64,
-    /// ln|B|, ln|k|; with lobes ln(A'/(k B)), ln|k|.
+    /// ln|B|, ln|k|; where lobes or cloth limit the radius ln(push/(k B)), ln|k|, and with an angle besides ln(push/B), ln|k|.
     pub(crate) logs: [f64; 2],
 }
+
+/// ln|k| below which the middle is a cylinder up to rounding: the integration starts where it is this, see [`Middle::beyond`].
+const FLAT: f64 = -40.0;
 
 /// Part of the way to the radius of the lobes' circle that a start may cover.
 const OPEN: f64 = 0.98;
@@ -88,13 +91,13 @@ const OPEN: f64 = 0.98;
 impl Unknowns {
     /// A bulge (+1) or a waist (-1) with ln|B| and the second unknown.
     pub(crate) fn new(net: &Net<f64>, side: f64, [ln_bulge, second]: [f64; 2]) -> Self {
-        let Some(lobes) = net.lobes.filter(|_| side > 0.0) else {
+        if !is_limited(net, side) {
             return Self { side, logs: [ln_bulge, second] };
-        };
-        let most = OPEN * (lobes.limit() - net.depth - net.end_radius);
-        let bulge = ln_bulge.exp().min(most);
+        }
+        let bulge = ln_bulge.exp().min(OPEN * net.most_bulge());
         let r = net.end_radius + bulge;
-        Self { side, logs: [(net.acting_at(r).area_r(r) / bulge).ln() - second, second] }
+        let slope = (net.acting_at(r).push(r) / bulge).ln();
+        Self { side, logs: [if net.turn == 0.0 { slope - second } else { slope }, second] }
     }
 
     /// The middle of the meridian, with the unknowns as variables number 0 and 1 if `D` carries derivatives; `None` if the fibres can't be
@@ -108,13 +111,24 @@ impl Unknowns {
         variable: impl Fn(f64, usize) -> D,
     ) -> Option<Middle<D>> {
         let logs = [variable(self.logs[0], 0), variable(self.logs[1], 1)];
-        let second = logs[1].exp();
-        if let Some(lobes) = net.lobes.filter(|_| self.side > 0.0) {
-            let slope = logs[0] + logs[1]; // ln(A'/B)
-            let bulge = lobes.bulge(net.end_radius + net.depth, -slope)?;
+        if self.logs[1] < FLAT {
+            let middle = Self { side: self.side, logs: [self.logs[0], FLAT] };
+            // The first unknown keeps its derivative; the second one lengthens the cylinder.
+            let middle = middle.curved(net, [logs[0], D::from(FLAT)])?;
+            return middle.beyond(net, -logs[1] + FLAT);
+        }
+        self.curved(net, logs)
+    }
+
+    /// The same where the curvature is one that numbers can have.
+    fn curved<D: Real>(&self, net: &Net<D>, logs: [D; 2]) -> Option<Middle<D>> {
+        let (second, straight) = (logs[1].exp(), D::from(0.0));
+        if is_limited(net, self.side) {
+            let slope = if net.turn.value() == 0.0 { logs[0] + logs[1] } else { logs[0] }; // ln(push/B)
+            let bulge = net.bulge(slope)?;
             let r = net.end_radius + bulge;
             let tension = net.acting_at(r.value()).tension_at_equator(r, bulge * slope.exp(), second)?;
-            return Some(Middle { bulge, curvature: second, tension });
+            return Some(Middle { bulge, curvature: second, tension, straight });
         }
         let bulge = logs[0].exp() * self.side;
         let r = net.end_radius + bulge;
@@ -122,10 +136,10 @@ impl Unknowns {
             return None;
         }
         let net = net.acting_at(r.value());
-        let push = net.area_r(r);
+        let push = net.push(r);
         if self.side > 0.0 {
             let tension = net.tension_at_equator(r, push, second)?;
-            return Some(Middle { bulge, curvature: second, tension });
+            return Some(Middle { bulge, curvature: second, tension, straight });
         }
         let cylinder = net.tension_at_equator(r, push, D::from(0.0))?;
         let excess = cylinder * second;
@@ -135,12 +149,23 @@ impl Unknowns {
         let linear = net.compliance.value() == 0.0 || second.value() < 1e-6;
         let hoop = if linear { at_cylinder.hoop_t * excess } else { local.hoop - at_cylinder.hoop };
         let curvature = -(hoop / local.force);
-        (curvature.value() < 0.0).then_some(Middle { bulge, curvature, tension })
+        (curvature.value() < 0.0).then_some(Middle { bulge, curvature, tension, straight })
+    }
+
+    /// Whether fibres are slack somewhere.
+    pub(crate) fn is_slack(&self, net: &Net<f64>) -> bool {
+        let slack = |middle: Middle<f64>| net.is_slack(net.end_radius + middle.bulge, middle.tension);
+        net.bladder.is_some() && self.middle(net, |value, _| value).is_some_and(slack)
     }
 
     fn seeded<const N: usize>(&self, net: &Net<Dual<N>>) -> Option<Middle<Dual<N>>> {
         self.middle(net, Dual::variable)
     }
+}
+
+/// Whether lobes or cloth limit the radius of a bulge: the first unknown is then that of the tension.
+pub(crate) fn is_limited<D: Real>(net: &Net<D>, side: f64) -> bool {
+    side > 0.0 && (net.lobes.is_some() || net.cloth.is_some())
 }
 
 /// Curvature of a waist of inextensible fibres at infinite tension, q^2 r/sigma^2.
@@ -219,9 +244,16 @@ pub(crate) fn solve(
         start(net, contraction).and_then(|start| newton(net, contraction, start, cold, &mut effort).ok());
     let found = match direct {
         Some(found) => Ok(found),
-        None if net.cloth.is_some() || net.bladder.is_some() => stiffening(net, contraction, &mut effort)
-            .or_else(|_| continuation(net, contraction, &mut Effort::of_at_most(ending.most))),
-        None => continuation(net, contraction, &mut effort),
+        None => match continuation(net, contraction, &mut effort) {
+            Err(FibreError::NotConverged { .. }) if net.cloth.is_some() || net.bladder.is_some() => {
+                let mut more = Effort::of_at_most(ending.most);
+                let found = stiffening(net, contraction, &mut more);
+                effort.iterations += more.iterations;
+                effort.evaluations += more.evaluations;
+                found
+            }
+            other => other,
+        },
     };
     Ok((found?, effort))
 }
@@ -330,7 +362,7 @@ pub(crate) fn straight_contraction(net: &Net<f64>) -> Option<f64> {
         return None;
     }
     let end = net.acting_at(net.end_radius);
-    let tension = end.tension_at_equator(end.end_radius, end.area_r(end.end_radius), 0.0)?;
+    let tension = end.tension_at_equator(end.end_radius, end.push(end.end_radius), 0.0)?;
     Some(1.0 - net.sigma(net.end_radius, tension) / net.cos_rest)
 }
 
@@ -408,6 +440,10 @@ pub(crate) fn finish<const N: usize>(
     };
     let residual = g[0].value().abs().max(g[1].value().abs());
     if step[0].abs().max(step[1].abs()) > ACCEPTED || run.first_integral > FIRST_INTEGRAL {
+        // Next to fittings on which the fibres nearly lie along the circumference the integration loses digits, a quadrature doesn't.
+        if way == Way::Ode && quadrature::suits(net) {
+            return finish(net, asked, unknowns, Way::Fastest);
+        }
         return Err(FibreError::NotConverged { contraction: asked, residual, iterations: MAX_ITERATIONS });
     }
     let follow: [[f64; 2]; N] = std::array::from_fn(|i| solve_two(jacobian, g.map(|g| g.gradient()[i])));

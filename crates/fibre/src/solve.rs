@@ -18,6 +18,8 @@ pub const ADIABATIC: f64 = 1.4;
 
 /// Roots in the contraction are found to a Newton step of this size, whose end is exact to its square.
 const ROOT_TOLERANCE: f64 = 1e-9;
+/// Part of the largest volume within which it can't be told how far from the limit it belongs.
+const FLAT: f64 = 1e-13;
 /// Beyond this contraction no muscle pulls (the slender limit is 0.5431, a braid's 1 - 1/sqrt(3)).
 const FAR: f64 = 0.6;
 
@@ -32,6 +34,27 @@ pub enum Given {
     Force(f64),
     /// Enclosed volume with circular cross-sections of the fibre radius \[m^3\].
     Volume(f64),
+}
+
+/// The ends of what a search has come across.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    /// The largest force \[N\], and where.
+    force: f64,
+    contraction: f64,
+    /// The least volume \[m^3\].
+    volume: f64,
+}
+
+impl Seen {
+    const NOTHING: Self = Self { force: f64::NEG_INFINITY, contraction: 0.0, volume: f64::INFINITY };
+
+    fn add(&mut self, response: &Response) {
+        if response.force_n > self.force {
+            (self.force, self.contraction) = (response.force_n, response.contraction);
+        }
+        self.volume = self.volume.min(response.volume_m3);
+    }
 }
 
 /// Exact derivatives of force and volume at an equilibrium.
@@ -72,17 +95,30 @@ impl Problem {
     /// # Errors
     /// See [`FibreError`].
     pub fn follow(&self, contraction: f64, approach: Approach) -> Result<Response, FibreError> {
-        self.at(self.method(approach)?, contraction, None).map(|found| found.response)
+        let found = self.at(self.method(approach)?, contraction, None);
+        found.map(|found| found.response).map_err(|error| self.told(error, contraction, approach))
+    }
+
+    /// Where no equilibrium was found beyond the limit, as a long braid or a soft one would bulge in more than one place: that is what is told.
+    pub(crate) fn told(&self, error: FibreError, contraction: f64, approach: Approach) -> FibreError {
+        if !matches!(error, FibreError::NotConverged { .. }) {
+            return error;
+        }
+        match self.contraction_limit(approach) {
+            Ok(limit) if contraction > limit => FibreError::BeyondLimit { contraction, limit },
+            _ => error,
+        }
     }
 
     /// The contraction at which the force vanishes.
     ///
     /// # Errors
-    /// [`FibreError::NotConverged`].
+    /// [`FibreError::NotConverged`], or [`FibreError::Slack`] with its limit where the fibres become slack before.
     pub fn contraction_limit(&self, approach: Approach) -> Result<f64, FibreError> {
         let method = self.method(approach)?;
         let start = self.contraction_start();
-        self.root(method, start, |found| found.response.force_n).map(|found| found.response.contraction)
+        let found = self.root(method, start, &mut { Seen::NOTHING }, |found| found.response.force_n);
+        found.map(|found| found.response.contraction)
     }
 
     /// Exact derivatives of force and volume with respect to the contraction, the pressure and every parameter of the muscle, by dual
@@ -131,14 +167,16 @@ impl Problem {
         let error = match self.at(method, contraction, None) {
             Ok(found) if self.pulls(&found.response) => return Ok(found),
             Ok(found) => FibreError::WouldPush { contraction, force_n: found.response.force_n },
-            Err(error @ FibreError::NotConverged { .. }) => error,
+            Err(error @ (FibreError::NotConverged { .. } | FibreError::Slack { .. })) => error,
             Err(error) => return Err(error),
         };
         // Say where the limit is, if that can be found.
-        if let Ok(limit) = self.contraction_limit(approach)
-            && contraction > limit
-        {
-            return Err(FibreError::BeyondLimit { contraction, limit });
+        match self.contraction_limit(approach) {
+            Ok(limit) if contraction > limit => return Err(FibreError::BeyondLimit { contraction, limit }),
+            Err(FibreError::Slack { limit: Some(limit), .. }) if contraction > limit => {
+                return Err(FibreError::Slack { contraction, limit: Some(limit) });
+            }
+            _ => {}
         }
         match self.longest() {
             Some(limit) if contraction <= limit => Err(FibreError::TooLong { contraction, limit }),
@@ -158,7 +196,14 @@ impl Problem {
         if force < 0.0 {
             return Err(FibreError::Pushes { force_n: force, limit: self.contraction_limit(approach)? });
         }
-        self.root(method, self.contraction_start(), |found| found.response.force_n - force)
+        let mut seen = Seen::NOTHING;
+        match self.root(method, self.contraction_start(), &mut seen, |found| found.response.force_n - force) {
+            Err(FibreError::NotConverged { .. }) if seen.force < force => {
+                let Seen { force: high_n, contraction, .. } = seen;
+                Err(FibreError::ForceTooLarge { force_n: force, high_n, contraction })
+            }
+            other => other,
+        }
     }
 
     fn with_volume(&self, method: Method, approach: Approach, volume: f64) -> Result<Found, FibreError> {
@@ -173,16 +218,24 @@ impl Problem {
         if self.is_singular() && volume <= least {
             return Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: least });
         }
-        if self.is_scale_free() {
-            // F = -p dV/dl: the volume is largest where the force vanishes.
-            let limit = self.contraction_limit(approach)?;
-            let high = self.at(method, limit, None)?.response.volume_m3;
-            if volume > high {
-                return Err(FibreError::VolumeTooLarge { volume_m3: volume, high_m3: high });
-            }
+        // F = -p dV/dl: where nothing stores energy, and nearly where something does, the volume is largest where the force vanishes.
+        let limit = self.contraction_limit(approach)?;
+        let high = self.at(method, limit, None)?.response.volume_m3;
+        if volume > high * (1.0 + FLAT) {
+            return Err(FibreError::VolumeTooLarge { volume_m3: volume, high_m3: high });
         }
-        match self.root(method, self.contraction_start(), |found| volume - found.response.volume_m3) {
+        // Next to the limit the volume is flat: within rounding of the largest one it is that of the limit.
+        if volume > high * (1.0 - FLAT) {
+            return self.at(method, limit, None);
+        }
+        let mut seen = Seen::NOTHING;
+        let start = self.contraction_start().min(limit - 0.05 * limit.abs());
+        match self.root(method, start, &mut seen, |found| volume - found.response.volume_m3) {
             Ok(found) if self.pulls(&found.response) => Ok(found),
+            Err(_) if seen.volume > volume => {
+                Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: seen.volume })
+            }
+            Err(error @ FibreError::Slack { .. }) => Err(error),
             _ => Err(FibreError::VolumeNotFound { volume_m3: volume }),
         }
     }
@@ -199,12 +252,19 @@ impl Problem {
     }
 
     /// The contraction at which `excess`, which falls with the contraction, is zero. Its derivative is taken from the response.
-    fn root(&self, method: Method, start: f64, excess: impl Fn(&Found) -> f64) -> Result<Found, FibreError> {
+    fn root(
+        &self,
+        method: Method,
+        start: f64,
+        seen: &mut Seen,
+        excess: impl Fn(&Found) -> f64,
+    ) -> Result<Found, FibreError> {
         let l0 = self.muscle.length().si();
         let mut near: Option<Unknowns> = None;
         let mut evaluate = |contraction: f64| {
             let found = self.at(method, contraction, near)?;
             near = found.unknowns();
+            seen.add(&found.response);
             Ok::<_, FibreError>(found)
         };
         let (mut low, mut x) = self.bracket_below(&mut evaluate, start, &excess)?;
@@ -229,6 +289,9 @@ impl Problem {
                     x = if step > 0.0 && x + step < barrier { x + step } else { 0.5 * (x + barrier) };
                 }
                 Ok(_) => break x,
+                Err(FibreError::Slack { contraction, .. }) if barrier - low < 1e-9 => {
+                    return Err(FibreError::Slack { contraction, limit: Some(barrier) });
+                }
                 Err(error) if barrier - low < 1e-9 => return Err(error),
                 Err(_) => {
                     barrier = x;
@@ -264,7 +327,7 @@ impl Problem {
         }
         let mut good = None;
         let mut x = start;
-        let mut stride = 0.5 * start;
+        let mut stride = (0.5 * start.abs()).max(1e-3);
         let mut failures = 0;
         for _ in 0..80 {
             match (evaluate(x), good) {

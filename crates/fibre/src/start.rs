@@ -3,7 +3,7 @@
 use bulge_numerics::{gauss, root::illinois};
 
 use crate::net::Net;
-use crate::shooting::{Unknowns, steepest, straight_contraction};
+use crate::shooting::{Unknowns, is_limited, steepest, straight_contraction};
 
 /// Difference of the contraction from that of a straight meridian up to which the start is taken from the linear solution.
 const SHALLOW: f64 = 1e-4;
@@ -28,38 +28,49 @@ fn usual_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     }
 }
 
-/// Lobes that form a circle in the middle of the muscle: straight fibres at the radius r* of that circle between two curved ends. With
-/// `g = (A(r*) - A(r))/T` the first integral gives cos(psi) = 1 - g, so the end and its shortening against its length are
+/// Lobes that form a circle in the middle of the muscle, or cloth that carries the pressure there: straight fibres at that radius r* between two curved
+/// ends. With `g = (B(r*) - B(r))/T`, B = A - u of the cloth, the first integral gives cos(psi) = 1 - g, so the end and its shortening against its
+/// length are
 ///
 /// ```text
 /// S_end = integral dr/sin(psi) from R to r* - z        d = integral tan(psi/2) dr,  tan^2(psi/2) = g/(2 - g)
 /// ```
 ///
-/// and in the middle r* - r grows as cosh(lambda s), lambda^2 = -A''(r*)/T. An angle is neglected. None if the middle isn't like this.
+/// and in the middle r* - r grows as cosh(lambda s), lambda^2 = -B''(r*)/T. An angle is neglected. None if the middle isn't like this.
 fn open_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
-    let lobes = net.lobes?;
-    let limit = lobes.limit() - net.depth;
-    let room = limit - net.end_radius;
+    // A braid carries the pressure even where its cloth is taut.
+    let is_open = is_limited(net, 1.0) && (net.turn == 0.0 || net.lobes.is_some());
+    let room = if is_open { net.most_bulge() } else { f64::INFINITY };
+    let limit = net.end_radius + room;
     let angle = (6.0 * contraction).max(0.0).sqrt();
-    if 0.5 * angle * net.half_fibre < NEARLY_OPEN * room {
+    if !room.is_finite() || 0.5 * angle * net.half_fibre < NEARLY_OPEN * room {
         return None;
     }
-    let rim = net.acting_at(limit).section(limit);
-    let missing = |r: f64| rim.area - net.acting_at(r).area(r);
-    // r = r* - room exp(-u): the end has a logarithm at r*. The last piece of it is linear.
-    let (last, panels) = (6.0, [0.0, 0.5, 1.0, 2.0, 4.0, 6.0]);
+    let carried = |r: f64| {
+        let net = net.acting_at(r);
+        net.area(r) - net.cloth.map_or(0.0, |cloth| cloth.energy(r))
+    };
+    let rim = net.acting_at(limit);
+    let bend = rim.cloth.map_or(0.0, |cloth| 2.0 * cloth.scale()) - rim.section(limit).area_rr;
+    let most = carried(limit);
+    let missing = |r: f64| most - carried(r);
+    // r = r* - room exp(-u): the end has a logarithm at r*. The last piece of it is linear. Stiff cloth is taut on a small part of the room.
+    let taut = net.cloth.map_or(room, |cloth| (limit - cloth.radius).clamp(1e-12 * room, room));
+    let last = 6.0 + (room / taut).ln();
+    let panels = if last > 8.0 { 24 } else { 6 };
     let along = |f: &dyn Fn(f64) -> f64| -> f64 {
-        let piece = |from: f64, to: f64| {
+        let piece = |i: i32| {
+            let (from, to) = (last * f64::from(i) / f64::from(panels), last / f64::from(panels));
             gauss::integrate(|part| {
-                let z = room * (-(from + part * (to - from))).exp();
-                f(missing(limit - z)) * z * (to - from)
+                let z = room * (-(from + part * to)).exp();
+                f(missing(limit - z)) * z * to
             })
         };
-        panels.windows(2).map(|pair| piece(pair[0], pair[1])).sum()
+        (0..panels).map(piece).sum()
     };
     let shortening = |tension: f64| {
         along(&|gap| {
-            let g = gap / tension;
+            let g = (gap / tension).max(0.0);
             (g / (2.0 - g).max(1e-9)).sqrt()
         })
     };
@@ -67,13 +78,13 @@ fn open_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
         net.half_fibre * (contraction * net.cos_rest + 1.0 - net.cos_rest + net.compliance * tension)
     };
     let least = (0.5 * missing(net.end_radius)).ln();
-    let ln_tension = illinois(|ln_t| shortening(ln_t.exp()) - asked(ln_t.exp()), least, least + 12.0, 1e-3);
+    let ln_tension = illinois(|ln_t| shortening(ln_t.exp()) - asked(ln_t.exp()), least, least + 20.0, 1e-3);
     let tension = ln_tension.exp();
     let end = along(&|gap| {
         let g = gap / tension;
-        1.0 / (g * (2.0 - g)).max(1e-9).sqrt()
+        1.0 / (g * (2.0 - g)).max(1e-18).sqrt()
     });
-    let rate = (-rim.area_rr / tension).sqrt();
+    let rate = (bend / tension).sqrt();
     let straight = net.half_fibre * (1.0 + net.compliance * tension) - end;
     // r* - r at mid-length: 2 z exp(-lambda s) of the z at which the end was left.
     let ln_gap = (2.0 * room).ln() - last - rate * straight;
@@ -81,8 +92,13 @@ fn open_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
         return None;
     }
     let ln_curvature = ln_gap + 2.0 * rate.ln();
-    // A' = T k at mid-length, over k B.
-    Some(Unknowns { side: 1.0, logs: [ln_tension - room.ln(), ln_curvature] })
+    // push = T k at mid-length, over k B; besides an angle that of the cylinder.
+    let first = if net.turn == 0.0 {
+        ln_tension - room.ln()
+    } else {
+        (tension * (rim.local(limit, tension).hoop_t + ln_curvature.exp()) / room).ln()
+    };
+    Some(Unknowns { side: 1.0, logs: [first, ln_curvature] })
 }
 
 /// Straight fibres: a circular arc of the stretched fibre length, half-angle K: `sin(K)/K` is the end distance over the fibre length,
@@ -138,7 +154,7 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
     };
     let end = net.acting_at(net.end_radius);
     let strain = end
-        .tension_at_equator(end.end_radius, end.area_r(end.end_radius), 0.0)
+        .tension_at_equator(end.end_radius, end.push(end.end_radius), 0.0)
         .map_or(0.0, |t| net.compliance * t);
     let end_distance = |bulge: f64| {
         let mid = net.end_radius + side * bulge;
@@ -180,6 +196,42 @@ fn net_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
         ln_curvature
     } else {
         let share = (ln_curvature.exp() / steepest(net, mid)).min(0.98);
+        (share / (1.0 - share)).ln()
+    };
+    Some(Unknowns::new(net, side, [bulge.ln(), second]))
+}
+
+/// Beside a straight meridian, to first order in the bulge B with all that the net carries:
+///
+/// ```text
+/// r - r_end = B (1 - (cosh(kappa s) - 1)/(cosh(kappa s_end) - 1))        kappa^2 = sigma^2 (h_r - A'')/N, of either sign (cos for cosh)
+/// ```
+///
+/// with inextensible fibres; those that stretch follow nearly so.
+pub(crate) fn linear_start(net: &Net<f64>, contraction: f64) -> Option<Unknowns> {
+    let straight = straight_contraction(net)?;
+    let (end, half) = (net.acting_at(net.end_radius), net.half_fibre);
+    let tension = end.tension_at_equator(end.end_radius, end.push(end.end_radius), 0.0)?;
+    let local = end.local(end.end_radius, tension);
+    let square = local.sigma.powi(2) * (local.hoop_r - end.section(end.end_radius).area_rr) / local.force;
+    let kappa = square.abs().sqrt();
+    let (ln_whole, mean) = if square > 0.0 {
+        let x = kappa * half;
+        let mean = gauss::integrate(|tau| 1.0 - (ln_shape(x * tau) - ln_shape(x)).exp());
+        (ln_shape(x), mean)
+    } else {
+        let x = (kappa * half).min(1.5);
+        let part = |tau: f64| (1.0 - (x * tau).cos()) / (1.0 - x.cos());
+        ((1.0 - x.cos()).ln(), gauss::integrate(|tau| 1.0 - part(tau)))
+    };
+    let by_radius = net.turn * net.turn * net.end_radius / local.sigma;
+    let bulge = (contraction - straight).abs() * net.cos_rest / (by_radius * mean);
+    let side = (contraction - straight).signum();
+    let ln_curvature = bulge.ln() + 2.0 * kappa.ln() - 2.0 * local.sigma.ln() - ln_whole;
+    let second = if side > 0.0 {
+        ln_curvature
+    } else {
+        let share = (ln_curvature.exp() / steepest(net, net.end_radius)).min(0.98);
         (share / (1.0 - share)).ln()
     };
     Some(Unknowns::new(net, side, [bulge.ln(), second]))

@@ -211,8 +211,8 @@ mod tests {
                 let fifo = fifo.clone();
                 move || fs::read(fifo).unwrap()
             });
-            write(name, &[7; 100_000]).unwrap();
-            assert_eq!(reader.join().unwrap(), [7; 100_000]);
+            write(name, &vec![7; 100_000]).unwrap();
+            assert_eq!(reader.join().unwrap(), vec![7; 100_000]);
         }
         assert!(fs::symlink_metadata(&fifo).unwrap().file_type().is_fifo() && link.is_symlink());
         assert_eq!(folder.names(), ["fifo", "link"]);

@@ -1,0 +1,172 @@
+//! The middle of a meridian, where it is parallel to the axis: which radius and which tension go with a curvature, and whether fibres are slack.
+
+use bulge_numerics::Real;
+use std::f64::consts::PI;
+
+use crate::net::Net;
+
+/// Radii at which fibres may be found slack.
+const SAMPLES: u32 = 16;
+/// Part of H by which it must be too small for that.
+const SLACK: f64 = 1e-12;
+
+impl<D: Real> Net<D> {
+    /// A'(r) less the hoop term of the cloth: what fibres and bladder carry.
+    pub(crate) fn push(&self, r: D) -> D {
+        match &self.cloth {
+            Some(cloth) => self.area_r(r) - cloth.scale() * (r - cloth.radius) * 2.0,
+            None => self.area_r(r),
+        }
+    }
+
+    /// The bulge B > 0 for which the [`Net::push`] at the radius of the fitting and B is B exp(y): it falls with y.
+    ///
+    /// Where lobes or a stiff cloth limit the radius, the push is the small difference of two numbers, and B exp(y) has it exactly.
+    pub(crate) fn bulge(&self, y: D) -> Option<D> {
+        let Some(lobes) = &self.lobes else { return self.bulge_of_polygon(y) };
+        let Some(cloth) = &self.cloth else { return lobes.bulge(self.end_radius + self.depth, -y) };
+        let free = lobes.bulge(self.end_radius + self.depth, -y)?;
+        let room = cloth.radius - self.end_radius;
+        if free.value() <= room.value() {
+            return Some(free);
+        }
+        // Between the cloth's radius and what the lobes alone would do: the gap rises steadily.
+        let rate = y.exp();
+        let gap = |bulge: D| {
+            let r = self.end_radius + bulge;
+            let acting = self.acting_at(r.value().max(cloth.radius.value() * (1.0 + 1e-15)));
+            let slope = rate - acting.section(r).area_rr + cloth.scale() * 2.0;
+            (bulge * rate - acting.push(r), slope)
+        };
+        let (mut low, mut high) = (room.value().max(0.0), free.value());
+        let mut at = 0.5 * (low + high);
+        for _ in 0..200 {
+            let (value, slope) = gap(D::from(at));
+            if value.value() > 0.0 {
+                high = at;
+            } else {
+                low = at;
+            }
+            let newton = at - value.value() / slope.value();
+            if (newton - at).abs() <= 1e-9 * at {
+                let (value, slope) = gap(D::from(newton));
+                return Some(-(value / slope.value()) + newton);
+            }
+            at = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        }
+        None
+    }
+
+    fn bulge_of_polygon(&self, y: D) -> Option<D> {
+        let rate = y.exp();
+        let area_rr = self.area_factor * (2.0 * PI);
+        let end = area_rr * (self.end_radius + self.depth);
+        let free = end / (rate - area_rr);
+        let Some(cloth) = &self.cloth else { return (free.value() > 0.0).then_some(free) };
+        let room = cloth.radius - self.end_radius;
+        if free.value() > 0.0 && free.value() <= room.value() {
+            return Some(free);
+        }
+        let stiff = cloth.scale() * 2.0;
+        let held = (end + stiff * room) / (rate - area_rr + stiff);
+        (held.value() > 0.0).then_some(held)
+    }
+
+    /// The largest bulge at which there is a push; infinite where nothing limits it.
+    pub(crate) fn most_bulge(&self) -> f64 {
+        let net = self.constant();
+        let lobes = net.lobes.map_or(f64::INFINITY, |lobes| lobes.limit() - net.depth - net.end_radius);
+        let held = net.bulge(-700.0).unwrap_or(f64::INFINITY);
+        lobes.min(held)
+    }
+
+    /// The tension at which the meridian has curvature `curvature` where it is parallel to the axis at radius `r` with the [`Net::push`]
+    /// `push`: push - h = k N, with h of fibres and bladder.
+    ///
+    /// Linear in T for inextensible fibres; else a bracketed Newton's method on the values and one step more for the derivatives.
+    /// `None` if there is none with a positive tension (with a bladder: with a positive meridional force), or the fibres can't reach that radius.
+    pub(crate) fn tension_at_equator(&self, r: D, push: D, curvature: D) -> Option<D> {
+        // The cloth's force acts, and its hoop term is in the push.
+        let bare = Net { cloth: None, ..*self };
+        let pull = self.cloth.map_or(D::from(0.0), |cloth| cloth.energy(r));
+        let gap = |tension: D| {
+            let local = bare.local(r, tension);
+            let gap = push - local.hoop - curvature * (local.force + pull);
+            (gap, local.hoop_t + curvature * local.force_t)
+        };
+        let (at_zero, slope) = gap(D::from(0.0));
+        let linear = at_zero / slope;
+        if self.compliance.value() == 0.0 {
+            // Rubber may carry more than the pressure: what fibres that can be pushed would do there tells when they become slack.
+            let holds = if self.bladder.is_some() {
+                (bare.local(r, linear).force + pull).value() > 0.0
+            } else {
+                linear.value() > 0.0
+            };
+            return (holds && linear.value().is_finite()).then_some(linear);
+        }
+        if linear.value() <= 0.0 && self.bladder.is_some() {
+            return pushed(gap, linear);
+        }
+        // Stretching makes the true tension smaller than the linear estimate by up to a power of the stretch.
+        let mut tension = linear.value().abs() / (linear.value().abs() * self.compliance.value() + 1.0);
+        let (mut low, mut high) = (0.0, f64::INFINITY);
+        for _ in 0..200 {
+            let (residual, slope) = gap(D::from(tension));
+            let newton = tension + (residual / slope).value();
+            if residual.value() > 0.0 {
+                low = tension;
+            } else {
+                high = tension;
+            }
+            if (newton - tension).abs() <= 1e-9 * tension {
+                // The quadratic step from here also settles the derivatives.
+                return Some(residual / slope + tension);
+            }
+            tension = match (newton > low && newton < high, high.is_finite()) {
+                (true, _) => newton.min(4.0 * tension),
+                (false, true) => 0.5 * (low + high),
+                (false, false) => 4.0 * tension,
+            };
+            if !tension.is_finite() || tension <= 0.0 {
+                break;
+            }
+        }
+        None
+    }
+}
+
+/// The root of a `gap` with its slope at a negative tension, by Newton's method from the linear estimate.
+fn pushed<D: Real>(gap: impl Fn(D) -> (D, D), linear: D) -> Option<D> {
+    let mut tension = linear.value();
+    for _ in 0..30 {
+        let (residual, slope) = gap(D::from(tension));
+        let step = (residual / slope).value();
+        if step.abs() <= 1e-9 * tension.abs() {
+            return Some(residual / slope + tension);
+        }
+        tension += step;
+    }
+    None
+}
+
+impl Net<f64> {
+    /// Whether fibres are slack somewhere between mid-length and the fitting. With the tension T and f = sigma w_1 - w of the walls on fibres
+    /// of their own length, H = sigma N - w is the same all along, and T has the sign of H - f.
+    pub(crate) fn is_slack(&self, mid_radius: f64, mid_tension: f64) -> bool {
+        if self.bladder.is_none() {
+            return false;
+        }
+        let middle = self.acting_at(mid_radius);
+        let local = middle.local(mid_radius, mid_tension);
+        let stored = 0.5 * self.compliance * mid_tension.powi(2) + middle.wall(local.sigma, mid_radius).w;
+        let energy = local.sigma * local.force - stored;
+        (0..=SAMPLES).any(|i| {
+            let r = mid_radius + (self.end_radius - mid_radius) * f64::from(i) / f64::from(SAMPLES);
+            let sigma = (1.0 - (self.turn * r).powi(2)).sqrt();
+            let wall = self.acting_at(r).wall(sigma, r);
+            // Where fibres of their own length don't reach, sigma is none, and they are taut.
+            energy < sigma * wall.w_1 - wall.w - SLACK * energy.abs()
+        })
+    }
+}
