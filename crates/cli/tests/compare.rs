@@ -184,7 +184,6 @@ fn bad_input_gets_one_clear_message() {
             "pressure [bar],contraction [%],force [N]\n1,5,100\n1,5\n",
             &["fewer fields than the header (line 3)"],
         ),
-        ("pressure [bar],contraction [%],force [N]\n1,55,1000\n1,56,900\n", &["line 2-3"]),
     ];
     for (text, parts) in cases {
         let data = folder.write("data.csv", text);
@@ -220,6 +219,22 @@ fn bad_input_gets_one_clear_message() {
     }
     // Nothing is left behind.
     assert_eq!(folder.names(), ["data.csv", "muscle.toml"]);
+}
+
+/// A base is there to be wrong: a muscle that would push where this one pulls is compared all the same, and that is said.
+#[test]
+fn a_base_that_would_push_is_shown_with_a_warning() {
+    let folder = Folder::new("pushes");
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let data = folder
+        .write("data.csv", "pressure [bar],contraction [%],force [N]\n1,52,1000\n1,53,900\n2,52,1900\n");
+    let output = bulge(&["compare", &data, "--muscle", &muscle]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        output.status.success() && text.contains("line 2-4"),
+        "{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
 }
 
 /// A file as a laboratory writes it, with a row that can't be used and one without pressure, from standard input too; what was guessed is told.

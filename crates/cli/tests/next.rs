@@ -82,8 +82,13 @@ fn proposed(says: &str) -> String {
     if says.contains("sines at three pressures") {
         return block("2,3.5,5", "wave = \"sine\"\nperiod = \"50 s\"\ncycles = 2");
     }
-    if says.contains("slow loops, and loops twenty times as fast") {
-        return block("2,5", "period = \"50 s\"") + &block("2,5", "period = \"2.5 s\"");
+    for (speed, period) in [("ten times slower", "500 s"), ("ten times faster", "5 s")] {
+        if says.contains(&format!("the same loops, and then {speed}")) {
+            return block("2,5", "period = \"50 s\"") + &block("2,5", &format!("period = \"{period}\""));
+        }
+    }
+    if says.contains("steps of contraction with holds of a minute") {
+        return block("2,5", "shape = \"stairs\"\nsteps = 4\nhold = \"60 s\"\nperiod = \"560 s\"");
     }
     assert!(says.contains("loops at six pressures"), "a proposal that this test doesn't know: {says}");
     block("2,2.6,3.2,3.8,4.4,5", "period = \"50 s\"")
@@ -137,7 +142,7 @@ fn where_nothing_is_open_the_largest_limit_is_named() {
     for part in [
         "adequate: ",
         "nothing to separate: ",
-        "could not be looked for (needs a column `temperature` that changes)",
+        "could not be looked for (needs a path with a column `time` on which the pressure rises",
     ] {
         assert!(words.contains(part), "{part:?} is not in {words}");
     }

@@ -74,7 +74,7 @@ fn effects_that_look_alike_are_named() {
         "2.00 N white, 1.00 N correlated over 5.00 s (the protocol)",
         "seen from (3.3 sigma)",
         "bladder-elasticity modulus",
-        "cannot be seen (does nothing at these pressures and contractions): end-radius",
+        "cannot be seen (does nothing at these pressures and contractions)",
         "pressure-threshold = pressure-offset",
         "bulge simulate ",
     ] {
@@ -115,7 +115,7 @@ fn bad_input_gets_one_clear_message() {
     for (arguments, expected, parts) in [
         (&["--muscle", MUSCLE, "--protocol", &slip][..], 1, &["slip.toml:5:1", "`rows`"][..]),
         (&["--muscle", MUSCLE, "--protocol", &few], 1, &["few.toml", "`rows` is 1"]),
-        (&["--muscle", MUSCLE, "--protocol", "none.toml"], 1, &["none.toml", "cannot be read"]),
+        (&["--muscle", MUSCLE, "--protocol", "none.toml"], 1, &["none.toml", "there is no such file"]),
         (&["--muscle", "nobody", "--protocol", PROTOCOL], 1, &["no shipped muscle is called `nobody`"]),
         (&["--muscle", MUSCLE, "--protocol", PROTOCOL, "--effects", "own.toml"], 1, &["own.toml"]),
         (&["--muscle", MUSCLE], 2, &["--protocol"]),

@@ -194,7 +194,7 @@ fn bad_input_is_answered_with_one_message() {
             "end-taper",
             ["slip.toml:10:1: unknown key `cicles`", "did you mean `cycles`?"],
         ),
-        (MUSCLE, "none.toml", "end-taper", ["none.toml", "cannot be read"]),
+        (MUSCLE, "none.toml", "end-taper", ["none.toml", "there is no such file"]),
         ("nobody", PROTOCOL, "end-taper", ["no shipped muscle is called `nobody`", "dmsp-20-250"]),
         (MUSCLE, drawn.as_str(), "end-taper", ["needs widths", "[instruments]"]),
         (MUSCLE, map.as_str(), "coulomb-friction=14 N", ["`coulomb-friction` needs a path", "leave it out"]),

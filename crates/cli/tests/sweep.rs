@@ -118,7 +118,7 @@ fn what_is_wrong_is_status_1_with_place_and_cure() {
     }
     assert_eq!(folder.names(), ["sweep.toml"]);
     let (status, message) = failure(&["sweep", &folder.path("no.toml"), "--out", &out]);
-    assert!(status == 1 && message.contains("name a sweep file"), "{message}");
+    assert!(status == 1 && message.contains("there is no such file"), "{message}");
     let sweep = folder.write("sweep.toml", SWEEP);
     assert_eq!(failure(&["sweep", &sweep]).0, 2);
     for chunks in ["3", "3..3", "5..2", "a..b", "-1..2"] {

@@ -23,4 +23,5 @@ pub(crate) mod showing;
 pub(crate) mod smooth;
 pub(crate) mod space;
 pub(crate) mod tangents;
+mod unanswered;
 pub(crate) mod write;

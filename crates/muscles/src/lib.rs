@@ -33,6 +33,7 @@
 mod any_unit;
 mod any_unit_error;
 mod construction;
+mod data_columns;
 mod digits;
 mod dimension;
 mod error;

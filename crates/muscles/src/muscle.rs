@@ -47,7 +47,7 @@ pub struct Muscle {
     widths: Vec<(Parameter, f64)>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) specimens: Vec<Specimen>,
-    data_columns: Vec<(String, String)>,
+    pub(crate) data_columns: Vec<(String, String)>,
 }
 
 impl Muscle {
@@ -159,19 +159,6 @@ impl Muscle {
             None => self.learnt.push(effect),
         }
         self
-    }
-
-    /// The same with a column that files of its measurements have: the quantity, and the heading with its unit.
-    #[must_use]
-    pub fn with_data_column(mut self, quantity: impl Into<String>, column: impl Into<String>) -> Self {
-        self.data_columns.push((quantity.into(), column.into()));
-        self
-    }
-
-    /// Columns that files of its measurements have, as `[data.columns]` states them: quantity and heading, such as `force` and `Force_N [N]`.
-    #[must_use]
-    pub fn data_columns(&self) -> &[(String, String)] {
-        &self.data_columns
     }
 
     /// The same without learnt effects: what this crate itself knows of the muscle.

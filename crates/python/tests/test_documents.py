@@ -3,7 +3,7 @@
 import bulge
 import pytest
 
-FILES = {"files"}
+FILES = {"columns", "files"}
 
 
 @pytest.fixture(scope="module")

@@ -156,7 +156,7 @@ def steps_of(call):
 def test_progress_rises_to_one(braid, rubbed, tmp_path):
     plan = bulge.Sweep(SHORT)
     for call, first in [
-        (lambda told: braid.force(LONG[::4], pressure=BAR, progress=told), 0.5),
+        (lambda told: braid.force(LONG[::2], pressure=BAR, progress=told), 0.5),
         (lambda told: bulge.diagnose(rubbed.data, rubbed.muscle, progress=told), 0.5),
         (lambda told: bulge.next_experiment(rubbed.data, rubbed.muscle, progress=told), 0.5),
         (lambda told: plan.run(tmp_path / "sweep", progress=told), 0.5),
@@ -188,7 +188,7 @@ def test_an_exception_of_the_callback_is_raised_by_the_call(braid, rubbed, diagn
 
     plan = bulge.Sweep(SHORT)
     for call in [
-        lambda: braid.force(LONG[::4], pressure=BAR, progress=tell),
+        lambda: braid.force(LONG[::2], pressure=BAR, progress=tell),
         lambda: braid.force(LONG[:3], pressure=BAR, progress=tell),
         lambda: bulge.diagnose(rubbed.data, rubbed.muscle, progress=tell),
         lambda: plan.run(tmp_path / "sweep", progress=tell),

@@ -99,7 +99,7 @@ impl Folds {
             let count = groups.min(FOLDS);
             Some(Self { by, of: of.into_iter().map(|group| group * count / groups).collect(), count })
         };
-        if levels.len() >= 3 {
+        if levels.len() >= 3 && !levels.is_cut() {
             return folded("pressure", levels.of.clone(), levels.len());
         }
         let moments = record.moments();
@@ -108,6 +108,9 @@ impl Folds {
             if let Some((of, groups)) = held(values, used) {
                 return folded(by, of, groups);
             }
+        }
+        if levels.len() >= 3 {
+            return folded("pressure", levels.of.clone(), levels.len());
         }
         if record.specimens().len() >= 2 {
             let of = moments.iter().map(|m| m.specimen as usize).collect();

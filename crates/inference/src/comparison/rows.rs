@@ -41,7 +41,7 @@ impl Used {
             let (file, line) = data.line(*row);
             let file = data.files().get(file).map_or("", |file| file.name.as_str());
             let reason =
-                format!("a gauge pressure of {} Pa has no equilibrium", significant(pressure[*row], 4));
+                format!("a gauge pressure of {} Pa has no equilibrium", significant(pressure[*row], 3));
             self.reading.add(file, line, reason);
         }
         if !rows.is_empty() {

@@ -82,8 +82,7 @@ impl Ground {
 
     /// Variance of a mean as the law says it \[N^2\].
     fn variance(&self) -> f64 {
-        let means = self.input_variances.len().max(1) as f64;
-        let inputs = self.input_variances.iter().sum::<f64>() / means;
+        let inputs = median(self.input_variances.clone());
         self.law.as_ref().map_or(f64::INFINITY, |law| {
             law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs
         })
@@ -184,8 +183,7 @@ fn unequal(averaged: &Averaged, counts: &[f64], within: f64, stated: Option<&[f6
 
 /// Rows that count as independent: as many single rows as would know a constant as well as the means do.
 pub(crate) fn effective_rows(law: &NoiseLaw, ground: &Ground, sd_n: f64) -> f64 {
-    let means = ground.input_variances.len().max(1) as f64;
-    let inputs = ground.input_variances.iter().sum::<f64>() / means;
+    let inputs = median(ground.input_variances.clone());
     let of_mean = law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs;
     let rows: f64 = ground.averaged.counts().sum();
     if of_mean > 0.0 { (ground.whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
@@ -205,7 +203,11 @@ fn white_of_row(law: &NoiseLaw, ground: &Ground) -> f64 {
 
 /// Median variance of single rows from those of means: that of rows in doubt is not the rule.
 fn variance_of_rows(variances: &[f64], counts: &[f64]) -> f64 {
-    let mut all: Vec<f64> = variances.iter().zip(counts).map(|(variance, count)| variance * count).collect();
-    all.sort_unstable_by(f64::total_cmp);
-    all.get(all.len() / 2).copied().unwrap_or(0.0)
+    median(variances.iter().zip(counts).map(|(variance, count)| variance * count).collect())
+}
+
+/// The median; 0 of none.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }

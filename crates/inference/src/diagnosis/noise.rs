@@ -7,6 +7,7 @@ use bulge_muscles::Muscle;
 
 use crate::comparison::levels::Levels;
 use crate::diagnosis::as_set::as_set;
+use crate::diagnosis::ground::median;
 use crate::diagnosis::pure_error::BetweenCycles;
 use crate::diagnosis::showing::Showings;
 use crate::diagnosis::smooth::smooth;
@@ -95,9 +96,12 @@ impl Source<'_> {
                 let rows: Vec<f64> =
                     (0..n).flat_map(|i| design.iter().map(move |column| column[i])).collect();
                 let law = NoiseLaw::estimate(self.record, &vec![true; n], &inputs, &rows, residual).ok()?;
-                let mean = inputs.iter().sum::<f64>() / n.max(1) as f64;
                 let cycles = BetweenCycles::of(self.record, residual);
-                let law = if let Some(cycles) = cycles { cycles.bounds(law, mean) } else { law };
+                // The median: rows whose direction is in doubt have a variance of their own.
+                let law = match cycles {
+                    Some(cycles) => cycles.bounds(law, median(inputs.clone())),
+                    None => law,
+                };
                 Some((law, inputs))
             })
             .flatten();

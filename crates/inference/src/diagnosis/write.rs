@@ -1,14 +1,12 @@
 //! From what was found to the diagnosis as people and programs read it.
 
 use bulge_effects::Effect;
-use bulge_measurements::Data;
+use bulge_muscles::Muscle;
 use bulge_muscles::units::significant;
-use bulge_muscles::{Muscle, Quantity};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::comparison::document::{Comparison, DataSummary};
-use crate::comparison::rows::full_scale;
+use crate::comparison::document::Comparison;
 use crate::diagnosis::classes::{Class, Rival};
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::document::{
@@ -24,7 +22,7 @@ use crate::diagnosis::search::{Search, Stage, singles};
 use crate::dot::dot;
 use crate::fit::interval;
 use crate::fit::problem::{FitProblem, free};
-use crate::noise::law::{NoiseLaw, NoiseSource};
+use crate::noise::law::NoiseSource;
 use bulge_numerics::least_squares::Side;
 
 /// The family of hysteresis with a transition after each reversal, and what it is without.
@@ -110,111 +108,7 @@ const fn shows_effects(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::Missing | Verdict::Unknown)
 }
 
-/// Too few rows for any statement.
-pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnosis {
-    let stated = muscle.instruments().force.map_or(0.0, |force| force.noise());
-    let law = NoiseLaw::white(stated, NoiseSource::Instruments, 0.0, "not known from these rows".to_owned());
-    Diagnosis {
-        schema: "bulge.diagnosis/1",
-        muscle: muscle.name().to_owned(),
-        data: DiagnosedData {
-            rows: data.len(),
-            used: data.len(),
-            effective_rows: data.len() as f64,
-            reading: data.reading().clone(),
-            sha256: data.sha256(),
-            sweeps: data.sweeps().len(),
-            specimens: data.specimens().len(),
-            left_out: Vec::new(),
-            findings: Vec::new(),
-        },
-        noise: DiagnosedNoise { sd_n: stated, correlated: false, source: source(law.source).to_owned(), law },
-        verdict: Verdict::CannotTell,
-        says: format!(
-            "these data can't tell: {reason}. Measure at least three pressures with 20 rows each, shortening and lengthening, with a column `time`"
-        ),
-        missing: Vec::new(),
-        nearest: Vec::new(),
-        candidates: Vec::new(),
-        ladder: Vec::new(),
-        noise_floor_n: stated,
-        r#where: Vec::new(),
-        explained: Vec::new(),
-        remaining: Remaining {
-            structured: false,
-            misfit_n: 0.0,
-            misfit_interval_n: [0.0, 0.0],
-            hints: Vec::new(),
-            surface: Vec::new(),
-        },
-        next_experiment: None,
-        warnings: Vec::new(),
-        comparison: nothing_compared(data, muscle),
-    }
-}
-
-/// Readings in another unit or of another sign than stated: no physics is looked for, and the question is the answer.
-pub(crate) fn unanswered(data: &Data, muscle: &Muscle, comparison: Comparison) -> Diagnosis {
-    let questions: Vec<String> = comparison.data.findings.iter().map(ToString::to_string).collect();
-    let diagnosis = cannot_tell(data, muscle, "");
-    Diagnosis {
-        says: format!(
-            "no physics is looked for in readings that seem to be others than stated: {}",
-            questions.join("; or ")
-        ),
-        data: DiagnosedData {
-            used: comparison.data.used,
-            left_out: comparison.data.left_out.clone(),
-            findings: comparison.data.findings.clone(),
-            ..diagnosis.data
-        },
-        warnings: comparison.warnings.clone(),
-        comparison,
-        ..diagnosis
-    }
-}
-
-/// What was measured, and no model beside it.
-fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
-    let range = |values: &[f64]| {
-        values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
-    };
-    let summary = DataSummary {
-        rows: data.len(),
-        used: data.len(),
-        left_out: Vec::new(),
-        findings: Vec::new(),
-        reading: data.reading().clone(),
-        sha256: data.sha256(),
-        files: data.files().iter().map(|file| file.name.clone()).collect(),
-        sweeps: data.sweeps().len(),
-        specimens: data.specimens().to_vec(),
-        is_path: data.time().is_some(),
-        pressure_pa: range(data.pressure()),
-        contraction: range(&data.contraction(muscle.length().si())),
-        force_n: range(data.force()),
-        full_scale_n: full_scale(data.force()),
-    };
-    Comparison {
-        schema: "bulge.comparison/1",
-        muscle: muscle.name().to_owned(),
-        base: "equilibrium".to_owned(),
-        data: summary,
-        quality: Vec::new(),
-        noise_floor: None,
-        ladder: Vec::new(),
-        by: Vec::new(),
-        loops: Vec::new(),
-        maps: Vec::new(),
-        curves: Vec::new(),
-        contributions: Vec::new(),
-        scatter: Vec::new(),
-        rivals: Vec::new(),
-        warnings: Vec::new(),
-    }
-}
-
-const fn source(source: NoiseSource) -> &'static str {
+pub(crate) const fn source(source: NoiseSource) -> &'static str {
     match source {
         NoiseSource::Repeats => "repeats",
         NoiseSource::Saturated => "saturated",

@@ -421,6 +421,8 @@ mod tests {
         }
         let mixed = format!("{SHORT}{}", with("shape = \"static\""));
         assert!(Protocol::from_toml(&mixed, "p").unwrap_err().what().contains("don't fit into one file"));
-        assert!(Protocol::read("no/such/protocol.toml").unwrap_err().what().contains("cannot be read"));
+        assert!(
+            Protocol::read("no/such/protocol.toml").unwrap_err().what().contains("there is no such file")
+        );
     }
 }

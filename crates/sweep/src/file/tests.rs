@@ -149,7 +149,7 @@ fn a_sweep_beside_its_muscle() {
     let missing = at("t.toml").unwrap_err();
     assert!(missing.origin().ends_with("none.toml") && missing.what().contains("no such file"), "{missing}");
     assert!(at("u.toml").unwrap_err().what().contains("unknown key `muscle`"));
-    assert!(at("v.toml").unwrap_err().what().contains("cannot be read"));
+    assert!(at("v.toml").unwrap_err().what().contains("there is no such file"));
     assert!(Plan::read(folder.path()).unwrap_err().what().contains("a directory, not a sweep file"));
 }
 

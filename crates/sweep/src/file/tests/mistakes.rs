@@ -36,7 +36,7 @@ fn all_refused(mistakes: Mistakes<'_>) {
 #[test]
 fn mistakes_in_the_file_as_a_whole() {
     all_refused(&[
-        ("x = 40 s".to_owned(), ["s.toml:1:", "not TOML", "`pressure = \"1 bar\"`"]),
+        ("x = 40 s".to_owned(), ["s.toml:1:", "not TOML", "put text in quotes: `x = \"40 s\"`"]),
         (String::new(), ["s.toml:1:1", "needs `muscle`", "add such as `muscle = \"ppam-2-r16\"`"]),
         ("muscle = \"ppam-1\"".to_owned(), ["s.toml:1:1", "needs `axes`", "axes.contraction = "]),
         ("muscle = \"ppam-1\"\n[axes]".to_owned(), ["s.toml:1:1", "needs `axes`", "axes.contraction = "]),
