@@ -226,12 +226,13 @@ fn bad_input_gets_one_clear_message() {
 fn a_base_that_would_push_is_shown_with_a_warning() {
     let folder = Folder::new("pushes");
     let muscle = folder.write("muscle.toml", MUSCLE);
-    let data = folder
-        .write("data.csv", "pressure [bar],contraction [%],force [N]\n1,52,1000\n1,53,900\n2,52,1900\n");
+    let rows =
+        "1,10,900\n1,12,800\n1,14,700\n1,20,500\n1,52,1000\n1,53,900\n2,52,1900\n2,53,1900\n2,54,1800\n";
+    let data = folder.write("data.csv", &format!("pressure [bar],contraction [%],force [N]\n{rows}"));
     let output = bulge(&["compare", &data, "--muscle", &muscle]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(
-        output.status.success() && text.contains("line 2-4"),
+        output.status.success() && text.contains("would push at 5 of 9 rows (line 6-10;"),
         "{text}{}",
         String::from_utf8_lossy(&output.stderr)
     );

@@ -74,7 +74,7 @@ fn effects_that_look_alike_are_named() {
         "2.00 N white, 1.00 N correlated over 5.00 s (the protocol)",
         "seen from (3.3 sigma)",
         "bladder-elasticity modulus",
-        "cannot be seen (does nothing at these pressures and contractions)",
+        "cannot be seen (would change nothing here): low-load-slack",
         "pressure-threshold = pressure-offset",
         "bulge simulate ",
     ] {

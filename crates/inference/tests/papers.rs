@@ -75,7 +75,9 @@ fn loops_of_a_fluidic_muscle_show_hysteresis_and_bladder() {
     let file = "name = \"DMSP-20-400N\"\nkind = \"braided\"\nlength = \"400 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\n\
                 ends = \"cylinder\"\nwall = \"2 mm\"\n";
     let found = diagnosed(&hysteresis_loops(), &from_toml(file, "muscle").unwrap());
-    let families: Vec<String> = found.added().map(|missing| family(&missing.effect)).collect();
+    // The head of a class, and what these data can't tell from it: of a loop without time a dead band of the valve makes nearly the same.
+    let families: Vec<String> =
+        found.added().flat_map(|missing| &missing.class).map(|name| family(name)).collect();
     let has = |names: &[&str]| families.iter().any(|family| names.contains(&family.as_str()));
     assert!(has(&["bladder-elasticity"]), "{families:?}");
     assert!(has(&["coulomb-friction", "presliding-hysteresis", "pressure-friction"]), "{families:?}");

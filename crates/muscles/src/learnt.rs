@@ -3,6 +3,7 @@
 use crate::dimension::Dimension;
 use crate::error::MuscleError;
 use crate::file_error::FileError;
+use crate::muscle::Muscle;
 use crate::settings::nearest;
 use crate::units::{any_with_width, exact_any_text, shortened, unit};
 use serde::Serialize;
@@ -236,6 +237,25 @@ impl LearntValue {
         // A pure number needs no quotes.
         let bare = self.width.is_none() && in_unit.parse::<f64>().is_ok();
         if bare { in_unit } else { format!("\"{in_unit}\"") }
+    }
+}
+
+impl Muscle {
+    /// The same with one more learnt effect, or with other values of one that it has.
+    #[must_use]
+    pub fn with_learnt(mut self, effect: Learnt) -> Self {
+        match self.learnt.iter_mut().find(|other| other.name() == effect.name()) {
+            Some(other) => *other = effect,
+            None => self.learnt.push(effect),
+        }
+        self
+    }
+
+    /// The same without learnt effects: what this crate itself knows of the muscle.
+    #[must_use]
+    pub fn without_learnt(mut self) -> Self {
+        self.learnt.clear();
+        self
     }
 }
 

@@ -42,7 +42,7 @@ pub struct Muscle {
     bladder: Option<Bladder>,
     unfolding: Option<Unfolding>,
     gas_wall: Option<GasWall>,
-    learnt: Vec<Learnt>,
+    pub(crate) learnt: Vec<Learnt>,
     instruments: Instruments,
     widths: Vec<(Parameter, f64)>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -148,23 +148,6 @@ impl Muscle {
         if let Construction::Braided(braided) = &self.construction {
             self.construction = Construction::Braided(braided.with_ends(ends));
         }
-        self
-    }
-
-    /// The same with one more learnt effect, or with other values of one that it has.
-    #[must_use]
-    pub fn with_learnt(mut self, effect: Learnt) -> Self {
-        match self.learnt.iter_mut().find(|other| other.name() == effect.name()) {
-            Some(other) => *other = effect,
-            None => self.learnt.push(effect),
-        }
-        self
-    }
-
-    /// The same without learnt effects: what this crate itself knows of the muscle.
-    #[must_use]
-    pub fn without_learnt(mut self) -> Self {
-        self.learnt.clear();
         self
     }
 

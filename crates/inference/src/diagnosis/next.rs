@@ -4,7 +4,7 @@
 //! d^2 after R repeats = d^2 of the data at hand + R d^2 of the protocol,    d the sigmas between the named effect and its nearest rival after refitting
 //! ```
 
-use bulge_effects::Effect;
+use bulge_effects::{Effect, Parity};
 use bulge_model::{Record, Wanted};
 use bulge_muscles::units::significant;
 use serde::Serialize;
@@ -139,6 +139,13 @@ struct Proposal {
     protocol: Protocol,
 }
 
+impl Proposal {
+    /// Whether the muscle is held in between.
+    fn holds(&self) -> bool {
+        self.protocol.blocks.iter().any(|block| matches!(block.path, Path::Stairs { .. }))
+    }
+}
+
 /// What experiments can be made.
 fn proposals(limits: &Limits) -> Vec<Proposal> {
     let [low, high] = limits.contraction;
@@ -233,7 +240,9 @@ pub(crate) fn next_experiment(
     let separates = vec![named.clone(), nearest.card().name.to_owned()];
     let names: Vec<String> = rivals.iter().map(|(effect, _)| effect.card().name.to_owned()).collect();
     let mut best: Option<(f64, &'static str)> = None;
-    for proposal in proposals(limits) {
+    // A law of friction says nothing certain of what it does while all stands still: holds decide nothing about it.
+    let is_friction = open.class.effect.card().signature.parity == Parity::Odd;
+    for proposal in proposals(limits).into_iter().filter(|proposal| !(is_friction && proposal.holds())) {
         let Some(sigma) = least_separation(given, with, without, (&named, &names), &proposal.protocol) else {
             continue;
         };

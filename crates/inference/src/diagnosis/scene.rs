@@ -4,6 +4,7 @@ use bulge_effects::Catalogue;
 use bulge_model::{ModelError, Record};
 
 use crate::diagnosis::candidates::Candidate;
+use crate::diagnosis::ground::median;
 use crate::diagnosis::null::{Chance, Null, Statistics};
 use crate::diagnosis::showing::Showings;
 use crate::diagnosis::smooth::{Variable, smooth};
@@ -17,6 +18,8 @@ use crate::progress::Progress;
 
 /// A smooth function adds nothing if less than this part of it is new.
 const NEW: f64 = 1e-3;
+/// A row whose stated standard deviation is that many times the usual one hardly counts.
+const DOUBTFUL: f64 = 2.0;
 /// Smooth functions for at most this part of the rows that count as independent.
 const PART: f64 = 0.25;
 
@@ -155,20 +158,26 @@ impl Given<'_> {
             known.extend(orthogonal(raw.clone(), white.clone(), &known));
         }
         let mut found: Vec<Direction> = Vec::new();
+        let doubtful = self.doubtful();
         for function in smooth(self.record) {
             if found.len() >= most {
                 break;
             }
             let white = whiten(&function.values);
             let Some((values, unit)) = orthogonal(function.values, white, &known) else { continue };
-            found.push(Direction {
-                variable: function.variable,
-                unit: space.enter(&unit),
-                values: values.clone(),
-            });
+            let mut shown = values.clone();
+            doubtful.iter().for_each(|row| shown[*row] = 0.0);
+            found.push(Direction { variable: function.variable, unit: space.enter(&unit), values: shown });
             known.push((values, unit));
         }
         found
+    }
+
+    /// Rows that hardly count, because their direction is in doubt: what a function would be there is not known from them.
+    fn doubtful(&self) -> Vec<usize> {
+        let Some(sd) = self.record.force_sd() else { return Vec::new() };
+        let usual = median(sd.to_vec());
+        (0..sd.len()).filter(|row| sd[*row] > DOUBTFUL * usual).collect()
     }
 }
 
