@@ -156,10 +156,10 @@ def steps_of(call):
 def test_progress_rises_to_one(braid, rubbed, tmp_path):
     plan = bulge.Sweep(SHORT)
     for call, first in [
-        (lambda told: braid.force(LONG[::2], pressure=BAR, progress=told), 1.0),
+        (lambda told: braid.force(LONG[::4], pressure=BAR, progress=told), 0.5),
         (lambda told: bulge.diagnose(rubbed.data, rubbed.muscle, progress=told), 0.5),
         (lambda told: bulge.next_experiment(rubbed.data, rubbed.muscle, progress=told), 0.5),
-        (lambda told: plan.run(tmp_path / "sweep", progress=told), 0.5),
+        (lambda told: plan.run(tmp_path / "sweep", progress=told), 1.0),
     ]:
         _, told = steps_of(call)
         shares = [share for share, _ in told]

@@ -166,7 +166,9 @@ impl Given<'_> {
             let white = whiten(&function.values);
             let Some((values, unit)) = orthogonal(function.values, white, &known) else { continue };
             let mut shown = values.clone();
-            doubtful.iter().for_each(|row| shown[*row] = 0.0);
+            for row in &doubtful {
+                shown[*row] = 0.0;
+            }
             found.push(Direction { variable: function.variable, unit: space.enter(&unit), values: shown });
             known.push((values, unit));
         }
