@@ -105,6 +105,16 @@ pub(crate) fn text(comparison: &Comparison, effects: &[Arc<dyn Effect>]) -> Stri
         three(data.force_n[0]),
         three(data.force_n[1])
     );
+    for held in &comparison.isotonic {
+        let _ = writeln!(
+            out,
+            "  sweep {} held {} N: contraction off by {} % with the base, {} % with all (RMS)",
+            held.sweep,
+            three(held.load_n),
+            three(100.0 * held.rmse_contraction[0]),
+            three(100.0 * held.rmse_contraction[1])
+        );
+    }
     for left in &data.left_out {
         let _ = writeln!(out, "  left out {} rows (line {}): {}", left.rows, left.lines, left.why);
     }

@@ -132,13 +132,14 @@ impl Problem {
         variables: &[Variable],
         approach: Approach,
     ) -> Result<Linearised, FibreError> {
-        self.linearised_from(None, contraction, variables, approach)
+        let found = self.linearised_from(None, contraction, variables, approach);
+        found.map_err(|error| self.explained(error, contraction, approach))
     }
 
     /// The same from a neighbouring equilibrium, of this muscle or a similar one. The answer is the same within its accuracy.
     ///
     /// # Errors
-    /// Those of [`Problem::linearised`].
+    /// Those of [`Problem::linearised`], but where nothing is found the limit isn't searched for: see [`Problem::explained`].
     pub fn linearised_from(
         &self,
         start: Option<&Start>,
@@ -179,8 +180,8 @@ impl Problem {
             Found::Shooting(shot) => Some(shot.towards(self, ask.contraction)),
             Found::ClosedForm(_) => None,
         });
-        let outcome = self.outcome_of_many(self.method(ask.approach)?, ask.contraction, &net, from, FITTED);
-        let outcome = outcome.map_err(|error| self.told(error, ask.contraction, ask.approach))?;
+        let outcome =
+            self.outcome_of_many(self.method(ask.approach)?, ask.contraction, &net, from, FITTED)?;
         let with_contraction = |total: &Total<N>| {
             let mut gradient = total.by_parameter;
             gradient[0] = total.by_contraction;

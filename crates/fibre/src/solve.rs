@@ -96,11 +96,13 @@ impl Problem {
     /// See [`FibreError`].
     pub fn follow(&self, contraction: f64, approach: Approach) -> Result<Response, FibreError> {
         let found = self.at(self.method(approach)?, contraction, None);
-        found.map(|found| found.response).map_err(|error| self.told(error, contraction, approach))
+        found.map(|found| found.response).map_err(|error| self.explained(error, contraction, approach))
     }
 
-    /// Where no equilibrium was found beyond the limit, as a long braid or a soft one would bulge in more than one place: that is what is told.
-    pub(crate) fn told(&self, error: FibreError, contraction: f64, approach: Approach) -> FibreError {
+    /// Where no equilibrium was found beyond the limit, as a long braid or a soft one would bulge in more than one place, the error that says so; else the same. It
+    /// takes a search for the limit.
+    #[must_use]
+    pub fn explained(&self, error: FibreError, contraction: f64, approach: Approach) -> FibreError {
         if !matches!(error, FibreError::NotConverged { .. }) {
             return error;
         }

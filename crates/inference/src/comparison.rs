@@ -2,10 +2,12 @@
 
 pub(crate) mod analysis;
 mod base_law;
+mod buckled;
 pub(crate) mod compare;
 pub(crate) mod document;
 pub(crate) mod doubt;
 pub(crate) mod floor;
+pub(crate) mod isotonic;
 pub(crate) mod levels;
 pub(crate) mod loops;
 pub(crate) mod mismatch;

@@ -25,8 +25,8 @@ pub use bulge_numerics::Random;
 pub use comparison::analysis::Options;
 pub use comparison::compare::{Fitting, compare, fit_effects};
 pub use comparison::document::{
-    Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, LeftOut, LoopGap, Mismatch, NoiseFloor, Part,
-    ResidualMap, Rival, Rung, Stack,
+    Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, HeldLoad, HeldLoadPoint, LeftOut, LoopGap,
+    Mismatch, NoiseFloor, Part, ResidualMap, Rival, Rung, Stack,
 };
 pub use diagnosis::confidence::Confidence;
 pub use diagnosis::diagnose::{DiagnoseOptions, diagnose};

@@ -3,7 +3,7 @@
 use crate::columns::picked;
 use crate::data::Data;
 use crate::rate;
-use crate::stretch::Stretch;
+use crate::stretch::{self, Stretch};
 use crate::sweep::{Sweep, SweepKind};
 use serde::Serialize;
 
@@ -11,7 +11,8 @@ use serde::Serialize;
 ///
 /// Directions come from turning points: a row is one if the contraction goes back from it by more than a dead band before it goes on. The band is the
 /// largest of 1.5 quantisation steps, 2 (1 + sqrt(2 ln n)) standard deviations of the noise (n rows in the longest sweep), and 1/1000 of the travel.
-/// Rows that stay within the band for three times as long as a sine near its turning point are at rest. A turning point belongs to the
+/// Rows that stay within the band for three times as long as a sine near its turning point are at rest. Directions that the file states are taken where they go
+/// with the motion. A turning point belongs to the
 /// stretch that it ends, so that a row's direction is that of the motion that led to it; the first row of a sweep takes that of the second.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct History {
@@ -88,13 +89,14 @@ impl Data {
                 } else {
                     (stretches, &shortening[..], self.structure.band)
                 };
+                let driven = &*stretch::told(driven, &sweep.rows, self.stated_direction());
                 let contraction = self.contraction_per_shortening(sweep.specimen, l0);
                 self.follow(sweep, driven, &shortening, contraction, &mut history);
                 if is_isometric {
                     history.direction[sweep.rows.clone()].fill(0.0);
                     history.rate[sweep.rows.clone()].fill(0.0);
                 }
-                for stretch in filling {
+                for stretch in if is_isometric { driven } else { filling } {
                     history.pressure_direction[stretch.rows.clone()].fill(f64::from(stretch.direction));
                 }
                 if let Some(loops) = loops.get_mut(sweep.specimen as usize) {

@@ -4,14 +4,13 @@ use crate::error::MeasurementError;
 use crate::heading::Field;
 use crate::reading::{ReadOptions, Reading};
 use crate::slot::Slot;
+use crate::sweep;
 use crate::table::place_of;
 
 /// A displacement whose readings all lie between these shares of the muscle's length is the length itself.
 const LENGTHS: [f64; 2] = [0.4, 1.6];
 /// How far a contraction may be from the one that follows from the length.
 const SAME: f64 = 5e-3;
-/// A force that changes by a smaller share of its mean was held: a weight.
-const HELD: f64 = 0.1;
 
 /// Leaves one motion among the columns; `is_good` are the rows that count.
 pub(crate) fn settle(
@@ -40,7 +39,7 @@ pub(crate) fn settle(
     Ok(())
 }
 
-fn rows(is_good: &[bool]) -> impl Iterator<Item = usize> + '_ {
+fn rows(is_good: &[bool]) -> impl Iterator<Item = usize> + Clone + '_ {
     (0..is_good.len()).filter(|row| is_good[*row])
 }
 
@@ -116,7 +115,7 @@ fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
     };
     let (p, f, d) = ((pressure, means[0]), (force, means[1]), (way, means[2]));
     let (pp, dd, pd) = (covariance(p, p), covariance(d, d), covariance(p, d));
-    if covariance(f, f).sqrt() < HELD * means[1].abs() && pd != 0.0 {
+    if sweep::is_weight(rows(is_good).map(|row| force[row])) && pd != 0.0 {
         return Sign { shortens: pd > 0.0, why: "at a held force it goes with the pressure" };
     }
     let (pf, df) = (covariance(p, f), covariance(d, f));

@@ -112,6 +112,8 @@ pub enum FindingKind {
     RepeatDrift,
     /// Stated directions against the motion.
     DirectionContradicted,
+    /// A length that is held, but not quite.
+    HeldLengthDrifts,
     /// A row that is there twice.
     DuplicateRow,
     /// All rows have one pressure.

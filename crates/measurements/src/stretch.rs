@@ -2,6 +2,7 @@
 
 use crate::resolution::{Resolution, median};
 use crate::window::Window;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Rows over which the motion keeps its direction.
@@ -88,6 +89,44 @@ pub(crate) fn find(
         start = end;
     }
     found
+}
+
+/// Rows on either side of a turning point that belong to either stretch.
+pub(crate) const NEAR_TURN: usize = 2;
+/// Labels that are wrong in a larger share of the rows that move are none.
+const WRONG: f64 = 0.05;
+
+/// The rows of a stretch that surely belong to it; the ends of a sweep are no turning points.
+pub(crate) fn inner(stretch: &Stretch, sweep: &Range<usize>) -> Range<usize> {
+    let start = stretch.rows.start + if stretch.rows.start > sweep.start { NEAR_TURN } else { 0 };
+    let end = stretch.rows.end.saturating_sub(if stretch.rows.end < sweep.end { NEAR_TURN } else { 0 });
+    start..end.max(start)
+}
+
+/// The stretches as stated directions of all rows give them, where these go with the motion: they know better where it turns and rests.
+///
+/// Directions that are against the motion in more than 5 % of the rows that surely move, or change more than twice as often, are not used.
+pub(crate) fn told<'a>(
+    found: &'a [Stretch],
+    sweep: &Range<usize>,
+    stated: Option<&[i8]>,
+) -> Cow<'a, [Stretch]> {
+    let Some(stated) = stated.and_then(|stated| stated.get(sweep.clone())) else { return found.into() };
+    let (mut wrong, mut moving) = (0_usize, 0_usize);
+    for stretch in found.iter().filter(|stretch| stretch.direction != 0) {
+        let rows = inner(stretch, sweep);
+        moving += rows.len();
+        wrong += rows.filter(|row| stated[row - sweep.start] != stretch.direction).count();
+    }
+    let mut start = sweep.start;
+    let parts = stated.chunk_by(|a, b| a == b).map(|part| {
+        let rows = start..start + part.len();
+        start = rows.end;
+        Stretch { rows, direction: part[0] }
+    });
+    let told: Vec<Stretch> = parts.collect();
+    let is_used = moving > 0 && wrong as f64 <= WRONG * moving as f64 && told.len() <= 2 * found.len() + 1;
+    if is_used { told.into() } else { found.into() }
 }
 
 /// From one turning point to the next; the rows count from the start of the sweep.

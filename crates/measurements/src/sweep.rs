@@ -21,6 +21,8 @@ pub enum SweepKind {
     Hold,
     /// It keeps its length while the pressure changes.
     Isometric,
+    /// It moves under a held load while the pressure changes.
+    Isotonic,
     /// Rows without order in time.
     Static,
 }
@@ -44,6 +46,11 @@ pub(crate) const GAP: f64 = 20.0;
 const LONG_STEP: f64 = 0.2;
 /// A sweep whose contraction changes less, while the pressure changes, is isometric: the rig gives way a little.
 const ISOMETRIC_TRAVEL: f64 = 2e-3;
+/// So is one whose contraction changes less than this without turning more often than the pressure: a frame that gives way, or a clamp that creeps. A length that is
+/// driven to and fro at each pressure turns more often.
+const DRIFTING_TRAVEL: f64 = 1e-2;
+/// A force whose standard deviation is a smaller share of its mean was held: a weight.
+const HELD_FORCE: f64 = 0.1;
 /// A pressure that changes by more than this share of the largest is no constant pressure.
 const PRESSURE_CHANGE: f64 = 0.05;
 
@@ -174,18 +181,43 @@ pub(crate) fn is_held(pressure: &[f64], largest: f64) -> bool {
     high - low <= PRESSURE_CHANGE * largest
 }
 
-/// What a path does. `scale` is 1 for contractions and the longest length for lengths, `largest` the largest pressure in the data.
-pub(crate) fn kind(
-    stretches: &[Stretch],
-    pressure: &[f64],
-    motion: &[f64],
-    scale: f64,
-    largest: f64,
-) -> SweepKind {
+/// Whether a force was held.
+pub(crate) fn is_weight(force: impl Iterator<Item = f64> + Clone) -> bool {
+    let count = force.clone().count().max(1) as f64;
+    let mean = force.clone().sum::<f64>() / count;
+    let variance = force.map(|force| (force - mean).powi(2)).sum::<f64>() / count;
+    variance.sqrt() < HELD_FORCE * mean.abs()
+}
+
+/// The way of the length as a share of `scale`, if it is more than a clamped length gives way.
+pub(crate) fn drift(motion: &[f64], scale: f64) -> Option<f64> {
     let (low, high) = bounds(motion);
-    let does = |direction| stretches.iter().any(|stretch| stretch.direction == direction);
-    if high - low <= ISOMETRIC_TRAVEL * scale && !is_held(pressure, largest) {
-        return SweepKind::Isometric;
+    (high - low > ISOMETRIC_TRAVEL * scale).then_some((high - low) / scale)
+}
+
+/// What a sweep reads, and the stretches of its length and of its pressure; the latter are empty where the pressure is held.
+pub(crate) struct Path<'a> {
+    pub(crate) motion: &'a [f64],
+    pub(crate) force: &'a [f64],
+    pub(crate) stretches: &'a [Stretch],
+    pub(crate) pressure_stretches: &'a [Stretch],
+}
+
+/// What a path does. `scale` is 1 for contractions and the longest length for lengths.
+pub(crate) fn kind(path: &Path<'_>, scale: f64) -> SweepKind {
+    let does = |direction| path.stretches.iter().any(|stretch| stretch.direction == direction);
+    let moves = |stretches: &[Stretch]| stretches.iter().filter(|stretch| stretch.direction != 0).count();
+    if !path.pressure_stretches.is_empty() {
+        match drift(path.motion, scale) {
+            None => return SweepKind::Isometric,
+            Some(_) if is_weight(path.force.iter().copied()) => return SweepKind::Isotonic,
+            Some(way)
+                if way <= DRIFTING_TRAVEL && moves(path.stretches) <= moves(path.pressure_stretches) =>
+            {
+                return SweepKind::Isometric;
+            }
+            Some(_) => {}
+        }
     }
     match (does(1), does(-1)) {
         (true, true) => SweepKind::Loop,

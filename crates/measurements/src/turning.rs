@@ -1,6 +1,6 @@
-//! Rows whose direction of motion isn't known: at turning points, and at the start of a sweep.
+//! Rows whose direction isn't known: at turning points, and at the start of a sweep.
 
-use crate::data::Data;
+use crate::data::{Data, Driven};
 use crate::stretch::Stretch;
 use std::ops::Range;
 
@@ -10,13 +10,12 @@ const REPEATED: usize = 3;
 impl Data {
     /// Rows whose direction is in doubt, in ascending order: the first row of a sweep and of an isobar in it, which nothing leads to; each turning point, at which friction may have either
     /// sign; and the rows next to them as long as the way between is not more than noise and steps of the sensor (rows that read the same set point
-    /// again, or that a file counts to the other branch). None in a static map.
+    /// again, or that a file counts to the other branch). At held length the direction is that of the pressure. None in a static map.
     #[must_use]
     pub fn direction_in_doubt(&self) -> Vec<usize> {
-        let s = self.columns().motion.values();
-        let resolved = self.structure.band.resolved();
         let mut found = Vec::new();
-        for (sweep, stretches) in self.paths() {
+        for (sweep, Driven { stretches, values: s, band }) in self.driven() {
+            let resolved = band.resolved();
             if stretches.iter().all(|stretch| stretch.direction == 0) {
                 continue;
             }

@@ -1,8 +1,8 @@
 //! A model along a history: the force of every row, with exact derivatives.
 
 use bulge_effects::{Effect, Input, Jet, LANES, Moment, Place, Setting, Stage};
-use bulge_fibre::{FibreError, Start};
-use bulge_muscles::Muscle;
+use bulge_fibre::{Approach, FibreError, Problem, Start};
+use bulge_muscles::{Muscle, Pressure};
 use bulge_numerics::{Dual, Real};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -81,7 +81,23 @@ impl Model {
         wanted: &Wanted,
     ) -> Result<Prediction, ModelError> {
         let (all, failed) = self.evaluate_with(record, theta, wanted, None, true, &mut Slots::default())?;
-        if failed.is_empty() { Ok(all) } else { Err(failure(failed)) }
+        if failed.is_empty() { Ok(all) } else { Err(self.explained(record, theta, failure(failed))) }
+    }
+
+    /// The error with the limit beyond which its first row lies, if that is the reason: a search, which the evaluations of a fit save.
+    #[must_use]
+    pub fn explained(&self, record: &Record, theta: &[f64], error: ModelError) -> ModelError {
+        let ModelError::NoEquilibrium { rows, pressure_pa, contraction, source } = error else {
+            return error;
+        };
+        let specimen = rows.first().and_then(|row| record.moments().get(*row)).map_or(0, |m| m.specimen);
+        let muscle = self.reshape(self.body_of(specimen), theta, &[]).map(|(muscle, _)| muscle);
+        let problem = muscle.ok().and_then(|muscle| Problem::new(&muscle, Pressure::pa(pressure_pa)).ok());
+        let source = match problem {
+            Some(problem) => Box::new(problem.explained(*source, contraction, Approach::Auto)),
+            None => source,
+        };
+        ModelError::NoEquilibrium { rows, pressure_pa, contraction, source }
     }
 
     /// The same within a fit: searches start where those of the evaluation before ended, and each of the rows that count (see
@@ -108,7 +124,7 @@ impl Model {
     /// As [`Model::evaluate_warm`], but a row without a state takes nothing from the others: it is listed.
     ///
     /// # Errors
-    /// If an effect doesn't fit the muscle. That no row has a state is none.
+    /// If an effect doesn't fit the muscle. That no row has a state is none. See [`Model::explained`] for what to show of [`Partly::error`].
     pub fn evaluate_partly(
         &self,
         record: &Record,

@@ -43,6 +43,13 @@ type Node = Vec<[f64; OUTPUTS]>;
 /// Column of a node, its numbers, and where its search ended.
 type Solved = (usize, Node, Option<Start>);
 
+/// The nodes of one pressure.
+struct Line {
+    solved: Vec<Solved>,
+    /// Where equilibria end towards larger contractions, and why.
+    end: Option<(usize, FibreError)>,
+}
+
 /// Solved equilibria at the nodes that were asked for.
 #[derive(Debug, Clone)]
 pub(crate) struct Lattice {
@@ -59,6 +66,8 @@ pub(crate) struct Lattice {
     is_solved: Vec<bool>,
     /// One node after the other, `1 + shapes` entries each.
     nodes: Vec<[f64; OUTPUTS]>,
+    /// The first column without an equilibrium towards larger contractions, for each pressure, and why it has none.
+    ends: Vec<Option<(usize, FibreError)>>,
 }
 
 /// Where a row lies in the lattice: first node of the stencil and the distance from it in steps.
@@ -87,6 +96,7 @@ impl Lattice {
             needed: Vec::new(),
             is_solved: Vec::new(),
             nodes: Vec::new(),
+            ends: Vec::new(),
         };
         let margins = [if lattice.scale_free { 0 } else { margin }, margin];
         let wider = |span: [[i64; 2]; 2]| {
@@ -125,7 +135,7 @@ impl Lattice {
     /// The same with its nodes solved, one pressure beside the other. Searches start at what `slots` holds of a node, else at its neighbour,
     /// and leave where they end.
     pub(crate) fn solved(mut self, equilibrium: &Equilibrium, slots: &mut HashMap<[i64; 2], Start>) -> Self {
-        let lines: Vec<Vec<Solved>> =
+        let lines: Vec<Line> =
             (0..self.count[0]).into_par_iter().map(|row| self.line(equilibrium, row, slots)).collect();
         let columns = self.count[1];
         let stride = 1 + self.shapes;
@@ -133,7 +143,8 @@ impl Lattice {
         self.nodes = vec![[0.0; OUTPUTS]; stride * self.needed.len()];
         slots.clear();
         for (row, line) in lines.into_iter().enumerate() {
-            for (column, node, start) in line {
+            self.ends.push(line.end);
+            for (column, node, start) in line.solved {
                 if let Some(start) = start {
                     slots.insert(self.key(row, column), start);
                 }
@@ -159,33 +170,55 @@ impl Lattice {
         lattice
     }
 
-    /// Nodes of one pressure: outwards from the contraction where every muscle pulls. A direction ends where equilibria end: nothing far beyond is
+    /// Nodes of one pressure: outwards from the contraction where every muscle pulls. A direction ends where equilibria end: nothing beyond is
     /// searched for in vain.
-    fn line(&self, equilibrium: &Equilibrium, row: usize, slots: &HashMap<[i64; 2], Start>) -> Vec<Solved> {
+    fn line(&self, equilibrium: &Equilibrium, row: usize, slots: &HashMap<[i64; 2], Start>) -> Line {
         let columns = self.count[1];
         let needed: Vec<usize> = (0..columns).filter(|column| self.needed[row * columns + column]).collect();
         let middle = needed.partition_point(|column| self.contraction(*column) < PULLS);
         let (below, above) = needed.split_at(middle);
-        let mut found = Vec::with_capacity(needed.len());
+        let mut found = Line { solved: Vec::with_capacity(needed.len()), end: None };
         let mut first = None;
-        let ways: [&mut dyn Iterator<Item = &usize>; 2] = [&mut above.iter(), &mut below.iter().rev()];
-        for way in ways {
+        let ways: [(bool, &mut dyn Iterator<Item = &usize>); 2] =
+            [(true, &mut above.iter()), (false, &mut below.iter().rev())];
+        for (is_upwards, way) in ways {
             let mut near: Option<Start> = first.clone();
             let mut any = false;
             for &column in way {
                 let from = slots.get(&self.key(row, column)).or(near.as_ref());
-                let Some((node, start)) = self.solve(equilibrium, row, column, from) else {
-                    if any {
+                match self.solve(equilibrium, row, column, from) {
+                    Ok((node, start)) => {
+                        (any, near) = (true, start.clone());
+                        first = first.or_else(|| start.clone());
+                        found.solved.push((column, node, start));
+                    }
+                    Err(error) if is_upwards => {
+                        found.end = Some((column, error));
                         break;
                     }
-                    continue;
-                };
-                (any, near) = (true, start.clone());
-                first = first.or_else(|| start.clone());
-                found.push((column, node, start));
+                    Err(_) if any => break,
+                    Err(_) => {}
+                }
             }
         }
         found
+    }
+
+    /// Why there is no equilibrium at a contraction: at both pressures beside it they ended more than a cell before. None if there may be one.
+    fn beyond(&self, pressure: f64, contraction: f64) -> Option<&FibreError> {
+        let along_s = self.place(1, self.contraction_axis(contraction)?)?;
+        let column = along_s.first + SPAN / 2 - 1 - self.low[1];
+        let line = if self.scale_free {
+            0
+        } else {
+            self.place(0, self.pressure_axis(pressure)?)?.first + SPAN / 2 - 1 - self.low[0]
+        };
+        let end = |line: i64| {
+            let (end, error) = self.ends.get(usize::try_from(line).ok()?)?.as_ref()?;
+            (usize::try_from(column).ok()? > *end).then_some(error)
+        };
+        let error = end(line)?;
+        (self.scale_free || end(line + 1).is_some()).then_some(error)
     }
 
     fn key(&self, row: usize, column: usize) -> [i64; 2] {
@@ -242,10 +275,10 @@ impl Lattice {
         row: usize,
         column: usize,
         from: Option<&Start>,
-    ) -> Option<(Node, Option<Start>)> {
+    ) -> Result<(Node, Option<Start>), FibreError> {
         let logarithm = (self.low[0] as f64 + row as f64) * self.steps[0];
         let pressure = if self.scale_free { 1e5 } else { logarithm.exp() };
-        let (answer, start) = equilibrium.answer(pressure, self.contraction(column), from).ok()?;
+        let (answer, start) = equilibrium.answer(pressure, self.contraction(column), from)?;
         let outputs = [
             (&answer.force, pressure),
             (&answer.tension, pressure),
@@ -254,7 +287,7 @@ impl Lattice {
         ];
         let values = outputs.map(|(output, unit)| output.value / unit);
         let slopes = (0..self.shapes).map(|j| outputs.map(|(output, unit)| output.by_shape[j] / unit));
-        Some((std::iter::once(values).chain(slopes).collect(), start))
+        Ok((std::iter::once(values).chain(slopes).collect(), start))
     }
 
     /// The stencil around a contraction, moved inwards where equilibria end: a row in the last cells is still between solved nodes. None if there is no such stencil.
@@ -331,7 +364,7 @@ impl Lattice {
     }
 }
 
-/// Interpolated where the lattice reaches, else solved.
+/// Interpolated where the lattice reaches, else solved; but not where equilibria ended before, which would be searched for in vain.
 pub(crate) fn answer(
     lattice: Option<&Lattice>,
     equilibrium: &Equilibrium,
@@ -340,6 +373,9 @@ pub(crate) fn answer(
 ) -> Result<Answer, FibreError> {
     if let Some(answer) = lattice.and_then(|lattice| lattice.answer(pressure, contraction)) {
         return Ok(answer);
+    }
+    if let Some(error) = lattice.and_then(|lattice| lattice.beyond(pressure, contraction)) {
+        return Err(error.clone());
     }
     let (answer, start) = equilibrium.answer(pressure, contraction, slot.as_ref())?;
     if start.is_some() {

@@ -2,12 +2,13 @@
 
 use bulge_effects::law::Law;
 use bulge_effects::{Catalogue, Effect};
-use bulge_measurements::Data;
+use bulge_measurements::{Data, Sweep, SweepKind};
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
 use bulge_muscles::{Muscle, Parameter, Quantity};
 use rayon::prelude::*;
 use std::sync::Arc;
 
+use crate::comparison::buckled::buckled;
 use crate::comparison::document::{DataSummary, LeftOut, Mismatch, NoiseFloor, Rung};
 use crate::comparison::doubt::doubtful_sd;
 use crate::comparison::floor::noise_floor;
@@ -194,7 +195,9 @@ impl<'a> Analysis<'a> {
                     return Ok(Climbed { prepared, theta: fit.theta.clone(), fit: Some(fit), force, failed });
                 }
                 // Nothing can be fitted to rows without a state: the rung stands as it starts, and says so.
-                Err(error) if is_of_rows(&error) => failed = Some(error),
+                Err(error) if is_of_rows(&error) => {
+                    failed = Some(prepared.model.explained(&self.record, &theta, error));
+                }
                 Err(error) => return Err(self.about(error)),
             }
         }
@@ -203,7 +206,8 @@ impl<'a> Analysis<'a> {
         let found = found.map_err(|error| self.about(error))?;
         if count == 0 && self.with_state(&[&found.prediction.force]).next().is_none() {
             // Without a single row there is nothing to compare with.
-            return Err(self.about(found.error.unwrap_or(ModelError::Values { given: 0, expected: 1 })));
+            let error = found.error.unwrap_or(ModelError::Values { given: 0, expected: 1 });
+            return Err(self.about(prepared.model.explained(&self.record, &theta, error)));
         }
         Ok(Climbed { prepared, theta, fit: None, force: found.prediction.force, failed })
     }
@@ -242,7 +246,10 @@ impl<'a> Analysis<'a> {
         *only.get_mut(*rows.first()?)? = true;
         let first =
             model.evaluate_warm(&self.record, &climbed.theta, &Wanted::default(), &Warm::of_rows(&only));
-        let why = first.err().map_or_else(|| "no state within the fit".to_owned(), |error| error.to_string());
+        let why = first.err().map_or_else(
+            || "no state within the fit".to_owned(),
+            |error| model.explained(&self.record, &climbed.theta, error).to_string(),
+        );
         Some(LeftOut { why, lines: lines(self.data, &rows), rows: rows.len() })
     }
 
@@ -259,10 +266,16 @@ impl<'a> Analysis<'a> {
         InferenceError::Model { what, source: Box::new(error) }
     }
 
-    /// Asks about units, signs and scales that can't be true.
+    /// Asks about units, signs and scales that can't be true, and leaves out rows in which the muscle as stated is slack.
     pub(crate) fn ask(&mut self) -> Result<(), InferenceError> {
         let prepared = self.model(0)?;
         self.findings = questions(self.data, self.muscle, &prepared.model, &self.record, &self.used.mask);
+        if self.options.law.is_none() {
+            let rows = buckled(&prepared.model, &self.record, &self.used.mask);
+            let why =
+                "slack: the pressure is too low for the rubber of the muscle as stated, and it hardly pulled";
+            self.used.leave_out(self.data, rows, why.to_owned());
+        }
         Ok(())
     }
 
@@ -398,6 +411,8 @@ impl<'a> Analysis<'a> {
             sha256: self.data.sha256(),
             files: self.data.files().iter().map(|file| file.name.clone()).collect(),
             sweeps: self.record.sweeps().len(),
+            sweep_kinds: self.data.sweeps().iter().map(|sweep| sweep.kind).collect(),
+            branches: branches(self.data),
             specimens: self.record.specimens().to_vec(),
             is_path: self.record.is_path(),
             pressure_pa: range(&|row| moments[row].pressure),
@@ -472,6 +487,16 @@ impl<'a> Analysis<'a> {
             },
             warnings: Vec::new(),
         }
+    }
+}
+
+/// What the two branches of a loop are called.
+pub(crate) fn branches(data: &Data) -> [&'static str; 2] {
+    let is_isometric = |sweep: &Sweep| sweep.kind == SweepKind::Isometric;
+    match (data.sweeps().iter().any(is_isometric), data.sweeps().iter().all(is_isometric)) {
+        (true, true) => ["filling", "venting"],
+        (true, false) => ["shortening or filling", "lengthening or venting"],
+        (false, _) => ["shortening", "lengthening"],
     }
 }
 

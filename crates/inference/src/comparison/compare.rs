@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::comparison::analysis::{Analysis, Climbed, Options, without_state};
 use crate::comparison::document::{Comparison, DataSummary, NoiseFloor};
 use crate::comparison::specimens::{note, of_specimens};
-use crate::comparison::{loops, residuals, rivals, stack};
+use crate::comparison::{isotonic, loops, residuals, rivals, stack};
 use crate::error::InferenceError;
 use crate::fit::document::Fit;
 
@@ -84,6 +84,7 @@ fn compared(mut analysis: Analysis<'_>) -> Result<Comparison, InferenceError> {
         noise_floor: floor,
         by: residuals::breakdowns(&analysis, forces),
         loops: loops::gaps(&analysis, forces),
+        isotonic: isotonic::held_loads(&analysis, [&rungs[0], last]),
         maps: residuals::maps(&analysis, forces),
         curves: residuals::curves(&analysis, forces),
         contributions,

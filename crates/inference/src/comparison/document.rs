@@ -1,6 +1,6 @@
 //! A comparison as a value: everything that text, JSON and report show, and nothing that they would have to compute.
 
-use bulge_measurements::{Finding, Reading};
+use bulge_measurements::{Finding, Reading, SweepKind};
 use serde::Serialize;
 
 use crate::fit::document::Fit;
@@ -26,6 +26,8 @@ pub struct Comparison {
     pub by: Vec<Breakdown>,
     /// Mean and half-gap of the loops.
     pub loops: Vec<LoopGap>,
+    /// Error in contraction under held loads, one for each isotonic sweep.
+    pub isotonic: Vec<HeldLoad>,
     /// Residuals over pressure and contraction, one map for each direction.
     pub maps: Vec<ResidualMap>,
     /// Force against contraction, one for each pressure level (and specimen).
@@ -60,6 +62,10 @@ pub struct DataSummary {
     pub files: Vec<String>,
     /// Number of sweeps.
     pub sweeps: usize,
+    /// What each sweep does.
+    pub sweep_kinds: Vec<SweepKind>,
+    /// What the two branches of a loop are called: shortening and lengthening, or filling and venting where only the pressure goes to and fro.
+    pub branches: [&'static str; 2],
     /// Names of the specimens.
     pub specimens: Vec<String>,
     /// Whether the rows are a path, or a static map.
@@ -196,10 +202,40 @@ pub struct LoopGap {
     pub half_gap_model_n: [Vec<f64>; 2],
 }
 
+/// A sweep under a held load: the contraction that was read, and those at which models bear the load, to first order in the error.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HeldLoad {
+    /// The sweep.
+    pub sweep: String,
+    /// The specimen.
+    pub specimen: String,
+    /// Mean load \[N\].
+    pub load_n: f64,
+    /// RMS error of the contraction of the first and the last rung.
+    pub rmse_contraction: [f64; 2],
+    /// In the order of measurement: at most 400.
+    pub points: Vec<HeldLoadPoint>,
+}
+
+/// One row of a sweep under a held load.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct HeldLoadPoint {
+    /// Pressure as read \[Pa\].
+    pub pressure_pa: f64,
+    /// Contraction as read.
+    pub contraction: f64,
+    /// +1 shortening, -1 lengthening, 0 at rest.
+    pub direction: f64,
+    /// Contraction of the first rung.
+    pub first: f64,
+    /// Contraction of the last rung.
+    pub last: f64,
+}
+
 /// Mean residuals (measured - model) on a grid of pressure and contraction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResidualMap {
-    /// `shortening`, `lengthening` or `at rest`.
+    /// Name of a branch (see [`DataSummary::branches`]), or `at rest`.
     pub direction: &'static str,
     /// Middle of the rows of the grid \[Pa\].
     pub pressure_pa: Vec<f64>,
@@ -227,7 +263,7 @@ pub struct Curve {
 pub struct CurvePoint {
     /// Contraction as read.
     pub contraction: f64,
-    /// +1 shortening, -1 lengthening, 0 at rest.
+    /// +1 shortening, -1 lengthening, 0 at rest; at held length that of the pressure.
     pub direction: f64,
     /// Measured \[N\].
     pub measured_n: f64,

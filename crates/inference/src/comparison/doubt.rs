@@ -9,7 +9,7 @@ const FEWEST: usize = 3;
 /// Standard deviations of all rows, where those whose direction is in doubt have the variance that the doubt makes: `sigma^2 + g^2` with the gap `g` between the branches at their pressure, by which a
 /// row is off that lies on the other branch.
 ///
-/// The gap is that of the medians of the residuals while shortening and while lengthening. A muscle without friction has none, and loses nothing: none then.
+/// The gap is that of the medians of the residuals while shortening and while lengthening (filling and venting at held length). A muscle without friction has none, and loses nothing: none then.
 pub(crate) fn doubtful_sd(
     record: &Record,
     data: &Data,
@@ -29,8 +29,8 @@ pub(crate) fn doubtful_sd(
     let count = levels.iter().copied().max().map_or(0, |last| last + 1);
     let mut branches = vec![[Vec::new(), Vec::new()]; count];
     for (row, moment) in record.moments().iter().enumerate() {
-        if used[row] && !is_doubtful[row] && moment.direction != 0.0 && residuals[row].is_finite() {
-            branches[levels[row]][usize::from(moment.direction < 0.0)].push(residuals[row]);
+        if used[row] && !is_doubtful[row] && moment.branch() != 0.0 && residuals[row].is_finite() {
+            branches[levels[row]][usize::from(moment.branch() < 0.0)].push(residuals[row]);
         }
     }
     let gaps: Vec<f64> = branches.into_iter().map(gap).collect();

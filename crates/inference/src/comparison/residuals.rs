@@ -1,6 +1,6 @@
 //! Where the error lies: by each variable, on maps, along curves.
 
-use crate::comparison::analysis::Analysis;
+use crate::comparison::analysis::{Analysis, branches};
 use crate::comparison::document::{Bin, Breakdown, Curve, CurvePoint, ResidualMap};
 use crate::comparison::levels::sweep_of;
 
@@ -80,7 +80,8 @@ pub(crate) fn breakdowns(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec
                 }
             })
             .collect();
-        let labels = [("shortening", 1.0), ("at rest", 0.0), ("lengthening", -1.0)];
+        let [there, back] = branches(analysis.data);
+        let labels = [(there, 1.0), ("at rest", 0.0), (back, -1.0)];
         let labels = labels.into_iter().map(|(label, at)| (label.to_owned(), at)).collect();
         all.push(Groups { variable: "direction", unit: "", of, labels });
     }
@@ -171,7 +172,8 @@ pub(crate) fn maps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Resid
     let [low, high] = contractions(analysis);
     let levels = analysis.levels.len();
     let mut maps = Vec::new();
-    for (direction, sign) in [("shortening", 1.0), ("at rest", 0.0), ("lengthening", -1.0)] {
+    let [there, back] = branches(analysis.data);
+    for (direction, sign) in [(there, 1.0), ("at rest", 0.0), (back, -1.0)] {
         let mut sums = vec![(0_usize, [0.0; 2]); levels * COLUMNS];
         let rows = analysis.with_state(&forces).filter(|row| moments[*row].branch().total_cmp(&sign).is_eq());
         let mut any = 0_usize;

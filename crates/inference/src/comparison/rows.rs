@@ -21,7 +21,7 @@ pub(crate) struct Used {
 
 impl Used {
     /// Leaves out rows, unless nothing would be left.
-    fn leave_out(&mut self, data: &Data, rows: impl IntoIterator<Item = usize>, why: String) {
+    pub(crate) fn leave_out(&mut self, data: &Data, rows: impl IntoIterator<Item = usize>, why: String) {
         let rows: Vec<usize> = rows.into_iter().filter(|row| self.mask[*row]).collect();
         if rows.is_empty() || rows.len() == self.mask.iter().filter(|counts| **counts).count() {
             return;

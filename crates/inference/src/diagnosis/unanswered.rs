@@ -3,6 +3,7 @@
 use bulge_measurements::Data;
 use bulge_muscles::{Muscle, Quantity};
 
+use crate::comparison::analysis::branches;
 use crate::comparison::document::{Comparison, DataSummary};
 use crate::comparison::rows::full_scale;
 use crate::diagnosis::document::{DiagnosedData, DiagnosedNoise, Diagnosis, Remaining, Verdict};
@@ -87,6 +88,8 @@ fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
         sha256: data.sha256(),
         files: data.files().iter().map(|file| file.name.clone()).collect(),
         sweeps: data.sweeps().len(),
+        sweep_kinds: data.sweeps().iter().map(|sweep| sweep.kind).collect(),
+        branches: branches(data),
         specimens: data.specimens().to_vec(),
         is_path: data.time().is_some(),
         pressure_pa: range(data.pressure()),
@@ -104,6 +107,7 @@ fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
         ladder: Vec::new(),
         by: Vec::new(),
         loops: Vec::new(),
+        isotonic: Vec::new(),
         maps: Vec::new(),
         curves: Vec::new(),
         contributions: Vec::new(),

@@ -1,39 +1,31 @@
 //! Labels against the rows: stated directions, runs that are interrupted, rows that are there twice.
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
-use crate::sweep::Contradiction;
+use crate::stretch;
+use crate::sweep::{self, Contradiction, SweepKind};
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
-
-/// Rows next to a turning point belong to either side.
-const NEAR_TURN: usize = 2;
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     let mut found: Vec<Finding> =
         [directions(gate), interrupted(gate), duplicates(gate)].into_iter().flatten().collect();
     found.extend(contradicted(gate));
+    found.extend(drifting(gate));
     found
 }
 
 fn directions(gate: &Gate) -> Option<Finding> {
     let stated = gate.data.stated_direction()?;
     let (mut wrong, mut moving) = (Vec::new(), 0);
-    for (sweep, stretches) in gate.data.paths() {
-        for stretch in stretches.iter().filter(|stretch| stretch.direction != 0) {
-            // The ends of a sweep are no turning points.
-            let start =
-                stretch.rows.start + if stretch.rows.start > sweep.rows.start { NEAR_TURN } else { 0 };
-            let end = stretch.rows.end.saturating_sub(if stretch.rows.end < sweep.rows.end {
-                NEAR_TURN
-            } else {
-                0
-            });
-            moving += end.saturating_sub(start);
-            wrong.extend((start..end).filter(|row| stated[*row] == -stretch.direction));
+    for (sweep, driven) in gate.data.driven() {
+        for stretch in driven.stretches.iter().filter(|stretch| stretch.direction != 0) {
+            let rows = stretch::inner(stretch, &sweep.rows);
+            moving += rows.len();
+            wrong.extend(rows.filter(|row| stated[*row] == -stretch.direction));
         }
     }
     let all = if 2 * wrong.len() > moving {
-        "turn the labels over (`up` and `+1` mean shortening), or check the unit and sign of the motion"
+        "turn the labels over (`up` and `+1` mean shortening, at held length a rising pressure), or check the unit and sign of the motion"
     } else {
         "correct the labels, or leave the column out: the direction of a path is found from its motion"
     };
@@ -46,6 +38,27 @@ fn directions(gate: &Gate) -> Option<Finding> {
         },
         all,
     )
+}
+
+/// Isometric sweeps whose length changes by more than a clamped one does.
+fn drifting(gate: &Gate) -> Option<Finding> {
+    let scale = gate.data.structure.scale;
+    let (mut rows, mut most) = (Vec::new(), 0.0_f64);
+    for sweep in gate.data.sweeps().iter().filter(|sweep| sweep.kind == SweepKind::Isometric) {
+        if let Some(way) = sweep::drift(&gate.motion[sweep.rows.clone()], scale) {
+            rows.extend(sweep.rows.clone());
+            most = most.max(way);
+        }
+    }
+    let says = |count| {
+        format!(
+            "{} of sweeps at held length, whose length changes by up to {:.2} %: it is used as read, but counts as held",
+            rows_in_words(count),
+            100.0 * most
+        )
+    };
+    let instead = "measure the length at the fittings, not at the drive; clamp the frame; include `frame-compliance` if the reading is the drive's";
+    gate.finding_if_any(FindingKind::HeldLengthDrifts, Severity::Warning, &rows, says, instead)
 }
 
 /// Rows at which a label returns after others.

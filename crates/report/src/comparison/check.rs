@@ -70,6 +70,10 @@ fn series(comparison: &Comparison) -> Result<(), PlotError> {
         let values = lists.into_iter().chain([&gap.contraction]).flatten().copied();
         finite("a loop", values.chain([gap.pressure_pa]))?;
     }
+    for held in &comparison.isotonic {
+        let values = held.points.iter().flat_map(|p| [p.pressure_pa, p.contraction, p.first, p.last]);
+        finite("a contraction under a held load", values.chain(held.rmse_contraction).chain([held.load_n]))?;
+    }
     for stack in &comparison.contributions {
         let lists =
             || [&stack.measured_n, &stack.base_n].into_iter().chain(stack.parts.iter().map(|p| &p.force_n));

@@ -1,6 +1,7 @@
 //! Loops: the mean of both branches and half of the gap between them, measured and modelled.
 
 use bulge_inference::{Comparison, LoopGap};
+use bulge_measurements::SweepKind;
 
 use crate::PlotError;
 use crate::axis::Axis;
@@ -58,12 +59,23 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
         name: "loops",
         title: "Mean and half-gap of the loops".to_owned(),
         caption: format!(
-            "A muscle pulls harder while it is lengthened than while it shortens. The mean of both branches is the force without \
-             friction; half of the gap between them is the friction itself. Dots are measured, lines modelled.{}{left_out}",
+            "{} The mean of both branches is the force without friction; half of the gap between them is the friction itself. Dots \
+             are measured, lines modelled.{}{left_out}",
+            hint(comparison),
             shown.caption()
         ),
         svg: svg.finish("Mean and half-gap of the loops"),
     }))
+}
+
+/// What friction does to the branches.
+fn hint(comparison: &Comparison) -> &'static str {
+    if comparison.data.sweep_kinds.contains(&SweepKind::Isometric) {
+        "At equal length and pressure, friction and losses of the rubber make a muscle pull harder while it is vented than while it is filled; a pressure that is \
+         read late does the reverse."
+    } else {
+        "A muscle pulls harder while it is lengthened than while it shortens."
+    }
 }
 
 const HEADINGS: [&str; 2] = ["Mean of both branches", "Half of the gap between them"];
@@ -118,10 +130,9 @@ pub(crate) fn says(comparison: &Comparison) -> String {
         all.iter().sum::<f64>() / all.len().max(1) as f64
     };
     let [measured, first, last] = [0, 1, 2].map(|which| mean(1, which));
-    let base = format!(
-        "Half of the gap between lengthening and shortening is {} on average; the base",
-        newton(measured)
-    );
+    let [there, back] = comparison.data.branches;
+    let base =
+        format!("Half of the gap between {back} and {there} is {} on average; the base", newton(measured));
     let of_base = if first.abs() < 0.01 * measured.abs() {
         "has none".to_owned()
     } else {

@@ -15,6 +15,7 @@ mod correlations;
 mod data;
 mod force;
 mod headline;
+mod isotonic;
 pub(crate) mod ladder;
 mod ladder_table;
 pub(crate) mod legend;
@@ -87,6 +88,8 @@ pub struct Plot {
 /// #     sha256: String::new(),
 /// #     files: vec!["isobars.csv".to_owned()],
 /// #     sweeps: 1,
+/// #     sweep_kinds: Vec::new(),
+/// #     branches: ["shortening", "lengthening"],
 /// #     specimens: vec!["A".to_owned()],
 /// #     is_path: false,
 /// #     pressure_pa: [1e5, 3e5],
@@ -104,6 +107,7 @@ pub struct Plot {
 /// #     ladder: vec![rung],
 /// #     by: Vec::new(),
 /// #     loops: Vec::new(),
+/// #     isotonic: Vec::new(),
 /// #     maps: Vec::new(),
 /// #     curves: Vec::new(),
 /// #     contributions: Vec::new(),
@@ -149,6 +153,7 @@ pub fn plots(comparison: &Comparison) -> Result<Vec<Plot>, PlotError> {
     plots.extend(breakdown::plots(comparison)?);
     plots.extend(residual_map::plot(comparison)?);
     plots.extend(loops::plot(comparison)?);
+    plots.extend(isotonic::plot(comparison)?);
     plots.extend(contributions::plot(comparison)?);
     plots.extend(scatter::plot(comparison)?);
     plots.extend(parameters::plot(comparison));

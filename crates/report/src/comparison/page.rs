@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use crate::PlotError;
 use crate::comparison::{
-    Plot, breakdown, contributions, convergence, correlations, data, force, headline, ladder, ladder_table,
-    loops, parameters, parameters_table, residual_map, rivals, scatter, wording,
+    Plot, breakdown, contributions, convergence, correlations, data, force, headline, isotonic, ladder,
+    ladder_table, loops, parameters, parameters_table, residual_map, rivals, scatter, wording,
 };
 
 const TEMPLATE: &str = include_str!("report.html");
@@ -58,6 +58,7 @@ struct Page<'a> {
     errors_says: String,
     maps: Option<Figure>,
     loops: Option<Figure>,
+    isotonic: Option<Figure>,
     contributions: Option<Figure>,
     contributions_says: String,
     scatter: Option<Figure>,
@@ -115,6 +116,7 @@ pub(crate) fn model_and_measurement(comparison: &Comparison) -> Result<Vec<Figur
         (force::plot(comparison)?, force::says(comparison)),
         (residual_map::plot(comparison)?, residual_map::says(comparison)),
         (loops::plot(comparison)?, loops::says(comparison)),
+        (isotonic::plot(comparison)?, isotonic::says(comparison)),
         (contributions::plot(comparison)?, contributions::says(comparison)),
         (parameters::plot(comparison), parameters::says(comparison)),
     ];
@@ -164,6 +166,7 @@ fn page(comparison: &Comparison) -> Result<Page<'_>, PlotError> {
         errors_says: headline::mean_says(comparison),
         maps: figure(residual_map::plot(comparison)?, residual_map::says(comparison)),
         loops: figure(loops::plot(comparison)?, loops::says(comparison)),
+        isotonic: figure(isotonic::plot(comparison)?, isotonic::says(comparison)),
         contributions: figure(contributions::plot(comparison)?, String::new()),
         contributions_says: contributions::says(comparison),
         scatter: figure(scatter::plot(comparison)?, scatter::says(comparison)),

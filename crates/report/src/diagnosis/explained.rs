@@ -29,10 +29,13 @@ pub(super) fn plots(diagnosis: &Diagnosis) -> Result<Vec<Plot>, PlotError> {
 pub(super) fn with_sentences(diagnosis: &Diagnosis) -> Result<Vec<(Plot, String)>, PlotError> {
     let steps =
         diagnosis.explained.iter().filter(|step| step.curves.iter().any(|c| !c.contraction.is_empty()));
-    steps.zip(NAMES).map(|(step, name)| Ok((plot(step, name)?, says(step)))).collect()
+    steps
+        .zip(NAMES)
+        .map(|(step, name)| Ok((plot(step, name, diagnosis.comparison.data.branches)?, says(step))))
+        .collect()
 }
 
-fn plot(step: &ExplainedStep, name: &'static str) -> Result<Plot, PlotError> {
+fn plot(step: &ExplainedStep, name: &'static str, branches: [&'static str; 2]) -> Result<Plot, PlotError> {
     let pieces: Vec<Piece<'_>> = step
         .curves
         .iter()
@@ -43,7 +46,7 @@ fn plot(step: &ExplainedStep, name: &'static str) -> Result<Plot, PlotError> {
         (Mark::Dot(SOFT_INK), "misfit before it was added".to_owned()),
         (Mark::Line(Stroke::solid(SOFT_INK, 2.0)), "what it changes".to_owned()),
     ];
-    for (direction, name) in directions(&pieces) {
+    for (direction, name) in directions(&pieces, branches) {
         entries.push((Mark::Line(stroke(direction)), name.to_owned()));
     }
     let frame = Frame { name, title: &title, quantity: "misfit [N]", entries: &entries };

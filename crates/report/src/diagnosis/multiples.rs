@@ -54,9 +54,9 @@ pub(super) fn stroke(direction: f64) -> Stroke {
     }
 }
 
-/// Directions that occur, with their names.
-pub(super) fn directions(pieces: &[Piece<'_>]) -> Vec<(f64, &'static str)> {
-    let named = [(1.0, "shortening"), (-1.0, "lengthening"), (0.0, "at rest")];
+/// Directions that occur, with their names: those of the two branches of a loop, and rest.
+pub(super) fn directions(pieces: &[Piece<'_>], [there, back]: [&'static str; 2]) -> Vec<(f64, &'static str)> {
+    let named = [(1.0, there), (-1.0, back), (0.0, "at rest")];
     named
         .into_iter()
         .filter(|(of, _)| pieces.iter().any(|piece| colour(piece.direction) == colour(*of)))

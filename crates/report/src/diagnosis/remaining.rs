@@ -23,7 +23,7 @@ pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
         return Ok(None);
     }
     let mut entries = Vec::new();
-    for (direction, name) in directions(&pieces) {
+    for (direction, name) in directions(&pieces, diagnosis.comparison.data.branches) {
         entries.push((Mark::Line(stroke(direction)), format!("{name}, with one standard deviation")));
     }
     let title = "Systematic misfit that is left";

@@ -3,10 +3,10 @@
 #![expect(clippy::float_cmp, reason = "values are compared with those they were copied from")]
 
 use bulge_inference::{
-    Bin, Breakdown, Comparison, Convergence, Curve, CurvePoint, DataSummary, Fit, Fitted, LeftOut, LoopGap,
-    NoiseFloor, Part, ResidualMap, Rival, Rung, Stack,
+    Bin, Breakdown, Comparison, Convergence, Curve, CurvePoint, DataSummary, Fit, Fitted, HeldLoad,
+    HeldLoadPoint, LeftOut, LoopGap, NoiseFloor, Part, ResidualMap, Rival, Rung, Stack,
 };
-use bulge_measurements::{Finding, FindingKind, LineRange, Severity};
+use bulge_measurements::{Finding, FindingKind, LineRange, Severity, SweepKind};
 use std::f64::consts::PI;
 
 /// What is simulated.
@@ -466,6 +466,8 @@ pub(crate) fn rich(recipe: &Recipe) -> Comparison {
             sha256: "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".to_owned(),
             files: vec!["loops-a.csv".to_owned()],
             sweeps: rows.last().map_or(0, |row| row.sweep + 1),
+            sweep_kinds: vec![SweepKind::Loop; rows.last().map_or(0, |row| row.sweep + 1)],
+            branches: ["shortening", "lengthening"],
             specimens: recipe.specimens.clone(),
             is_path: true,
             pressure_pa: [recipe.pressures_pa[0], *recipe.pressures_pa.last().unwrap_or(&0.0)],
@@ -482,6 +484,7 @@ pub(crate) fn rich(recipe: &Recipe) -> Comparison {
         ladder: ladder(&rows),
         by: breakdowns(&rows, recipe),
         loops: loops(&rows, recipe),
+        isotonic: held_loads(),
         maps: maps(&rows, recipe),
         curves,
         contributions: stacks(recipe),
@@ -493,6 +496,33 @@ pub(crate) fn rich(recipe: &Recipe) -> Comparison {
             "end-taper.length lies at its upper bound of 40 mm: the true value may be larger".to_owned(),
         ],
     }
+}
+
+/// Two loads, each filled and vented.
+fn held_loads() -> Vec<HeldLoad> {
+    [100.0, 300.0]
+        .map(|load_n| {
+            let points = (0..40).map(|i| {
+                let pressure_pa = 1e5 * (1.0 + 0.1 * f64::from(if i < 20 { i } else { 40 - i }));
+                let contraction = 0.2 - 2e4 / pressure_pa - 1e-4 * load_n;
+                let direction = if i < 20 { 1.0 } else { -1.0 };
+                HeldLoadPoint {
+                    pressure_pa,
+                    contraction,
+                    direction,
+                    first: contraction + 0.01,
+                    last: contraction + 1e-3,
+                }
+            });
+            HeldLoad {
+                sweep: format!("{load_n} N"),
+                specimen: "A".to_owned(),
+                load_n,
+                rmse_contraction: [0.01, 1e-3],
+                points: points.collect(),
+            }
+        })
+        .into()
 }
 
 /// A static map with the base alone: no loops, one pressure, nothing fitted.
@@ -515,6 +545,7 @@ pub(crate) fn bare() -> Comparison {
     }
     all.maps.truncate(1);
     all.loops.clear();
+    all.isotonic.clear();
     all.contributions.clear();
     all.rivals.clear();
     all.warnings.clear();

@@ -1,0 +1,92 @@
+//! Contraction against pressure under held loads, measured and modelled.
+
+use bulge_inference::{Comparison, HeldLoad, HeldLoadPoint};
+
+use crate::PlotError;
+use crate::axis::Axis;
+use crate::comparison::legend::{self, Mark};
+use crate::comparison::levels::spread;
+use crate::comparison::number::{newton, percent};
+use crate::comparison::panel::{BELOW, Panel, columns};
+use crate::comparison::svg::{Stroke, Svg};
+use crate::comparison::wording::{has_effects, last_model};
+use crate::comparison::{Plot, WIDTH};
+use crate::palette::{self, INK, SOFT_INK};
+
+/// Loads that are drawn.
+const LOADS: usize = 6;
+const HEIGHT: f64 = 340.0;
+const TITLE: &str = "Contraction under held loads";
+
+/// The plot; none without isotonic sweeps.
+///
+/// # Errors
+/// If pressures or contractions span more than an axis.
+pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
+    let all = &comparison.isotonic;
+    if all.is_empty() {
+        return Ok(None);
+    }
+    let mut by_load: Vec<&HeldLoad> = all.iter().collect();
+    by_load.sort_by(|a, b| a.load_n.total_cmp(&b.load_n));
+    let shown: Vec<&HeldLoad> = spread(by_load.len(), LOADS).into_iter().map(|i| by_load[i]).collect();
+    let points = || shown.iter().flat_map(|held| &held.points);
+    let across = || points().map(|p| p.pressure_pa / 1e5);
+    let up = || points().flat_map(|p| [p.contraction, p.first, p.last]).map(|c| 100.0 * c);
+    let x = Axis::around(across()).ok_or_else(|| PlotError::span("pressure [bar]", across()))?;
+    let y = Axis::around(up()).ok_or_else(|| PlotError::span("contraction [%]", up()))?;
+    let mut entries = vec![
+        (Mark::Dot(SOFT_INK), "measured".to_owned()),
+        (Mark::Line(Stroke::dashed(INK, 1.0)), "base alone".to_owned()),
+    ];
+    if has_effects(comparison) {
+        entries.push((Mark::Line(Stroke::solid(INK, 2.0)), "with all effects".to_owned()));
+    }
+    let colour = |place: usize| palette::colour(place, shown.len());
+    entries
+        .extend(shown.iter().enumerate().rev().map(|(i, held)| (Mark::Box(colour(i)), newton(held.load_n))));
+    let top = legend::height(&entries, WIDTH - 20.0) + 16.0;
+    let mut svg = Svg::new("isotonic", WIDTH, top + HEIGHT + BELOW);
+    legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, &entries);
+    let (left, width) = columns(1, WIDTH)[0];
+    let panel = Panel { x, y, left, top, width, height: HEIGHT };
+    panel.draw(&mut svg, "", "pressure [bar]", "contraction [%]");
+    for (place, held) in shown.iter().enumerate() {
+        let line = |of: fn(&HeldLoadPoint) -> f64| -> Vec<_> {
+            held.points.iter().map(|p| panel.at((p.pressure_pa / 1e5, 100.0 * of(p)))).collect()
+        };
+        svg.dots(&line(|p| p.contraction), 2.6, colour(place), 0.5);
+        svg.polyline(&line(|p| p.first), Stroke::dashed(colour(place), 1.0));
+        if has_effects(comparison) {
+            svg.polyline(&line(|p| p.last), Stroke::solid(colour(place), 1.6));
+        }
+    }
+    let left_out = if shown.len() < all.len() {
+        format!(" Shown are {} of {} sweeps.", shown.len(), all.len())
+    } else {
+        String::new()
+    };
+    Ok(Some(Plot {
+        name: "isotonic",
+        title: TITLE.to_owned(),
+        caption: format!(
+            "Dots are readings while the load was held, lines the contractions at which the model bears the load that was read, to first order: \
+             reading plus (measured - modelled force) over the model's slope. Force is what was fitted.{left_out}"
+        ),
+        svg: svg.finish(TITLE),
+    }))
+}
+
+/// The sentence above the plot.
+pub(crate) fn says(comparison: &Comparison) -> String {
+    let rms = |which: usize| {
+        let squares = comparison.isotonic.iter().map(|held| held.rmse_contraction[which].powi(2));
+        (squares.sum::<f64>() / comparison.isotonic.len().max(1) as f64).sqrt()
+    };
+    let base = format!("Under held loads the base is off by {} of contraction (RMS)", percent(rms(0)));
+    if has_effects(comparison) {
+        format!("{base}, {} by {}.", last_model(comparison), percent(rms(1)))
+    } else {
+        format!("{base}.")
+    }
+}
