@@ -443,3 +443,88 @@ fn at_held_length_the_pressure_says_where_the_loop_turns() {
     assert_eq!([at(100)[0], at(101)[0]], [1.0, -1.0]);
     assert_eq!([history.branch[100], history.branch[101], history.branch[300]], [0, 1, 2]);
 }
+
+/// Filling and venting in triangles of 100 rows each way, with what the length does and a force.
+fn driven_by_pressure(
+    length_mm: impl Fn(f64, u32) -> f64,
+    force: impl Fn(f64) -> f64,
+    direction: bool,
+) -> Data {
+    let mut text = String::from("time [s], pressure [bar], length [mm], force [N]");
+    text.push_str(if direction { ", direction\n" } else { "\n" });
+    for i in 0..=400_u32 {
+        let phase = f64::from(i % 200) / 100.0;
+        let pressure = 1.0 + 5.0 * if phase < 1.0 { phase } else { 2.0 - phase };
+        let (length, force) = (length_mm(pressure, i), force(pressure));
+        let _ = write!(text, "{:.2},{pressure:.4},{length:.4},{force:.1}", 0.1 * f64::from(i));
+        // A file that counts the first three rows of each branch to the one before.
+        let stated = if (i.max(3) - 3) % 200 < 100 { 1 } else { -1 };
+        text.push_str(&if direction { format!(",{stated}\n") } else { "\n".to_owned() });
+    }
+    Data::from_csv(&text, "driven.csv").unwrap()
+}
+
+#[test]
+fn under_a_weight_a_sweep_is_isotonic() {
+    let lengthens = |pressure: f64, _| 250.0 - 8.0 * pressure;
+    assert_eq!(kinds(&driven_by_pressure(lengthens, |_| 300.0, false)), [SweepKind::Isotonic]);
+    // Friction of the guide is no reason; a force that follows the pressure is.
+    assert_eq!(kinds(&driven_by_pressure(lengthens, |p| 300.0 + 5.0 * p, false)), [SweepKind::Isotonic]);
+    assert_eq!(kinds(&driven_by_pressure(lengthens, |p| 100.0 * p, false)), [SweepKind::Loop]);
+    let history = driven_by_pressure(lengthens, |_| 300.0, false).history(0.25);
+    assert_eq!([history.direction[50], history.pressure_direction[50]], [1.0, 1.0]);
+    assert_eq!([history.direction[150], history.pressure_direction[150]], [-1.0, -1.0]);
+}
+
+#[test]
+fn a_held_length_that_drifts_is_held_and_told() {
+    let drifts = |data: &Data| {
+        let found = data.quality(&QualityOptions::default());
+        found.of(FindingKind::HeldLengthDrifts).next().map(|finding| finding.says.clone())
+    };
+    // The frame gives way by 0.6 % of the length; the clamp creeps by as much; a length driven to and fro at each pressure is a motion.
+    let cases: [(&dyn Fn(f64, u32) -> f64, SweepKind); 3] = [
+        (&|p, _| 240.0 + 0.3 * (p - 1.0), SweepKind::Isometric),
+        (&|_, i| 240.0 + 1.5 * f64::from(i) / 400.0, SweepKind::Isometric),
+        (&|_, i| 240.0 + 0.75 * (0.4 * f64::from(i)).sin(), SweepKind::Loop),
+    ];
+    for (length, kind) in cases {
+        let data = driven_by_pressure(length, |p| 100.0 * p, false);
+        assert_eq!(kinds(&data), [kind]);
+        let says = drifts(&data);
+        assert_eq!(says.is_some(), kind == SweepKind::Isometric, "{says:?}");
+        assert!(says.is_none_or(|says| says.contains("0.62 %")));
+    }
+    assert_eq!(drifts(&driven_by_pressure(|p, _| 240.0 + 0.02 * p, |p| 100.0 * p, false)), None);
+}
+
+#[test]
+fn stated_directions_are_taken_where_they_go_with_the_motion() {
+    let held = driven_by_pressure(|_, _| 240.0, |p| 100.0 * p, true);
+    let loops = driven_by_pressure(|p, _| 250.0 - 8.0 * p, |p| 100.0 * p, true);
+    for (history, directions) in [
+        (held.history(0.25), held.history(0.25).pressure_direction),
+        (loops.history(0.25), loops.history(0.25).direction),
+    ] {
+        assert_eq!(
+            [directions[101], directions[103], directions[201], directions[203]],
+            [1.0, -1.0, -1.0, 1.0]
+        );
+        assert_eq!(history.approach[50], 1.0);
+    }
+    // Labels the other way round are none.
+    let mut columns = Columns::new(
+        vec![2e5; 40],
+        Trace::Contraction((0..40).map(|row| 0.005 * f64::from(row)).collect()),
+        vec![100.0; 40],
+    );
+    columns.time_s = Some((0..40).map(f64::from).collect());
+    columns.direction = Some(vec![-1; 40]);
+    assert_eq!(Data::from_columns(columns).unwrap().history(1.0).direction[20], 1.0);
+}
+
+#[test]
+fn at_held_length_the_direction_is_in_doubt_where_the_pressure_turns() {
+    let data = driven_by_pressure(|_, _| 240.0, |p| 100.0 * p, false);
+    assert_eq!(data.direction_in_doubt(), [0, 100, 200, 300]);
+}

@@ -51,3 +51,50 @@ pub(crate) fn buckled(model: &Model, record: &Record, used: &[bool]) -> Vec<usiz
     let counted = used.iter().filter(|used| **used).count();
     if rows.len() as f64 > MOST * counted as f64 { Vec::new() } else { rows }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::Moment;
+    use bulge_muscles::from_toml;
+
+    const HOSE: &str = "name = \"hose\"\nkind = \"braided\"\nlength = \"130 mm\"\nradius = \"7.5 mm\"\nbraid_angle = \"26 deg\"\nends = \"clamped\"\n\
+                        wall = \"1.2 mm\"\n[effects.bladder-elasticity]\nc10 = \"0.25 MPa\"\n";
+
+    /// Filled from 0.05 to 5 bar at 12 %, and vented; the muscle pulls where `pulls` says so.
+    fn filled(held: bool, pulls: impl Fn(f64) -> bool) -> Record {
+        let moment = |i: u32| {
+            let bar = 0.05 * f64::from(if i < 100 { i + 1 } else { 200 - i });
+            let direction = if i < 100 { 1.0 } else { -1.0 };
+            let moment = Moment::at_rest(1e5 * bar, 0.12);
+            if held {
+                Moment { pressure_direction: direction, ..moment }
+            } else {
+                Moment { direction, ..moment }
+            }
+        };
+        let moments: Vec<Moment> = (0..200).map(moment).collect();
+        let force = moments.iter().map(|m| if pulls(m.pressure) { 1e-3 * m.pressure } else { 0.0 }).collect();
+        Record::from_moments(moments, force, std::iter::once(0..200).collect()).unwrap()
+    }
+
+    #[test]
+    fn slack_rows_at_low_pressure_are_left_out_and_others_are_not() {
+        let model = Model::new(&from_toml(HOSE, "m.toml").unwrap());
+        let begins = 1.3e5;
+        let record = filled(true, |pressure| pressure > begins);
+        let rows = buckled(&model, &record, &[true; 200]);
+        // The model begins to pull at the pressure at which its force vanishes; a margin above it is left out, too.
+        let at = |row: usize| record.moments()[row].pressure;
+        let pulls = (1..=100)
+            .map(|i| 5e3 * f64::from(i))
+            .find(|p| model.at_rest(&[], *p, 0.12).is_ok_and(|f| f.force_n >= 0.0));
+        let first = pulls.unwrap().min(begins);
+        let highest = rows.iter().map(|row| at(*row)).fold(0.0, f64::max);
+        assert!(highest >= 1.2 * (first - 5e3) && highest <= 1.3 * first, "{highest} {first}");
+        assert_eq!(rows.len(), (0..200).filter(|row| at(*row) <= highest).count());
+        // A muscle that does pull there has something to say.
+        assert!(buckled(&model, &record.clone().with_force(vec![200.0; 200]), &[true; 200]).is_empty());
+        assert!(buckled(&model, &filled(true, |_| false), &[true; 200]).len() < 100);
+    }
+}
