@@ -313,15 +313,8 @@ fn missing(header: &Header, name: &'static str) -> MeasurementError {
 /// The heading of a column that is read, with its scale.
 fn heading(header: &Header, choice: &Choice) -> Result<Heading, MeasurementError> {
     let (field, name) = (choice.guess.field, &header.names[choice.place]);
-    let column = || quoted(name);
     let scale = match &choice.guess.unit {
-        Some(unit) if unit.is_absolute => {
-            return Err(MeasurementError::Absolute {
-                file: header.file.to_owned(),
-                line: header.line,
-                column: column(),
-            });
-        }
+        Some(unit) if unit.is_absolute => unit.scale.above_air(),
         Some(unit) => unit.scale,
         // A clock has no unit, and one day's times none that is written.
         None => match assumed(field) {
@@ -333,7 +326,7 @@ fn heading(header: &Header, choice: &Choice) -> Result<Heading, MeasurementError
     Ok(Heading {
         field,
         scale: if is_reversed { scale.reversed() } else { scale },
-        text: column(),
+        text: quoted(name),
         is_lengthening: choice.guess.is_lengthening,
         is_settled: choice.entry.is_some(),
     })
@@ -381,6 +374,9 @@ fn uses(header: &Header, chosen: &[Choice]) -> Vec<ColumnUse> {
             guessed: is_guessed,
             says: match choice {
                 None => Some("ignored".to_owned()),
+                Some(choice) if choice.guess.unit.as_ref().is_some_and(|unit| unit.is_absolute) => {
+                    Some("absolute: 1.01325 bar are taken off for the air".to_owned())
+                }
                 Some(_) if is_reversed => Some("with the other sign".to_owned()),
                 Some(c)
                     if c.guess.unit.is_none()

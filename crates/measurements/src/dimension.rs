@@ -44,6 +44,9 @@ impl Quantity for Temperature {
 /// 0 degC in kelvin.
 const CELSIUS_ZERO: f64 = 273.15;
 
+/// Standard atmosphere \[Pa\].
+const ATMOSPHERE: f64 = 101_325.0;
+
 /// From numbers in a unit to SI: `si = number * factor + zero`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Scale {
@@ -69,6 +72,11 @@ impl Scale {
     /// The same with the other sign: a sensor that counts the other way.
     pub(crate) fn reversed(self) -> Self {
         Self { factor: -self.factor, divisor: self.divisor.map(|divisor| -divisor), zero: self.zero }
+    }
+
+    /// The same of absolute pressures, as gauge pressures above the standard atmosphere.
+    pub(crate) fn above_air(self) -> Self {
+        Self { zero: self.zero - ATMOSPHERE, ..self }
     }
 
     /// The scale of a unit of a dimension.

@@ -193,18 +193,6 @@ pub enum MeasurementError {
         /// What to write.
         instead: String,
     },
-    /// A pressure above vacuum.
-    #[error(
-        "{file}:{line}: column `{column}` is an absolute pressure, but gauge pressure is needed: subtract the ambient pressure (about 1.013 bar) and name it `pressure [bar]`"
-    )]
-    Absolute {
-        /// The file.
-        file: String,
-        /// The line of the header.
-        line: usize,
-        /// The heading.
-        column: String,
-    },
     /// What was said of the columns can't be.
     #[error("--columns (or `[data.columns]`): {what}")]
     ColumnMap {
@@ -379,7 +367,6 @@ impl MeasurementError {
             | Self::MissingColumn { line, .. }
             | Self::Ragged { line, .. }
             | Self::Ambiguous { line, .. }
-            | Self::Absolute { line, .. }
             | Self::TimeShuffled { line, .. }
             | Self::Cell { line, .. } => Some(*line),
             Self::Several { complaints, .. } => complaints.first().and_then(Self::line),

@@ -152,6 +152,9 @@ const ASIDE: &[&str] = &[
     "filtered",
 ];
 
+/// Words of a pressure above vacuum.
+const ABSOLUTE: &[&str] = &["absolute", "abs", "absolut", "absolutdruck"];
+
 /// What grows when the muscle gets longer.
 const LENGTHENING: &[&str] = &["extension", "elongation"];
 
@@ -168,7 +171,10 @@ pub(crate) fn guesses(heading: &str, unit_beneath: Option<&str>) -> Vec<Guess> {
     for (name, text) in &splits {
         let words = words(name);
         for field in fields(&words) {
-            let unit = text.as_deref().and_then(|text| unit(field, text));
+            let mut unit = text.as_deref().and_then(|text| unit(field, text));
+            if let Some(unit) = unit.as_mut().filter(|_| field == Field::Pressure) {
+                unit.is_absolute |= words.iter().any(|word| ABSOLUTE.contains(&word.as_str()));
+            }
             let is_known = match text.as_deref() {
                 // A name whose unit is none of its quantity means something else.
                 Some(text) => unit.is_some() || (field.is_label() && matches!(text, "-" | "1")),

@@ -188,11 +188,17 @@ impl Data {
         };
         let found = spikes::in_columns(&gate).into_iter().map(named("spike"));
         let clipped = clipping::in_columns(&gate).into_iter().map(named("clipped"));
-        let frozen = Disturbance {
-            rows: frozen::rows(&gate),
+        let frozen = frozen::rows(&gate);
+        let all = Disturbance {
+            rows: frozen.all,
             why: "frozen: pressure, motion and force repeat the row before to the last digit".to_owned(),
         };
-        found.chain(clipped).chain([frozen]).filter(|found| !found.rows.is_empty()).collect()
+        let force = Disturbance {
+            rows: frozen.force,
+            why: "frozen: the force repeats the row before to the last digit while the muscle moved on"
+                .to_owned(),
+        };
+        found.chain(clipped).chain([all, force]).filter(|found| !found.rows.is_empty()).collect()
     }
 }
 

@@ -182,7 +182,7 @@ fn meanings(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
             kind: "absolute-pressure",
             with: "with 1.013 bar less".to_owned(),
             question: "is the pressure absolute?".to_owned(),
-            instead: "write `pressure [bar abs]` (or the unit that it has, with `abs`) in the header, or subtract the pressure of the air"
+            instead: "write `pressure [bar abs]` (or the unit that it has, with `abs`) in the header, or `--columns \"pressure=NAME [bar abs]\"`: the standard atmosphere is then taken off; with a barometer, subtract its reading"
                 .to_owned(),
             of: Box::new(|[p, c, f]| [p - ATMOSPHERE, c, f]),
         });

@@ -1,7 +1,8 @@
-//! A recording that stood still: rows in a row with the same pressure, motion and force, although the readings are noisy.
+//! A recording that stood still: rows in a row with the same pressure, motion and force, although the readings are noisy; or a force that did, while the others moved on.
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
-use crate::resolution::Resolution;
+use crate::resolution::{Resolution, bounds};
+use std::ops::Range;
 
 /// Fewer equal rows in a row may be chance.
 const RUN: usize = 8;
@@ -9,47 +10,107 @@ const RUN: usize = 8;
 const STEPS: f64 = 2.0;
 /// Noise below this share of the range is that of the arithmetic: nothing was measured.
 const LEAST: f64 = 1e-7;
+/// Chance that a run of equal forces comes about in a file of these rows.
+const CHANCE: f64 = 1e-6;
+/// A pressure or a motion moves on if it spans more of its standard deviations, steps of the sensor, and a larger part of its range.
+const MOVES: f64 = 10.0;
+const MOVES_PART: f64 = 0.02;
+/// A force below this share of the largest may be that of a slack muscle, which stays the same.
+const SLACK: f64 = 0.01;
 
-/// Rows that repeat the one before.
-pub(super) fn rows(gate: &Gate) -> Vec<usize> {
+/// Rows that repeat the one before: in all readings, and in the force alone.
+pub(super) struct Frozen {
+    pub(super) all: Vec<usize>,
+    pub(super) force: Vec<usize>,
+}
+
+pub(super) fn rows(gate: &Gate) -> Frozen {
     let (pressure, motion, force) = (gate.data.pressure(), gate.motion, gate.data.force());
     let is_noisy = |resolution: &Resolution| {
         resolution.noise > STEPS * resolution.step && resolution.noise > LEAST * resolution.range
     };
-    // One noisy column is enough; a force alone may be stuck at the end of its range, which is another finding.
-    if ![&gate.pressure, gate.motion_resolution(), &gate.force].into_iter().any(is_noisy) {
-        return Vec::new();
-    }
-    let bits = |row: usize| [pressure[row].to_bits(), motion[row].to_bits(), force[row].to_bits()];
-    let mut rows = Vec::new();
+    let resolutions = [&gate.pressure, gate.motion_resolution(), &gate.force];
+    // One noisy column is enough where all repeat.
+    let all = if resolutions.into_iter().any(is_noisy) {
+        runs(gate, RUN, |row| [pressure[row].to_bits(), motion[row].to_bits(), force[row].to_bits()])
+    } else {
+        Vec::new()
+    };
+    let moves = |rows: &Range<usize>| {
+        [(pressure, resolutions[0]), (motion, resolutions[1])].into_iter().any(|(values, resolution)| {
+            let (low, high) = bounds(&values[rows.clone()]);
+            let least = MOVES * resolution.noise.max(resolution.step);
+            high - low > least.max(MOVES_PART * resolution.range)
+        })
+    };
+    let repeats = runs(gate, longest_by_chance(gate), |row| force[row].to_bits());
+    let is_alone = |rows: &Range<usize>| {
+        moves(rows) && force[rows.start].abs() > SLACK * gate.largest_force && !all.contains(rows)
+    };
+    let alone: Vec<Range<usize>> = repeats.into_iter().filter(is_alone).collect();
+    // The first row of a run is a reading.
+    let repeated = |runs: &[Range<usize>]| runs.iter().flat_map(|run| run.start + 1..run.end).collect();
+    Frozen { all: repeated(&all), force: repeated(&alone) }
+}
+
+/// Runs of equal rows of at least this length, within the sweeps.
+fn runs<T: PartialEq>(gate: &Gate, least: usize, bits: impl Fn(usize) -> T) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
     for (sweep, _) in gate.data.paths() {
         let mut start = sweep.rows.start;
         for row in sweep.rows.start + 1..=sweep.rows.end {
             if row == sweep.rows.end || bits(row) != bits(start) {
-                if row - start >= RUN {
-                    rows.extend(start + 1..row);
+                if row - start >= least {
+                    found.push(start..row);
                 }
                 start = row;
             }
         }
     }
-    rows
+    found
+}
+
+/// The length from which on a run of equal forces is none of chance, if neighbours are as often equal as the force repeats itself in runs that chance allows: `n q^(k - 1) < CHANCE` with
+/// the share q of short runs' rows that repeat the one before.
+fn longest_by_chance(gate: &Gate) -> usize {
+    let force = gate.data.force();
+    let short: usize = runs(gate, 2, |row| force[row].to_bits())
+        .iter()
+        .filter(|run| run.len() < RUN)
+        .map(|run| run.len() - 1)
+        .sum();
+    let rows = force.len().max(1) as f64;
+    let share = ((short as f64 + 1.0) / rows).min(0.99);
+    let length = 1.0 + (CHANCE / rows).ln() / share.ln();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "positive, at most some 10^4"
+    )]
+    let length = length.ceil().clamp(0.0, 1e6) as usize;
+    length.max(RUN)
 }
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
-    let rows = rows(gate);
-    let found = gate.finding_if_any(
-        FindingKind::Frozen,
-        Severity::Warning,
-        &rows,
-        |count| {
-            format!(
-                "{} with the same pressure, {} and force as the row before, to the last digit",
-                rows_in_words(count),
-                gate.motion_name()
-            )
-        },
-        "nothing: these rows don't count; the recording stood still, or filled a gap with the last reading",
-    );
-    found.into_iter().collect()
+    let Frozen { all, force } = rows(gate);
+    let instead =
+        "nothing: these rows don't count; the recording stood still, or filled a gap with the last reading";
+    let all_says = |count| {
+        format!(
+            "{} with the same pressure, {} and force as the row before, to the last digit",
+            rows_in_words(count),
+            gate.motion_name()
+        )
+    };
+    let force_says = |count| {
+        format!(
+            "{} with the same force as the row before, to the last digit, while the rest moved on",
+            rows_in_words(count)
+        )
+    };
+    let found = [
+        gate.finding_if_any(FindingKind::Frozen, Severity::Warning, &all, all_says, instead),
+        gate.finding_if_any(FindingKind::Frozen, Severity::Warning, &force, force_says, instead),
+    ];
+    found.into_iter().flatten().collect()
 }

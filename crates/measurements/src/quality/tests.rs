@@ -216,6 +216,12 @@ fn a_recording_that_stands_still() {
         columns.pressure_pa[300..340].fill(100_010.0);
         motion(columns)[300..340].fill(0.1765);
     });
+    // A load cell that stood still while the muscle moved on.
+    plants(FindingKind::Frozen, &rows, |columns| columns.force_n[300..340].fill(333.3));
+    // One that shows full newtons, at the turning points of a slow loop, doesn't.
+    let mut columns = clean_loops(1, 1);
+    columns.force_n.iter_mut().for_each(|force| *force = (*force / 5.0).round() * 5.0);
+    assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0);
     // At rest, readings without noise are equal.
     let mut columns = clean_loops(1, 1);
     let rows = columns.force_n.len();

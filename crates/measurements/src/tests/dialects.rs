@@ -268,7 +268,6 @@ fn what_the_user_says_settles_it() {
             "",
             vec!["2 things", "which column is `force`", "no column `length` or `contraction`"],
         ),
-        ("t [s],p [bara],L [mm],F [N]", "", vec!["`p [bara]` is an absolute pressure", "subtract"]),
         ("t [s],pressure,L [mm],F [N]", "", vec!["`pressure` has no unit", "`pressure [bar]`"]),
         (
             "t [s],pressure [mm],L [mm],F [N]",
@@ -492,4 +491,30 @@ proptest! {
             prop_assert_eq!((a.0, bits(a.1)), (b.0, bits(b.1)));
         }
     }
+}
+
+#[test]
+fn absolute_pressures_are_read_above_the_air() {
+    for heading in [
+        "p [bara]",
+        "absolute pressure [bar]",
+        "pressure [bar abs]",
+        "p_abs / bar",
+        "Absolutdruck [bar]",
+        "P (bar a)",
+    ] {
+        let text = format!(
+            "t [s],{heading},L [mm],F [N]\n0,1.01325,250,0.5\n1,3.01325,249,300\n2,4.01325,248,420\n"
+        );
+        let data = Data::from_csv(&text, "a.csv").unwrap();
+        for (found, gauge) in data.pressure().iter().zip([0.0, 2e5, 3e5]) {
+            assert!((found - gauge).abs() < 1e-6, "{heading}: {found}");
+        }
+        let says = data.reading().columns.iter().filter_map(|column| column.says.as_deref());
+        assert!(says.into_iter().any(|says| says.contains("1.01325 bar are taken off")), "{heading}");
+    }
+    let gauge =
+        Data::from_csv("t [s],gauge pressure [bar],L [mm],F [N]\n0,1.5,250,1\n1,3,249,300\n", "a.csv")
+            .unwrap();
+    assert_eq!(gauge.pressure(), [1.5e5, 3e5]);
 }
