@@ -12,10 +12,11 @@ use crate::answer::SHAPE;
 use crate::base::Equilibrium;
 use crate::error::ModelError;
 use crate::lattice::{FEWEST_NODES, Lattice};
-use crate::model::{AtRest, Base, Model};
+use crate::model::{AtRest, Base, Chosen, Model};
 use crate::prediction::{Part, Partly, Prediction};
 use crate::record::Record;
 use crate::row::NORMAL;
+use crate::solved::Asked;
 use crate::strands::{self, Strands};
 use crate::warm::{Held, Slots, Warm};
 
@@ -45,7 +46,7 @@ pub(crate) struct Run<'a> {
     /// Parameters that change the shape, in the order of the answers' derivatives.
     shapes: Vec<usize>,
     pub(crate) equilibrium: Option<Equilibrium>,
-    pub(crate) lattice: Option<Lattice>,
+    pub(crate) lattice: Option<Arc<Lattice>>,
     /// Whether equilibria are searched for from those found before, as exactly as a fit needs them.
     pub(crate) within_fit: bool,
     /// Whether a segment ends at its first row without a state.
@@ -331,9 +332,10 @@ impl Run<'_> {
         equilibrium: &Equilibrium,
         counts: &dyn Fn(usize) -> bool,
         slots: &mut Slots,
-    ) -> Option<Lattice> {
+    ) -> Option<Arc<Lattice>> {
         let rows = self.inputs(record);
-        let counted = || rows.iter().enumerate().filter(|(row, _)| counts(*row)).map(|(_, row)| row);
+        let matters = self.matters(record, counts);
+        let counted = || rows.iter().zip(&matters).filter(|(_, matters)| **matters).map(|(row, _)| row);
         // Zero errors move rows a little while a lattice is held: into the next cell at most.
         let margin = i64::from(slots.holds);
         let lattice =
@@ -343,17 +345,54 @@ impl Run<'_> {
         if lattice.needed() >= evaluations * counted().count() {
             return None;
         }
-        let lattice = lattice.solved(equilibrium, &mut slots.nodes[self.body]);
+        let asked = || Asked {
+            muscle: muscle.clone(),
+            numbers: self.shaping().collect(),
+            shapes: self.shapes.iter().map(|index| self.model.name_of(*index)).collect(),
+        };
+        let before = Arc::clone(&slots.nodes[self.body]);
+        let solve = |lattice: Lattice| lattice.solved(equilibrium, &before);
+        let (lattice, starts) = if before.is_empty() {
+            self.model.solved.lattice(asked(), lattice, solve)
+        } else {
+            let (lattice, starts) = solve(lattice);
+            (Arc::new(lattice), starts)
+        };
+        slots.nodes[self.body] = starts;
         if slots.holds {
             let (shapes, theta) = (self.shapes.clone(), self.theta.to_vec());
             slots.held[self.body] =
-                Some(Arc::new(Held { shapes, theta, muscle: muscle.clone(), lattice: lattice.clone() }));
+                Some(Arc::new(Held { shapes, theta, muscle: muscle.clone(), lattice: Arc::clone(&lattice) }));
         }
         Some(lattice)
     }
 
     fn remembers(&self) -> bool {
         self.model.effects.iter().any(|chosen| chosen.effect.memory() > 0)
+    }
+
+    /// Rows whose equilibrium matters: those that count, and where something is remembered those before them in their sweep.
+    fn matters(&self, record: &Record, counts: &dyn Fn(usize) -> bool) -> Vec<bool> {
+        let mut matters: Vec<bool> = (0..record.len()).map(counts).collect();
+        if self.remembers() {
+            for sweep in record.sweeps() {
+                let rows = &mut matters[sweep.clone()];
+                let last = rows.iter().rposition(|counts| *counts);
+                rows[..last.unwrap_or(0)].fill(true);
+            }
+        }
+        matters
+    }
+
+    /// All numbers of effects that change the shape.
+    fn shaping(&self) -> impl Iterator<Item = (String, u64)> {
+        let is_of_shape = |chosen: &&Chosen| chosen.effect.card().stage == Stage::Shape;
+        let numbers = |chosen: &Chosen| {
+            let name = chosen.effect.card().name;
+            let own = self.model.parameters().iter().zip(self.theta).filter(move |(p, _)| p.effect == name);
+            own.map(move |(_, value)| (name.to_owned(), value.to_bits())).collect::<Vec<_>>()
+        };
+        self.model.effects.iter().filter(is_of_shape).flat_map(numbers)
     }
 
     /// Sweeps where something is remembered along them, else chunks of equal size.
@@ -450,8 +489,10 @@ fn segment(
     slots: &mut [Option<Start>],
 ) -> Vec<(usize, RowError)> {
     let mut failed = Vec::new();
-    // Rows that don't count matter only for what they leave in the memory.
+    // Rows that don't count matter only for what they leave in the memory to those that do.
     let remembers = runs[0].remembers();
+    let Some(last) = rows.clone().rev().find(|row| (task.counts)(*row)) else { return failed };
+    let rows = rows.start..last + 1;
     for (number, pass) in task.passes.iter().enumerate() {
         let mut memory = runs[0].memory();
         let mut before: Option<(usize, usize)> = None;

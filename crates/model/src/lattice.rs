@@ -16,9 +16,11 @@
 use bulge_fibre::{FibreError, Start};
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use crate::answer::{Answer, Graded, SHAPE};
 use crate::base::Equilibrium;
+use crate::solved::Starts;
 
 /// Nodes of a stencil in each direction.
 const WIDTH: usize = 6;
@@ -30,8 +32,9 @@ pub(crate) const FEWEST_NODES: usize = WIDTH * WIDTH;
 const STEP: [f64; 2] = [0.125, 0.1];
 /// Contraction below which the lattice is even, above which it is logarithmic.
 const BEND: f64 = 0.02;
-/// Nodes by which a stencil may lie aside, so that the row stays within it.
+/// Nodes by which a stencil may lie aside, so that the row stays within it, and the most in both directions together: beyond that a row is solved itself.
 const INWARDS: [i64; 5] = [0, -1, 1, -2, 2];
+const MOST_INWARDS: i64 = 3;
 /// Outputs of a node: force, tension, radius, volume.
 const OUTPUTS: usize = 4;
 
@@ -42,6 +45,10 @@ const PULLS: f64 = 0.02;
 type Node = Vec<[f64; OUTPUTS]>;
 /// Column of a node, its numbers, and where its search ended.
 type Solved = (usize, Node, Option<Start>);
+
+/// Nodes beyond the one at which the force vanishes: rows up to there have whole stencils. Further on equilibria soon end, and finding out where takes long; a row there is solved
+/// itself.
+const BEYOND: usize = 4;
 
 /// The nodes of one pressure.
 struct Line {
@@ -132,28 +139,38 @@ impl Lattice {
         self.needed.iter().filter(|needed| **needed).count()
     }
 
-    /// The same with its nodes solved, one pressure beside the other. Searches start at what `slots` holds of a node, else at its neighbour,
-    /// and leave where they end.
-    pub(crate) fn solved(mut self, equilibrium: &Equilibrium, slots: &mut HashMap<[i64; 2], Start>) -> Self {
+    /// Whether both ask for the same nodes with as many derivatives.
+    pub(crate) fn has_nodes_of(&self, other: &Self) -> bool {
+        let kind = |lattice: &Self| (lattice.singular, lattice.scale_free, lattice.shapes);
+        let steps = |lattice: &Self| lattice.steps.map(f64::to_bits);
+        kind(self) == kind(other)
+            && steps(self) == steps(other)
+            && (self.low, self.count) == (other.low, other.count)
+            && self.needed == other.needed
+    }
+
+    /// The same with its nodes solved, one pressure beside the other, and where the searches ended. They start at what `starts` holds of a node, else at its
+    /// neighbour.
+    pub(crate) fn solved(mut self, equilibrium: &Equilibrium, starts: &Starts) -> (Self, Starts) {
         let lines: Vec<Line> =
-            (0..self.count[0]).into_par_iter().map(|row| self.line(equilibrium, row, slots)).collect();
+            (0..self.count[0]).into_par_iter().map(|row| self.line(equilibrium, row, starts)).collect();
         let columns = self.count[1];
         let stride = 1 + self.shapes;
         self.is_solved = vec![false; self.needed.len()];
         self.nodes = vec![[0.0; OUTPUTS]; stride * self.needed.len()];
-        slots.clear();
+        let mut ends = HashMap::new();
         for (row, line) in lines.into_iter().enumerate() {
             self.ends.push(line.end);
             for (column, node, start) in line.solved {
                 if let Some(start) = start {
-                    slots.insert(self.key(row, column), start);
+                    ends.insert(self.key(row, column), start);
                 }
                 let place = row * columns + column;
                 self.is_solved[place] = true;
                 self.nodes[place * stride..][..stride].copy_from_slice(&node);
             }
         }
-        self
+        (self, Arc::new(ends))
     }
 
     /// The lattice of a shape whose parameters differ by `moved`, to first order.
@@ -172,7 +189,7 @@ impl Lattice {
 
     /// Nodes of one pressure: outwards from the contraction where every muscle pulls. A direction ends where equilibria end: nothing beyond is
     /// searched for in vain.
-    fn line(&self, equilibrium: &Equilibrium, row: usize, slots: &HashMap<[i64; 2], Start>) -> Line {
+    fn line(&self, equilibrium: &Equilibrium, row: usize, starts: &Starts) -> Line {
         let columns = self.count[1];
         let needed: Vec<usize> = (0..columns).filter(|column| self.needed[row * columns + column]).collect();
         let middle = needed.partition_point(|column| self.contraction(*column) < PULLS);
@@ -183,14 +200,18 @@ impl Lattice {
             [(true, &mut above.iter()), (false, &mut below.iter().rev())];
         for (is_upwards, way) in ways {
             let mut near: Option<Start> = first.clone();
-            let mut any = false;
+            let (mut any, mut pushing) = (false, 0);
             for &column in way {
-                let from = slots.get(&self.key(row, column)).or(near.as_ref());
+                let from = starts.get(&self.key(row, column)).or(near.as_ref());
                 match self.solve(equilibrium, row, column, from) {
                     Ok((node, start)) => {
                         (any, near) = (true, start.clone());
                         first = first.or_else(|| start.clone());
+                        pushing = if node[0][0] < 0.0 { pushing + 1 } else { 0 };
                         found.solved.push((column, node, start));
+                        if is_upwards && pushing == BEYOND {
+                            break;
+                        }
                     }
                     Err(error) if is_upwards => {
                         found.end = Some((column, error));
@@ -290,20 +311,29 @@ impl Lattice {
         Ok((std::iter::once(values).chain(slopes).collect(), start))
     }
 
-    /// The stencil around a contraction, moved inwards where equilibria end: a row in the last cells is still between solved nodes. None if there is no such stencil.
-    fn within(&self, around: Place, first: i64, rows: usize) -> Option<Place> {
-        let is_solved = |place: &Place| {
-            (first..).zip(0..rows).all(|(row, _)| {
+    /// The stencil around a pressure and a contraction, moved inwards where equilibria end: a row in the last cells is still between solved nodes. The least moved
+    /// counts, along the contraction first; none if there is no such stencil.
+    fn within(&self, around: [Place; 2]) -> Option<[Place; 2]> {
+        let rows = if self.scale_free { 1 } else { WIDTH };
+        let moved = |place: Place, shift: i64| Place {
+            first: place.first + shift,
+            offset: place.offset - shift as f64,
+        };
+        let is_solved = |[pressure, contraction]: &[Place; 2]| {
+            (pressure.first..).zip(0..rows).all(|(row, _)| {
                 let start = self
-                    .index(row, place.first)
-                    .filter(|_| self.index(row, place.first + SPAN - 1).is_some());
+                    .index(row, contraction.first)
+                    .filter(|_| self.index(row, contraction.first + SPAN - 1).is_some());
                 let nodes = start.and_then(|start| self.is_solved.get(start..start + WIDTH));
                 nodes.is_some_and(|nodes| nodes.iter().all(|solved| *solved))
             })
         };
-        INWARDS
+        let pressures = if self.scale_free { &INWARDS[..1] } else { &INWARDS };
+        pressures
             .iter()
-            .map(|shift| Place { first: around.first + shift, offset: around.offset - *shift as f64 })
+            .flat_map(|p| INWARDS.iter().map(move |e| [*p, *e]))
+            .filter(|[p, e]| p.abs() + e.abs() <= MOST_INWARDS)
+            .map(|[p, e]| [moved(around[0], p), moved(around[1], e)])
             .find(is_solved)
     }
 
@@ -311,11 +341,14 @@ impl Lattice {
     pub(crate) fn answer(&self, pressure: f64, contraction: f64) -> Option<Answer> {
         let x = self.pressure_axis(pressure)?;
         let s = self.contraction_axis(contraction)?;
-        let along_p = self.place(0, x)?;
+        let mut around = [self.place(0, x)?, self.place(1, s)?];
+        if self.scale_free {
+            around[0].first = 0;
+        }
+        let [along_p, along_s] = self.within(around)?;
         let (wp, dp) = if self.scale_free { flat() } else { weights(along_p.offset) };
-        let first = if self.scale_free { 0 } else { along_p.first };
+        let first = along_p.first;
         let rows = if self.scale_free { 1 } else { WIDTH };
-        let along_s = self.within(self.place(1, s)?, first, rows)?;
         let (ws, ds) = weights(along_s.offset);
         // Values with their shape derivatives, and the values' slopes in steps.
         let mut sums = [[0.0; OUTPUTS]; 1 + SHAPE];

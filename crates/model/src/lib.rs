@@ -21,6 +21,7 @@ mod parameter;
 mod prediction;
 mod record;
 mod row;
+mod solved;
 mod specimen;
 mod strands;
 mod warm;

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use crate::base::{Equilibrium, ShapeVariable};
 use crate::error::ModelError;
 use crate::parameter::ModelParameter;
+use crate::solved::Solved;
 
 /// Part of a parameter's usual size at which a number exists that doesn't at 0; derivatives change by about as much on the way.
 const BESIDE: f64 = 1e-7;
@@ -69,6 +70,8 @@ pub struct Model {
     parameters: Vec<ModelParameter>,
     /// Steps of the lattice are divided by this.
     pub(crate) refinement: f64,
+    /// Lattices that this model and those made from it have solved.
+    pub(crate) solved: Arc<Solved>,
 }
 
 /// Force of a muscle at rest, part by part.
@@ -95,6 +98,7 @@ impl Model {
             specimens: vec!["1".to_owned()],
             parameters: Vec::new(),
             refinement: 1.0,
+            solved: Arc::default(),
         }
     }
 
@@ -192,6 +196,12 @@ impl Model {
     #[must_use]
     pub fn copies(&self, effect: &dyn Effect) -> usize {
         if self.is_of_each_specimen(effect) { self.specimens.len() } else { 1 }
+    }
+
+    /// Effect and name of a number.
+    pub(crate) fn name_of(&self, index: usize) -> (String, String) {
+        let parameter = &self.parameters[index];
+        (parameter.effect.clone(), parameter.name.clone())
     }
 
     /// Which of the muscles that the specimens are a specimen is.

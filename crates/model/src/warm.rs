@@ -7,10 +7,10 @@
 
 use bulge_fibre::Start;
 use bulge_muscles::Muscle;
-use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::lattice::Lattice;
+use crate::solved::Starts;
 
 /// Memory of the equilibria between the evaluations of one fit, for [`crate::Model::evaluate_warm`].
 ///
@@ -27,7 +27,7 @@ pub struct Warm {
 pub(crate) struct Slots {
     pub(crate) rows: Vec<Vec<Option<Start>>>,
     /// Of each of the model's muscles.
-    pub(crate) nodes: Vec<HashMap<[i64; 2], Start>>,
+    pub(crate) nodes: Vec<Starts>,
     /// Whether the next lattice that is solved is held.
     pub(crate) holds: bool,
     pub(crate) held: Vec<Option<Arc<Held>>>,
@@ -44,7 +44,7 @@ pub(crate) struct Held {
     pub(crate) theta: Vec<f64>,
     /// The muscle that they make.
     pub(crate) muscle: Muscle,
-    pub(crate) lattice: Lattice,
+    pub(crate) lattice: Arc<Lattice>,
 }
 
 impl Held {
@@ -55,7 +55,7 @@ impl Held {
         theta: &[f64],
         shapes: &[usize],
         shape: impl Fn(&[f64]) -> Option<Muscle>,
-    ) -> Option<Lattice> {
+    ) -> Option<Arc<Lattice>> {
         let mut back = theta.to_vec();
         for index in &self.shapes {
             back[*index] = self.theta[*index];
@@ -64,14 +64,17 @@ impl Held {
         let serves = (shapes.is_empty() || shapes == self.shapes) && is_all();
         serves.then(|| {
             let moved: Vec<f64> = self.shapes.iter().map(|i| theta[*i] - self.theta[*i]).collect();
-            self.lattice.moved(&moved)
+            if moved.iter().all(|moved| *moved == 0.0) {
+                return Arc::clone(&self.lattice);
+            }
+            Arc::new(self.lattice.moved(&moved))
         })
     }
 
     /// The lattice of this very muscle; none if it is another, or if the lattice lacks the derivatives asked for.
-    fn of(&self, muscle: &Muscle, shapes: &[usize]) -> Option<Lattice> {
+    fn of(&self, muscle: &Muscle, shapes: &[usize]) -> Option<Arc<Lattice>> {
         let serves = (shapes.is_empty() || shapes == self.shapes) && *muscle == self.muscle;
-        serves.then(|| self.lattice.clone())
+        serves.then(|| Arc::clone(&self.lattice))
     }
 }
 
@@ -148,14 +151,14 @@ impl Slots {
         theta: &[f64],
         shapes: &[usize],
         shape: impl Fn(&[f64]) -> Option<Muscle>,
-    ) -> Option<Lattice> {
+    ) -> Option<Arc<Lattice>> {
         let held = self.held.get(body)?.as_ref()?;
         if self.is_shared { held.of(muscle, shapes) } else { held.near(theta, shapes, shape) }
     }
 
     /// Slots for so many muscles.
     pub(crate) fn for_bodies(&mut self, count: usize) {
-        self.nodes.resize_with(count, HashMap::new);
+        self.nodes.resize(count, Starts::default());
         self.held.resize(count, None);
     }
 
