@@ -20,7 +20,7 @@ const PRESSURE: [f64; 2] = [1e3, 1.5e6];
 /// Range of the strain by which pressure stretches fibres: about p R l0/(n EA), or 2 pi p r0^2/(n EA sin^2(alpha0)) of a braid.
 const STRETCH: [f64; 2] = [1e-6, 5e-2];
 /// Range of K/(p R) of cloth, in a pleated muscle and in a braid.
-const CLOTH: [[f64; 2]; 2] = [[1e-2, 1e6], [1e-2, 3e1]];
+const CLOTH: [[f64; 2]; 2] = [[1e-2, 1e6], [1e-2, 1e3]];
 /// Range of c10 t/(p r0) of a bladder.
 const RUBBER: [f64; 2] = [1e-4, 1e2];
 /// Largest residual of the end conditions that an answer may have, whose square remains after the last step.

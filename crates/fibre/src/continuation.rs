@@ -85,6 +85,7 @@ pub(crate) fn continuation(
     }
     // d(unknowns)/d ln(part) of a shallow bulge, where B, k and 1/T grow with the root of the contraction.
     let first = match (is_limited(net, at.side), net.turn == 0.0) {
+        (true, _) if net.bladder.is_some() => 0.0,
         (true, true) => -1.0,
         (true, false) => -0.5,
         (false, _) => 0.5,

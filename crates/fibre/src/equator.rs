@@ -7,6 +7,8 @@ use crate::net::Net;
 
 /// Radii at which fibres may be found slack.
 const SAMPLES: u32 = 16;
+/// A push over the bulge next to nothing.
+const SLIGHT: f64 = 1e-304;
 /// Part of H by which it must be too small for that.
 const SLACK: f64 = 1e-12;
 
@@ -19,19 +21,19 @@ impl<D: Real> Net<D> {
         }
     }
 
-    /// The bulge B > 0 for which the [`Net::push`] at the radius of the fitting and B is B exp(y): it falls with y.
+    /// The bulge B > 0 for which the [`Net::push`] at the radius of the fitting and B is B times `rate`: it falls with the rate, which is positive
+    /// but for a bladder.
     ///
-    /// Where lobes or a stiff cloth limit the radius, the push is the small difference of two numbers, and B exp(y) has it exactly.
-    pub(crate) fn bulge(&self, y: D) -> Option<D> {
-        let Some(lobes) = &self.lobes else { return self.bulge_of_polygon(y) };
-        let Some(cloth) = &self.cloth else { return lobes.bulge(self.end_radius + self.depth, -y) };
-        let free = lobes.bulge(self.end_radius + self.depth, -y)?;
+    /// Where lobes or a stiff cloth limit the radius, the push is the small difference of two numbers, and B times the rate has it exactly.
+    pub(crate) fn bulge(&self, rate: D) -> Option<D> {
+        let Some(lobes) = &self.lobes else { return self.bulge_of_polygon(rate) };
+        let Some(cloth) = &self.cloth else { return lobes.bulge(self.end_radius + self.depth, -rate.ln()) };
+        let free = lobes.bulge(self.end_radius + self.depth, -rate.ln())?;
         let room = cloth.radius - self.end_radius;
         if free.value() <= room.value() {
             return Some(free);
         }
         // Between the cloth's radius and what the lobes alone would do: the gap rises steadily.
-        let rate = y.exp();
         let gap = |bulge: D| {
             let r = self.end_radius + bulge;
             let acting = self.acting_at(r.value().max(cloth.radius.value() * (1.0 + 1e-15)));
@@ -57,8 +59,7 @@ impl<D: Real> Net<D> {
         None
     }
 
-    fn bulge_of_polygon(&self, y: D) -> Option<D> {
-        let rate = y.exp();
+    fn bulge_of_polygon(&self, rate: D) -> Option<D> {
         let area_rr = self.area_factor * (2.0 * PI);
         let end = area_rr * (self.end_radius + self.depth);
         let free = end / (rate - area_rr);
@@ -76,7 +77,7 @@ impl<D: Real> Net<D> {
     pub(crate) fn most_bulge(&self) -> f64 {
         let net = self.constant();
         let lobes = net.lobes.map_or(f64::INFINITY, |lobes| lobes.limit() - net.depth - net.end_radius);
-        let held = net.bulge(-700.0).unwrap_or(f64::INFINITY);
+        let held = net.bulge(SLIGHT).unwrap_or(f64::INFINITY);
         lobes.min(held)
     }
 

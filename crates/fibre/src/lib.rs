@@ -14,6 +14,7 @@ mod net;
 mod outcome;
 mod problem;
 mod quadrature;
+mod search;
 mod shape;
 mod shooting;
 mod solve;

@@ -10,7 +10,7 @@ use crate::meridian::{COS, SIN, TENSION};
 use crate::net::Net;
 use crate::problem::Problem;
 use crate::shape::{Convergence, Method};
-use crate::shooting::{self, Ending, Total, USUAL, Unknowns, Way};
+use crate::shooting::{self, Ending, Total, Unknowns, Way};
 
 /// The group of [`FibreError::TooSoft`] beyond which straight fibres balloon: `F(phi_R|m)/(L y) = 1 + kappa/y^2` has a solution in y up to
 /// kappa L^2 = F^2/4, and F is at most 1.854 where the force vanishes (m = 1/2).
@@ -102,14 +102,14 @@ impl Problem {
         method: Method,
         contraction: f64,
         net: &Net<Dual<N>>,
-        from: Option<Unknowns>,
+        (from, ending): (Option<Unknowns>, Ending),
     ) -> Result<Outcome<N>, FibreError> {
         self.judged(contraction, || match method {
             _ if self.is_cylinder() => by_cylinder(net, contraction),
             Method::ClosedForm => by_closed_form(net, contraction),
             // This crate never chooses elements.
             Method::Shooting | Method::Membrane => {
-                by_shooting(&self.net, net, contraction, from, (USUAL, Way::Ode))
+                by_shooting(&self.net, net, contraction, from, (ending, Way::Ode))
             }
         })
     }
