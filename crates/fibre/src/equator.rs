@@ -152,6 +152,26 @@ fn pushed<D: Real>(gap: impl Fn(D) -> (D, D), linear: D) -> Option<D> {
 }
 
 impl Net<f64> {
+    /// Whether a braid whose gas acts inside its fibres is too long for one middle at a contraction. Beside the cylinder that has the contraction,
+    ///
+    /// ```text
+    /// (r - r_c)'' = sigma^2 (h_r - A'')/N (r - r_c)
+    /// ```
+    /// and where that is a wave instead of a saddle, half of one must reach from fitting to fitting. Not told of a braid with rubber or cloth.
+    pub(crate) fn undulates(&self, contraction: f64) -> bool {
+        let sigma = self.cos_rest * (1.0 - contraction);
+        let radius = (1.0 - sigma * sigma).sqrt() / self.turn;
+        let holds_otherwise = self.bladder.is_some() || self.cloth.is_some();
+        if holds_otherwise || self.depth >= 0.0 || !(radius + self.depth > 0.0) {
+            return false;
+        }
+        let net = self.acting_at(radius);
+        let Some(tension) = net.tension_at_equator(radius, net.push(radius), 0.0) else { return false };
+        let local = net.local(radius, tension);
+        let square = local.sigma.powi(2) * (local.hoop_r - net.section(radius).area_rr) / local.force;
+        (-square).max(0.0).sqrt() * 2.0 * self.half_fibre > PI
+    }
+
     /// Whether fibres are slack somewhere between mid-length and the fitting. With the tension T and f = sigma w_1 - w of the walls on fibres
     /// of their own length, H = sigma N - w is the same all along, and T has the sign of H - f.
     pub(crate) fn is_slack(&self, mid_radius: f64, mid_tension: f64) -> bool {

@@ -159,6 +159,9 @@ impl Problem {
             Err(FibreError::NotConverged { .. }) if group > 0.7 * limit => {
                 Err(FibreError::TooSoft { group, limit })
             }
+            Err(FibreError::NotConverged { .. }) if self.net.undulates(contraction) => {
+                Err(FibreError::Undulates { contraction })
+            }
             Ok(outcome)
                 if group > 0.0 && self.net.compliance * outcome.tension > 1.0 && contraction > -0.5 =>
             {

@@ -70,8 +70,15 @@ impl Problem {
     /// # Errors
     /// See [`FibreError`].
     pub fn follow(&self, contraction: f64, approach: Approach) -> Result<Response, FibreError> {
-        let found = self.at(self.method(approach)?, contraction, None);
-        found.map(|found| found.response).map_err(|error| self.told(error, contraction, approach))
+        let method = self.method(approach)?;
+        let found = self.at(method, contraction, None).or_else(|error| {
+            let error = self.told(error, contraction, approach);
+            if !matches!(error, FibreError::NotConverged { .. }) {
+                return Err(error);
+            }
+            self.walked(method, contraction).ok_or(error)
+        });
+        found.map(|found| found.response)
     }
 
     /// Where no equilibrium was found beyond the limit, as a long braid or a soft one would bulge in more than one place: that is what is told.
@@ -81,8 +88,18 @@ impl Problem {
         }
         match self.contraction_limit(approach) {
             Ok(limit) if contraction > limit => FibreError::BeyondLimit { contraction, limit },
+            Err(FibreError::Slack { limit: Some(limit), .. }) if contraction > limit => {
+                FibreError::Slack { contraction, limit: Some(limit) }
+            }
             _ => error,
         }
+    }
+
+    /// The equilibrium at a contraction, step by step from where one is found.
+    fn walked(&self, method: Method, contraction: f64) -> Option<Found> {
+        let start = self.contraction_start().min(contraction);
+        self.root(method, start, &mut { Seen::NOTHING }, |found| contraction - found.response.contraction)
+            .ok()
     }
 
     /// The contraction at which the force vanishes.
@@ -90,10 +107,13 @@ impl Problem {
     /// # Errors
     /// [`FibreError::NotConverged`], or [`FibreError::Slack`] with its limit where the fibres become slack before.
     pub fn contraction_limit(&self, approach: Approach) -> Result<f64, FibreError> {
-        let method = self.method(approach)?;
+        self.at_limit(self.method(approach)?).map(|found| found.response.contraction)
+    }
+
+    /// The equilibrium at which the force vanishes.
+    fn at_limit(&self, method: Method) -> Result<Found, FibreError> {
         let start = self.contraction_start();
-        let found = self.root(method, start, &mut { Seen::NOTHING }, |found| found.response.force_n);
-        found.map(|found| found.response.contraction)
+        self.root(method, start, &mut { Seen::NOTHING }, |found| found.response.force_n)
     }
 
     /// Exact derivatives of force and volume with respect to the contraction, the pressure and every parameter of the muscle, by dual
@@ -134,7 +154,7 @@ impl Problem {
                 self.pulling(method, approach, (l0 - length) / l0)
             }
             Given::Force(force) => self.with_force(method, approach, force),
-            Given::Volume(volume) => self.with_volume(method, approach, volume),
+            Given::Volume(volume) => self.with_volume(method, volume),
         }
     }
 
@@ -142,7 +162,11 @@ impl Problem {
         let error = match self.at(method, contraction, None) {
             Ok(found) if self.pulls(&found.response) => return Ok(found),
             Ok(found) => FibreError::WouldPush { contraction, force_n: found.response.force_n },
-            Err(error @ (FibreError::NotConverged { .. } | FibreError::Slack { .. })) => error,
+            Err(
+                error @ (FibreError::NotConverged { .. }
+                | FibreError::Slack { .. }
+                | FibreError::Undulates { .. }),
+            ) => error,
             Err(error) => return Err(error),
         };
         // Say where the limit is, if that can be found.
@@ -157,10 +181,7 @@ impl Problem {
             Some(limit) if contraction <= limit => Err(FibreError::TooLong { contraction, limit }),
             // Step by step from where there is one.
             _ if matches!(error, FibreError::NotConverged { .. }) => {
-                let (start, mut seen) = (self.contraction_start().min(contraction), Seen::NOTHING);
-                let found =
-                    self.root(method, start, &mut seen, |found| contraction - found.response.contraction);
-                found.ok().filter(|found| self.pulls(&found.response)).ok_or(error)
+                self.walked(method, contraction).filter(|found| self.pulls(&found.response)).ok_or(error)
             }
             _ => Err(error),
         }
@@ -188,7 +209,7 @@ impl Problem {
         }
     }
 
-    fn with_volume(&self, method: Method, approach: Approach, volume: f64) -> Result<Found, FibreError> {
+    fn with_volume(&self, method: Method, volume: f64) -> Result<Found, FibreError> {
         if volume <= 0.0 {
             return Err(FibreError::NotPositive { what: "volume", value: volume });
         }
@@ -201,14 +222,14 @@ impl Problem {
             return Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: least });
         }
         // F = -p dV/dl: where nothing stores energy, and nearly where something does, the volume is largest where the force vanishes.
-        let limit = self.contraction_limit(approach)?;
-        let high = self.at(method, limit, None)?.response.volume_m3;
+        let most = self.at_limit(method)?;
+        let (limit, high) = (most.response.contraction, most.response.volume_m3);
         if volume > high * (1.0 + FLAT) {
             return Err(FibreError::VolumeTooLarge { volume_m3: volume, high_m3: high });
         }
         // Next to the limit the volume is flat: within rounding of the largest one it is that of the limit.
         if volume > high * (1.0 - FLAT) {
-            return self.at(method, limit, None);
+            return Ok(most);
         }
         let mut seen = Seen::NOTHING;
         let start = self.contraction_start().min(limit - 0.05 * limit.abs());
