@@ -87,6 +87,21 @@ impl<D: Real> Net<D> {
     /// Linear in T for inextensible fibres; else a bracketed Newton's method on the values and one step more for the derivatives.
     /// `None` if there is none with a positive tension (with a bladder: with a positive meridional force), or the fibres can't reach that radius.
     pub(crate) fn tension_at_equator(&self, r: D, push: D, curvature: D) -> Option<D> {
+        let tension = self.balancing_tension(r, push, curvature)?;
+        // Rubber may carry more than the pressure: what fibres that can be pushed would do there tells when they become slack.
+        let holds = if self.compliance.value() != 0.0 {
+            true
+        } else if self.bladder.is_some() {
+            let pull = self.cloth.map_or(D::from(0.0), |cloth| cloth.energy(r));
+            (Net { cloth: None, ..*self }.local(r, tension).force + pull).value() > 0.0
+        } else {
+            tension.value() > 0.0
+        };
+        holds.then_some(tension)
+    }
+
+    /// The same with whatever sign of tension and meridional force, as rubber that is wide makes it.
+    pub(crate) fn balancing_tension(&self, r: D, push: D, curvature: D) -> Option<D> {
         // The cloth's force acts, and its hoop term is in the push.
         let bare = Net { cloth: None, ..*self };
         let pull = self.cloth.map_or(D::from(0.0), |cloth| cloth.energy(r));
@@ -98,13 +113,7 @@ impl<D: Real> Net<D> {
         let (at_zero, slope) = gap(D::from(0.0));
         let linear = at_zero / slope;
         if self.compliance.value() == 0.0 {
-            // Rubber may carry more than the pressure: what fibres that can be pushed would do there tells when they become slack.
-            let holds = if self.bladder.is_some() {
-                (bare.local(r, linear).force + pull).value() > 0.0
-            } else {
-                linear.value() > 0.0
-            };
-            return (holds && linear.value().is_finite()).then_some(linear);
+            return linear.value().is_finite().then_some(linear);
         }
         if linear.value() <= 0.0 && self.bladder.is_some() {
             return pushed(gap, linear);
@@ -162,7 +171,7 @@ impl Net<f64> {
         let sigma = self.cos_rest * (1.0 - contraction);
         let radius = (1.0 - sigma * sigma).sqrt() / self.turn;
         let holds_otherwise = self.bladder.is_some() || self.cloth.is_some();
-        if holds_otherwise || self.depth >= 0.0 || !(radius + self.depth > 0.0) {
+        if holds_otherwise || self.depth >= 0.0 || radius.is_nan() || radius + self.depth <= 0.0 {
             return false;
         }
         let net = self.acting_at(radius);
@@ -173,8 +182,8 @@ impl Net<f64> {
     }
 
     /// Whether fibres are slack somewhere between mid-length and the fitting. With the tension T and f = sigma w_1 - w of the walls on fibres
-    /// of their own length, H = sigma N - w is the same all along, and T has the sign of H - f.
-    pub(crate) fn is_slack(&self, mid_radius: f64, mid_tension: f64) -> bool {
+    /// of their own length, H = sigma N - w is the same all along, and T has the sign of H - f. They count as slack up to a `part` of sigma N.
+    pub(crate) fn is_slack(&self, mid_radius: f64, mid_tension: f64, part: f64) -> bool {
         if self.bladder.is_none() {
             return false;
         }
@@ -187,7 +196,8 @@ impl Net<f64> {
             let sigma = (1.0 - (self.turn * r).powi(2)).sqrt();
             let wall = self.acting_at(r).wall(sigma, r);
             // Where fibres of their own length don't reach, sigma is none, and they are taut.
-            energy < sigma * wall.w_1 - wall.w - SLACK * energy.abs()
+            energy
+                < sigma * wall.w_1 - wall.w - SLACK * energy.abs() + part * (local.sigma * local.force).abs()
         })
     }
 }

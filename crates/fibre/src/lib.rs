@@ -19,6 +19,7 @@ mod shape;
 mod shooting;
 mod solve;
 mod start;
+mod unknowns;
 pub use draw::PleatedNumbers;
 pub use error::FibreError;
 pub use isobars::{Isobar, isobars};

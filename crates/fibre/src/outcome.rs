@@ -10,7 +10,8 @@ use crate::meridian::{COS, SIN, TENSION};
 use crate::net::Net;
 use crate::problem::Problem;
 use crate::shape::{Convergence, Method};
-use crate::shooting::{self, Ending, Total, Unknowns, Way};
+use crate::shooting::{self, Ending, Total, Way};
+use crate::unknowns::Unknowns;
 
 /// The group of [`FibreError::TooSoft`] beyond which straight fibres balloon: `F(phi_R|m)/(L y) = 1 + kappa/y^2` has a solution in y up to
 /// kappa L^2 = F^2/4, and F is at most 1.854 where the force vanishes (m = 1/2).

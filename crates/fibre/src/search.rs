@@ -4,17 +4,21 @@ use bulge_muscles::Quantity;
 use bulge_numerics::root::{RootError, newton_bracketed};
 
 use crate::FibreError;
+use crate::continuation::drawn_taut;
 use crate::net::Net;
 use crate::problem::Problem;
 use crate::shape::{Method, Response};
-use crate::shooting::{self, ALONE, USUAL, Unknowns};
+use crate::shooting::{self, ALONE, USUAL};
 use crate::solve::Found;
 use crate::start;
+use crate::unknowns::Unknowns;
 
 /// Roots in the contraction are found to a Newton step of this size, whose end is exact to its square.
 const ROOT_TOLERANCE: f64 = 1e-9;
-/// Beyond this contraction no muscle pulls (the slender limit is 0.5431, a braid's 1 - 1/sqrt(3)).
-const FAR: f64 = 0.6;
+/// Beyond this contraction no muscle is looked for. A slender one pulls up to 0.5431, a long braid up to 1 - 1/sqrt(3), one on wide fittings farther.
+const FAR: f64 = 0.99;
+/// Part of the meridional force below which fibres count as slack where there is no equilibrium any more.
+const NEARLY_SLACK: f64 = 1e-3;
 /// Step of the contraction from one equilibrium to the next below which there is no next one.
 const SMALLEST: f64 = 1e-9;
 /// Step below which a neighbour's solution is the only start: that from nothing has been tried nearby.
@@ -23,6 +27,9 @@ const BESIDE: f64 = 1e-3;
 const MOST_STEPS: u32 = 150;
 /// Parts of the way from the contraction of drawn-out fibres to a start at which an equilibrium is looked for, from the easiest on.
 const DRAWN_OUT: [f64; 7] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4];
+/// Difference of the contraction from that of drawn-out fibres below which it counts in parts of itself, and the least that numbers tell.
+const DRAWN_OUT_ROOM: f64 = 1e-3;
+const LEAST_ROOM: f64 = 1e-5;
 /// How far elastic fibres are drawn beyond their length for the same.
 const STRETCHED: [f64; 5] = [1e-3, 3e-3, 1e-2, 3e-2, 0.1];
 
@@ -127,7 +134,15 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
                 return Some((place, place));
             }
         }
-        None
+        let (place, unknowns) = drawn_taut(net)?;
+        self.near = Some(unknowns);
+        let found = self.at(place, true).ok()?;
+        ((self.excess)(&found) > 0.0).then_some((place, place))
+    }
+
+    /// Whether the fibres are all but slack at the last equilibrium.
+    fn is_nearly_slack(&self) -> bool {
+        self.near.is_some_and(|near| near.is_slack_within(&self.problem.net, NEARLY_SLACK))
     }
 
     /// Upwards by Newton steps until the sign changes; where there is no equilibrium, with steps half as long until there is none beside the last one.
@@ -142,7 +157,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
                     (low, failed) = (x, false);
                     let step = -y / slope;
                     if step.abs() <= tolerance[0] + tolerance[1] * x.abs() {
-                        return self.at(x + step, false).map(Step::Found);
+                        return Ok(Step::Root(x + step));
                     }
                     if reach.is_finite() {
                         reach = reach.max(gone);
@@ -161,12 +176,9 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
                     }
                     reach = 0.5 * (x - low);
                     if reach < SMALLEST {
-                        return Err(match error {
-                            FibreError::Slack { contraction, .. } => {
-                                FibreError::Slack { contraction, limit: Some(low) }
-                            }
-                            error => error,
-                        });
+                        let is_slack = matches!(error, FibreError::Slack { .. }) || self.is_nearly_slack();
+                        let slack = FibreError::Slack { contraction: x, limit: Some(low) };
+                        return Err(if is_slack { slack } else { error });
                     }
                     x = low + reach;
                 }
@@ -185,7 +197,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
 
 /// Where a way up ends.
 enum Step {
-    Found(Found),
+    Root(f64),
     Between(f64, f64),
 }
 
@@ -205,6 +217,12 @@ impl Problem {
         straight.unwrap_or(0.0) + (0.12 * ends).min(room.map_or(f64::INFINITY, |room| 0.1 * room))
     }
 
+    /// How far a contraction is from that of drawn-out fibres, where the force goes to infinity; 1 where that is far.
+    fn room_at(&self, contraction: f64) -> f64 {
+        let room = self.longest().map_or(1.0, |longest| contraction - longest);
+        if room < DRAWN_OUT_ROOM { room.max(LEAST_ROOM) } else { 1.0 }
+    }
+
     /// The contraction at which `excess`, which falls with the contraction, is zero. Its derivative is taken from the response.
     pub(crate) fn root(
         &self,
@@ -216,9 +234,13 @@ impl Problem {
         let mut walk = Walk { problem: self, method, near: None, seen, excess };
         let (low, x) = walk.below(start)?;
         // The force of straight inextensible fibres is infinite at 0, and large forces belong to tiny contractions.
-        let tolerance = if self.is_singular() { [0.0, ROOT_TOLERANCE] } else { [ROOT_TOLERANCE, 0.0] };
+        let tolerance = if self.is_singular() {
+            [0.0, ROOT_TOLERANCE]
+        } else {
+            [ROOT_TOLERANCE * self.room_at(low), 0.0]
+        };
         let (low, high) = match walk.up(low, x, tolerance)? {
-            Step::Found(found) => return Ok(found),
+            Step::Root(root) => return walk.at(root, false),
             Step::Between(low, high) => (low, high),
         };
         match newton_bracketed(|x| walk.value(x, false), low, high, high, tolerance) {

@@ -8,8 +8,9 @@ use crate::outcome::{Approach, Outcome, Solution};
 use crate::problem::{Problem, Variable};
 use crate::search::Seen;
 use crate::shape::{Method, Response};
-use crate::shooting::{EXACT, Ending, Total, USUAL, Unknowns};
+use crate::shooting::{EXACT, Ending, Total, USUAL};
 use crate::start::longest;
+use crate::unknowns::Unknowns;
 
 /// Ambient pressure for the stiffness at constant gas amount \[Pa\] (standard atmosphere).
 pub const AMBIENT_PRESSURE: f64 = 101_325.0;
@@ -250,7 +251,7 @@ impl Problem {
     }
 
     /// The contraction at which inextensible fibres are drawn straight, if the muscle has one.
-    fn longest(&self) -> Option<f64> {
+    pub(crate) fn longest(&self) -> Option<f64> {
         if self.net.compliance != 0.0 {
             return None;
         }
