@@ -201,3 +201,31 @@ impl Net<f64> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of inextensible fibres alone, with the gas at r - d: h = 2 pi (r - d), N = h sigma^2/(q^2 r) and h_r = (h/r)(1 + 3 q^2 r^2/sigma^2).
+    #[test]
+    fn a_cylinder_undulates_from_half_a_wave_on() {
+        let (sin, cos) = 24.0_f64.to_radians().sin_cos();
+        let (contraction, gas) = (-0.05, 0.3);
+        let sigma = cos * (1.0 - contraction);
+        let r = (1.0 - sigma * sigma).sqrt() / sin;
+        let hoop = 2.0 * PI * (r - gas);
+        let hoop_r = hoop / r * (1.0 + 3.0 * (sin * r / sigma).powi(2));
+        let wave = (sin * sin * r * (2.0 * PI - hoop_r) / hoop).sqrt();
+        let net = |half_fibre: f64| Net {
+            half_fibre,
+            cos_rest: cos,
+            sin2_rest: sin * sin,
+            turn: sin,
+            depth: -gas,
+            ..Net::plain()
+        };
+        let border = 0.5 * PI / wave;
+        assert!(!net(0.999 * border).undulates(contraction) && net(1.001 * border).undulates(contraction));
+        assert!(!Net { depth: 0.0, ..net(10.0 * border) }.undulates(contraction));
+    }
+}
