@@ -20,7 +20,7 @@ const PRESSURE: [f64; 2] = [1e3, 1.5e6];
 /// Range of the strain by which pressure stretches fibres: about p R l0/(n EA), or 2 pi p r0^2/(n EA sin^2(alpha0)) of a braid.
 const STRETCH: [f64; 2] = [1e-6, 5e-2];
 /// Range of K/(p R) of cloth, in a pleated muscle and in a braid.
-const CLOTH: [[f64; 2]; 2] = [[1e-2, 1e6], [1e-2, 3e1]];
+const CLOTH: [[f64; 2]; 2] = [[1e-2, 1e6], [1e-2, 1e3]];
 /// Range of c10 t/(p r0) of a bladder.
 const RUBBER: [f64; 2] = [1e-4, 1e2];
 /// Largest residual of the end conditions that an answer may have, whose square remains after the last step.
@@ -138,7 +138,7 @@ impl Count {
 }
 
 /// Questions of the check, and of them those that may not converge.
-const SAMPLE: (usize, f64) = (2000, 1e-2);
+const SAMPLE: (usize, f64) = (2000, 3e-3);
 
 /// A sample of the map: none wrong, no panic, evaluations bounded, and hardly any that didn't converge.
 pub(crate) fn sample() -> Check {
@@ -147,7 +147,7 @@ pub(crate) fn sample() -> Check {
         name: "random muscles of 15 kinds, one question each: part that is neither solved nor refused with a limit",
         source: "residuals, first integral",
         tolerance: SAMPLE.1,
-        why: "measured 0.7 %, most of them braids with several extras; anything wrong, a panic or too many evaluations counts as all",
+        why: "0.095 % of 10^5, 1 or 2 of these: most of them braids with stiff cloth on narrow fittings; anything wrong, a panic or too many evaluations counts as all",
     }
     .run(|tally| {
         let counts = map(1, SAMPLE.0);

@@ -77,6 +77,7 @@ pub const CHECKS: &[fn() -> Check] = &[
     membrane::muscles::braided,
     membrane::muscles::braided_with_bladder,
     membrane::muscles::gas,
+    membrane::slack::border,
     membrane::muscles::virtual_work,
     membrane::cloth::facets,
     membrane::cloth::facets_order,

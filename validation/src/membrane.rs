@@ -4,6 +4,7 @@ pub(crate) mod cloth;
 pub(crate) mod discs;
 pub(crate) mod muscles;
 mod rig;
+pub(crate) mod slack;
 pub(crate) mod spheres;
 pub(crate) mod tubes;
 

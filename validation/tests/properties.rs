@@ -409,8 +409,18 @@ fn a_length_of_zero_is_refused() {
     for muscle in [pleated(0.11, 0.016), braid(0.01, 0.01, 5.0, None), braid(0.25, 0.01, 25.0, None)] {
         let problem = Problem::new(&muscle, PRESSURE).unwrap();
         for contraction in [1.0, 1.5] {
-            let followed = problem.follow(contraction, Approach::Auto);
-            assert!(followed.is_err(), "contraction {contraction}: {followed:?}");
+            let refused = problem.solve(Given::Contraction(contraction), Approach::Auto).unwrap_err();
+            let otherwise = [
+                problem.follow(contraction, Approach::Auto).unwrap_err(),
+                problem.linearised(contraction, &[], Approach::Auto).unwrap_err(),
+                problem.gradient(contraction, Approach::Auto).unwrap_err(),
+                problem.shape(Given::Contraction(contraction), Approach::Auto, 11).unwrap_err(),
+                problem.isobar(&[contraction], Approach::Auto).unwrap().without[0].1.clone(),
+            ];
+            for error in otherwise {
+                let told = matches!(error, FibreError::BeyondLimit { .. }) || error == refused;
+                assert!(told, "contraction {contraction}: {error}, not {refused}");
+            }
         }
     }
 }

@@ -120,6 +120,10 @@ impl CurveCommand {
             }
             Err(Failure::Value { option, what: format!("{value} is out of range: give {low} to {high}") })
         };
+        if self.vtk.as_deref().is_some_and(files::is_stdout) {
+            let what = "a time series is many files: give the name of a folder, or write one shape with `bulge shape --vtk -`";
+            return Err(Failure::Value { option: "--vtk", what: what.to_owned() });
+        }
         within("--points", self.points, 2, MAX_POINTS)?;
         within("--frames", self.frames, 2, MAX_FRAMES)
     }

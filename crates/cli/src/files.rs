@@ -61,7 +61,7 @@ pub(crate) fn wrote(
 }
 
 /// Whether a file is asked for on standard output, as "-": there it takes the place of all else.
-fn is_stdout(path: &Path) -> bool {
+pub(crate) fn is_stdout(path: &Path) -> bool {
     STDOUT.iter().any(|name| path == Path::new(name))
 }
 

@@ -74,7 +74,9 @@ pub(crate) struct JointCommand {
 
 impl JointCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        let joint = Joint::read(&self.joint)?;
+        // Maps and drawings need all of the ranges, a question what it asks for.
+        let is_point = self.plot.is_none() && (self.pressure.is_some() || self.angle.is_some());
+        let joint = if is_point { Joint::read_for_points(&self.joint)? } else { Joint::read(&self.joint)? };
         let pressures = self.pressures()?;
         let angle = self.angle.as_deref().map(|text| quantity::<Angle>("--angle", text)).transpose()?;
         let angle = angle.map(Quantity::si);

@@ -4,7 +4,7 @@ use bulge_fibre::{Given, MeridianPoint, Problem, Shape};
 use bulge_model::{Equilibrium, Extended};
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Force, Length, Muscle, Pressure, Ratio, Volume};
-use bulge_vtk::{Bulge, Style, write_vtp};
+use bulge_vtk::{Bulge, Style, vtp_bytes, write_vtp};
 use clap::{ArgGroup, Args, ValueEnum};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -12,6 +12,7 @@ use std::path::PathBuf;
 use crate::arguments::{MethodArgument, about, about_extended, extended, quantity};
 use crate::elements;
 use crate::failure::Failure;
+use crate::files;
 use crate::sketch::sketch;
 use crate::text::significant;
 
@@ -44,7 +45,7 @@ pub(crate) struct ShapeCommand {
     /// Number of meridian points (an even number is raised by one: the middle is a point)
     #[arg(long, default_value_t = 101)]
     points: usize,
-    /// Write the bulge as a VTK file (.vtp) for ParaView
+    /// Write the bulge as a VTK file (.vtp) for ParaView ("-": to standard output)
     #[arg(long, value_name = "FILE.vtp")]
     vtk: Option<PathBuf>,
     /// Surface in the VTK file: pleats between the fibres, or a surface of revolution [default: pleats for pleated muscles]
@@ -98,7 +99,12 @@ impl ShapeCommand {
         };
         let shape = &found.shape;
         if let Some(path) = &self.vtk {
-            write_vtp(path, &bulge(&muscle, shape, self.surface, cloth))?;
+            let drawn = bulge(&muscle, shape, self.surface, cloth);
+            if files::is_stdout(path) {
+                files::write(path, &vtp_bytes(&drawn)?)?;
+            } else {
+                write_vtp(path, &drawn)?;
+            }
         }
         if self.json {
             return Ok(serde_json::to_string_pretty(&found.document())? + "\n");

@@ -160,6 +160,25 @@ fn files_appear_whole_or_not_at_all() {
     assert_eq!(folder.names(), ["a.csv", "a.svg"]);
 }
 
+/// Each curve ends where its own muscle ceases to pull: that of a braid with rubber farther out at a higher pressure.
+#[test]
+fn each_pressure_has_a_range_of_its_own() {
+    let folder = Folder::new("own-ranges");
+    let muscle = folder.path("braid.toml");
+    let text = "name = \"b\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nwall = \"1 mm\"\n[effects.bladder-elasticity]\nc10 = \"0.2 MPa\"\n";
+    std::fs::write(&muscle, text).unwrap();
+    let both = ["curve", &muscle, "--pressure", "1 bar,4 bar", "--points", "5", "--json"];
+    let document: serde_json::Value = serde_json::from_slice(&bulge(&both).stdout).unwrap();
+    let limits = [0, 1].map(|i| {
+        let curve = &document["curves"][i];
+        let points = curve["points"].as_array().unwrap();
+        let (limit, last) = (&curve["contraction_limit"], &points[points.len() - 1]["contraction"]);
+        assert_eq!((points.len(), limit), (5, last));
+        limit.as_f64().unwrap()
+    });
+    assert!(limits[1] > limits[0] + 0.02, "{limits:?}");
+}
+
 #[test]
 fn curve_leaves_out_what_does_not_exist_and_says_so() {
     let range =
@@ -244,6 +263,19 @@ fn targets_that_are_no_regular_files_are_written_through() {
     let json = ["curve", "dmsp-20-250", "--pressure", "1 bar", "--points", "5", "--csv", "-", "--json"];
     let (status, message) = failure(&json);
     assert!(status == 1 && message.contains("a file or JSON, not both"), "{message}");
+    // A picture of one shape streams as well; many of them are a folder.
+    let shape =
+        ["shape", "dmsp-20-250", "--pressure", "1 bar", "--contraction", "10 %", "--points", "5", "--vtk"];
+    let file = folder.path("shape.vtp");
+    assert!(bulge(&[&shape[..], &[&file]].concat()).status.success());
+    let drawn = std::fs::read(&file).unwrap();
+    for name in ["-", "/dev/stdout"] {
+        assert_eq!(bulge(&[&shape[..], &[name]].concat()).stdout, drawn);
+    }
+    let (status, message) = failure(&[&shape[..], &["-", "--json"]].concat());
+    assert!(status == 1 && message.contains("a file or JSON, not both"), "{message}");
+    let (status, message) = failure(&["curve", "dmsp-20-250", "--pressure", "1 bar", "--vtk", "-"]);
+    assert!(status == 1 && message.contains("the name of a folder"), "{message}");
     // A model on standard output is the file, and nothing besides.
     let svg = bulge(&["curve", "dmsp-20-250", "--pressure", "1 bar", "--points", "5", "--plot", "-"]).stdout;
     assert!(svg.starts_with(b"<svg"), "{}", String::from_utf8_lossy(&svg[..60]));

@@ -216,9 +216,15 @@ impl Equations {
 /// [`FibreError::NotConverged`] with the last residual where no equilibrium is found (fibres so soft that they balloon, contraction far
 /// beyond the limit).
 pub fn solve(contraction: f64, slenderness: f64, kappa: f64) -> Result<ClosedForm, FibreError> {
-    let failed = FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: 0 };
-    let start = start(contraction, slenderness, kappa).ok_or(failed)?;
-    search(start.into(), [contraction, slenderness, kappa], LAST_STEP, f64::INFINITY)
+    let mut answer = Err(FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations: 0 });
+    for start in starts(contraction, slenderness, kappa).into_iter().flatten() {
+        answer = search(start.into(), [contraction, slenderness, kappa], LAST_STEP, f64::INFINITY);
+        // Beyond a strain of 1 lies the other root, of a muscle that has ballooned.
+        if answer.as_ref().is_ok_and(|found| found.strain < 1.0) {
+            break;
+        }
+    }
+    answer
 }
 
 /// The same within a fit, from a neighbour's solution if there is one: values to 1e-13, derivatives to 3e-7.
@@ -270,14 +276,21 @@ fn search(start: [f64; 2], of: [f64; 3], last_step: f64, first: f64) -> Result<C
     Err(failed(last, MAX_ITERATIONS))
 }
 
-/// Starting values (t, y), a few per cent off: the small- and large-bulge limits of `2 F D (1 + t^2) = eps L^2`, joined.
-fn start(contraction: f64, slenderness: f64, kappa: f64) -> Option<(f64, f64)> {
+/// Starting values (t, y), a few per cent off: the small- and large-bulge limits of `2 F D (1 + t^2) = eps L^2`, joined. For a muscle longer than
+/// at rest one of two: in a short one the bulge is no shallow arc, and the strain below [`natural_strain`].
+fn starts(contraction: f64, slenderness: f64, kappa: f64) -> [Option<(f64, f64)>; 2] {
     if kappa == 0.0 {
-        (contraction > 0.0).then(|| inextensible_start(contraction, slenderness))
-    } else if -contraction < 0.5 * natural_strain(slenderness, kappa) {
-        Some(contracted_start(contraction, slenderness, kappa))
+        return [(contraction > 0.0).then(|| inextensible_start(contraction, slenderness)), None];
+    }
+    let contracted = contracted_start(contraction, slenderness, kappa);
+    if contraction >= 0.0 {
+        return [Some(contracted), None];
+    }
+    let stretched = stretched_start(contraction, slenderness, kappa);
+    if -contraction < 0.5 * natural_strain(slenderness, kappa) {
+        [Some(contracted), stretched]
     } else {
-        stretched_start(contraction, slenderness, kappa)
+        [stretched, Some(contracted)]
     }
 }
 

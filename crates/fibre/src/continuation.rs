@@ -1,9 +1,14 @@
 //! Where a start is not good enough: an equilibrium that is easy to find, moved in steps that adapt to the one that is asked for.
 
+use bulge_numerics::Real;
+
 use crate::FibreError;
+use crate::meridian::{SHORTENING, trajectory};
 use crate::net::Net;
-use crate::shooting::{Effort, Ending, USUAL, Unknowns, is_limited, newton, straight_contraction};
-use crate::start::{linear_start, start};
+use crate::quadrature;
+use crate::shooting::{Effort, Ending, TOLERANCE, USUAL, newton, straight_contraction};
+use crate::start::{drawn_out, linear_start, start};
+use crate::unknowns::{Unknowns, is_limited};
 
 /// On the way to the asked equilibrium.
 const ON_THE_WAY: (Ending, f64) = (USUAL, USUAL.first);
@@ -55,6 +60,48 @@ pub(crate) fn stiffening(
     Ok(at)
 }
 
+/// Tensions of a drawn-out braid over what pressure and rubber make of them: the less, the farther from the contraction at which fibres are straight.
+const TAUT: [f64; 4] = [1e3, 1e2, 1e1, 3.0];
+/// Largest strain with which elastic fibres are drawn out.
+const DRAWN: f64 = 0.1;
+/// Newton iterations for the radius of a drawn-out braid.
+const RADIUS_ITERATIONS: u32 = 20;
+/// Step of ln|B| at which they end: that of a start.
+const CLOSE: f64 = 1e-7;
+
+/// A braid drawn out by a tension far larger than what pressure and rubber make, with its contraction: the radius at mid-length that goes with the length
+/// of the fibres, from that of an infinite tension. It exists whatever else the braid carries.
+pub(crate) fn drawn_taut(net: &Net<f64>) -> Option<(f64, Unknowns)> {
+    if net.turn == 0.0 {
+        return None;
+    }
+    let radius = drawn_out(&Net { compliance: 0.0, ..*net }).0;
+    let end = net.acting_at(radius);
+    let cylinder = end.balancing_tension(radius, end.push(radius), 0.0)?;
+    let alone = end.push(radius) / end.local(radius, cylinder).hoop_t;
+    let least = 1.0 + (cylinder / alone).abs();
+    let lifted = net.lift::<2>();
+    TAUT.iter().filter(|factor| net.compliance * *factor * least * alone < DRAWN).find_map(|factor| {
+        let mut at = Unknowns { side: -1.0, logs: [(net.end_radius - radius).ln(), (factor * least).ln()] };
+        for _ in 0..RADIUS_ITERATIONS {
+            let middle = at.seeded(&lifted)?;
+            let run = if quadrature::suits(&lifted) {
+                quadrature::trajectory(&lifted, middle)
+            } else {
+                trajectory(&lifted, middle, TOLERANCE)
+            };
+            let run = run.ok()?;
+            let length = (run.half_fibre / net.half_fibre).ln();
+            let step = length.value() / length.gradient()[0];
+            if step.abs() < CLOSE {
+                return Some((run.end[SHORTENING].value() / (net.cos_rest * net.half_fibre), at));
+            }
+            at.logs[0] -= step.clamp(-0.3, 0.3);
+        }
+        None
+    })
+}
+
 /// From a shallow bulge (or waist), where the start is good, towards the asked contraction in steps that adapt.
 pub(crate) fn continuation(
     net: &Net<f64>,
@@ -85,6 +132,7 @@ pub(crate) fn continuation(
     }
     // d(unknowns)/d ln(part) of a shallow bulge, where B, k and 1/T grow with the root of the contraction.
     let first = match (is_limited(net, at.side), net.turn == 0.0) {
+        (true, _) if net.bladder.is_some() => 0.0,
         (true, true) => -1.0,
         (true, false) => -0.5,
         (false, _) => 0.5,

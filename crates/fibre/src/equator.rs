@@ -7,6 +7,8 @@ use crate::net::Net;
 
 /// Radii at which fibres may be found slack.
 const SAMPLES: u32 = 16;
+/// A push over the bulge next to nothing.
+const SLIGHT: f64 = 1e-304;
 /// Part of H by which it must be too small for that.
 const SLACK: f64 = 1e-12;
 
@@ -19,19 +21,19 @@ impl<D: Real> Net<D> {
         }
     }
 
-    /// The bulge B > 0 for which the [`Net::push`] at the radius of the fitting and B is B exp(y): it falls with y.
+    /// The bulge B > 0 for which the [`Net::push`] at the radius of the fitting and B is B times `rate`: it falls with the rate, which is positive
+    /// but for a bladder.
     ///
-    /// Where lobes or a stiff cloth limit the radius, the push is the small difference of two numbers, and B exp(y) has it exactly.
-    pub(crate) fn bulge(&self, y: D) -> Option<D> {
-        let Some(lobes) = &self.lobes else { return self.bulge_of_polygon(y) };
-        let Some(cloth) = &self.cloth else { return lobes.bulge(self.end_radius + self.depth, -y) };
-        let free = lobes.bulge(self.end_radius + self.depth, -y)?;
+    /// Where lobes or a stiff cloth limit the radius, the push is the small difference of two numbers, and B times the rate has it exactly.
+    pub(crate) fn bulge(&self, rate: D) -> Option<D> {
+        let Some(lobes) = &self.lobes else { return self.bulge_of_polygon(rate) };
+        let Some(cloth) = &self.cloth else { return lobes.bulge(self.end_radius + self.depth, -rate.ln()) };
+        let free = lobes.bulge(self.end_radius + self.depth, -rate.ln())?;
         let room = cloth.radius - self.end_radius;
         if free.value() <= room.value() {
             return Some(free);
         }
         // Between the cloth's radius and what the lobes alone would do: the gap rises steadily.
-        let rate = y.exp();
         let gap = |bulge: D| {
             let r = self.end_radius + bulge;
             let acting = self.acting_at(r.value().max(cloth.radius.value() * (1.0 + 1e-15)));
@@ -57,8 +59,7 @@ impl<D: Real> Net<D> {
         None
     }
 
-    fn bulge_of_polygon(&self, y: D) -> Option<D> {
-        let rate = y.exp();
+    fn bulge_of_polygon(&self, rate: D) -> Option<D> {
         let area_rr = self.area_factor * (2.0 * PI);
         let end = area_rr * (self.end_radius + self.depth);
         let free = end / (rate - area_rr);
@@ -76,7 +77,7 @@ impl<D: Real> Net<D> {
     pub(crate) fn most_bulge(&self) -> f64 {
         let net = self.constant();
         let lobes = net.lobes.map_or(f64::INFINITY, |lobes| lobes.limit() - net.depth - net.end_radius);
-        let held = net.bulge(-700.0).unwrap_or(f64::INFINITY);
+        let held = net.bulge(SLIGHT).unwrap_or(f64::INFINITY);
         lobes.min(held)
     }
 
@@ -86,6 +87,21 @@ impl<D: Real> Net<D> {
     /// Linear in T for inextensible fibres; else a bracketed Newton's method on the values and one step more for the derivatives.
     /// `None` if there is none with a positive tension (with a bladder: with a positive meridional force), or the fibres can't reach that radius.
     pub(crate) fn tension_at_equator(&self, r: D, push: D, curvature: D) -> Option<D> {
+        let tension = self.balancing_tension(r, push, curvature)?;
+        // Rubber may carry more than the pressure: what fibres that can be pushed would do there tells when they become slack.
+        let holds = if self.compliance.value() != 0.0 {
+            true
+        } else if self.bladder.is_some() {
+            let pull = self.cloth.map_or(D::from(0.0), |cloth| cloth.energy(r));
+            (Net { cloth: None, ..*self }.local(r, tension).force + pull).value() > 0.0
+        } else {
+            tension.value() > 0.0
+        };
+        holds.then_some(tension)
+    }
+
+    /// The same with whatever sign of tension and meridional force, as rubber that is wide makes it.
+    pub(crate) fn balancing_tension(&self, r: D, push: D, curvature: D) -> Option<D> {
         // The cloth's force acts, and its hoop term is in the push.
         let bare = Net { cloth: None, ..*self };
         let pull = self.cloth.map_or(D::from(0.0), |cloth| cloth.energy(r));
@@ -97,13 +113,7 @@ impl<D: Real> Net<D> {
         let (at_zero, slope) = gap(D::from(0.0));
         let linear = at_zero / slope;
         if self.compliance.value() == 0.0 {
-            // Rubber may carry more than the pressure: what fibres that can be pushed would do there tells when they become slack.
-            let holds = if self.bladder.is_some() {
-                (bare.local(r, linear).force + pull).value() > 0.0
-            } else {
-                linear.value() > 0.0
-            };
-            return (holds && linear.value().is_finite()).then_some(linear);
+            return linear.value().is_finite().then_some(linear);
         }
         if linear.value() <= 0.0 && self.bladder.is_some() {
             return pushed(gap, linear);
@@ -151,9 +161,29 @@ fn pushed<D: Real>(gap: impl Fn(D) -> (D, D), linear: D) -> Option<D> {
 }
 
 impl Net<f64> {
+    /// Whether a braid whose gas acts inside its fibres is too long for one middle at a contraction. Beside the cylinder that has the contraction,
+    ///
+    /// ```text
+    /// (r - r_c)'' = sigma^2 (h_r - A'')/N (r - r_c)
+    /// ```
+    /// and where that is a wave instead of a saddle, half of one must reach from fitting to fitting. Not told of a braid with rubber or cloth.
+    pub(crate) fn undulates(&self, contraction: f64) -> bool {
+        let sigma = self.cos_rest * (1.0 - contraction);
+        let radius = (1.0 - sigma * sigma).sqrt() / self.turn;
+        let holds_otherwise = self.bladder.is_some() || self.cloth.is_some();
+        if holds_otherwise || self.depth >= 0.0 || radius.is_nan() || radius + self.depth <= 0.0 {
+            return false;
+        }
+        let net = self.acting_at(radius);
+        let Some(tension) = net.tension_at_equator(radius, net.push(radius), 0.0) else { return false };
+        let local = net.local(radius, tension);
+        let square = local.sigma.powi(2) * (local.hoop_r - net.section(radius).area_rr) / local.force;
+        (-square).max(0.0).sqrt() * 2.0 * self.half_fibre > PI
+    }
+
     /// Whether fibres are slack somewhere between mid-length and the fitting. With the tension T and f = sigma w_1 - w of the walls on fibres
-    /// of their own length, H = sigma N - w is the same all along, and T has the sign of H - f.
-    pub(crate) fn is_slack(&self, mid_radius: f64, mid_tension: f64) -> bool {
+    /// of their own length, H = sigma N - w is the same all along, and T has the sign of H - f. They count as slack up to a `part` of sigma N.
+    pub(crate) fn is_slack(&self, mid_radius: f64, mid_tension: f64, part: f64) -> bool {
         if self.bladder.is_none() {
             return false;
         }
@@ -166,7 +196,36 @@ impl Net<f64> {
             let sigma = (1.0 - (self.turn * r).powi(2)).sqrt();
             let wall = self.acting_at(r).wall(sigma, r);
             // Where fibres of their own length don't reach, sigma is none, and they are taut.
-            energy < sigma * wall.w_1 - wall.w - SLACK * energy.abs()
+            energy
+                < sigma * wall.w_1 - wall.w - SLACK * energy.abs() + part * (local.sigma * local.force).abs()
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of inextensible fibres alone, with the gas at r - d: h = 2 pi (r - d), N = h sigma^2/(q^2 r) and h_r = (h/r)(1 + 3 q^2 r^2/sigma^2).
+    #[test]
+    fn a_cylinder_undulates_from_half_a_wave_on() {
+        let (sin, cos) = 24.0_f64.to_radians().sin_cos();
+        let (contraction, gas) = (-0.05, 0.3);
+        let sigma = cos * (1.0 - contraction);
+        let r = (1.0 - sigma * sigma).sqrt() / sin;
+        let hoop = 2.0 * PI * (r - gas);
+        let hoop_r = hoop / r * (1.0 + 3.0 * (sin * r / sigma).powi(2));
+        let wave = (sin * sin * r * (2.0 * PI - hoop_r) / hoop).sqrt();
+        let net = |half_fibre: f64| Net {
+            half_fibre,
+            cos_rest: cos,
+            sin2_rest: sin * sin,
+            turn: sin,
+            depth: -gas,
+            ..Net::plain()
+        };
+        let border = 0.5 * PI / wave;
+        assert!(!net(0.999 * border).undulates(contraction) && net(1.001 * border).undulates(contraction));
+        assert!(!Net { depth: 0.0, ..net(10.0 * border) }.undulates(contraction));
     }
 }

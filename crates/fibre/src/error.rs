@@ -184,6 +184,12 @@ pub enum FibreError {
         /// The contraction at which they become slack at this pressure, where it was asked for.
         limit: Option<f64>,
     },
+    /// A long middle that the fibres don't hold: it would bulge and narrow in turn.
+    #[error("no equilibrium with one middle at contraction {:.4} %: the gas acts so far inside the fibres that they don't hold a cylinder of this length, it would bulge and narrow in turn; a thinner wall or a shorter muscle has one", 100.0 * contraction)]
+    Undulates {
+        /// Asked contraction.
+        contraction: f64,
+    },
     /// Newton's method did not converge.
     #[error("the equilibrium at contraction {:.4} % did not converge: residual {residual:.2e} after {iterations} iterations; try a contraction nearer to the middle of the muscle's range", 100.0 * contraction)]
     NotConverged {

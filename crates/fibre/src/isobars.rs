@@ -8,8 +8,8 @@ use crate::FibreError;
 use crate::outcome::Approach;
 use crate::problem::Problem;
 use crate::shape::Response;
-use crate::shooting::Unknowns;
 use crate::solve::{ADIABATIC, closed_stiffness};
+use crate::unknowns::Unknowns;
 
 /// Contractions solved one after the other, each from its neighbour. A fixed number, so that results don't depend on the number of threads.
 const CHUNK: usize = 64;

@@ -17,7 +17,8 @@ use crate::closed_form::Near;
 use crate::outcome::{Approach, Outcome, Solution};
 use crate::problem::{Problem, Variable};
 use crate::shape::Convergence;
-use crate::shooting::{FITTED, Total, Unknowns};
+use crate::shooting::{FITTED, Total};
+use crate::unknowns::Unknowns;
 
 /// A value with its derivatives, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]

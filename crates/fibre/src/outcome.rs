@@ -10,7 +10,8 @@ use crate::meridian::{COS, SIN, TENSION};
 use crate::net::Net;
 use crate::problem::Problem;
 use crate::shape::{Convergence, Method};
-use crate::shooting::{self, Ending, Total, USUAL, Unknowns, Way};
+use crate::shooting::{self, Ending, Total, Way};
+use crate::unknowns::Unknowns;
 
 /// The group of [`FibreError::TooSoft`] beyond which straight fibres balloon: `F(phi_R|m)/(L y) = 1 + kappa/y^2` has a solution in y up to
 /// kappa L^2 = F^2/4, and F is at most 1.854 where the force vanishes (m = 1/2).
@@ -102,14 +103,14 @@ impl Problem {
         method: Method,
         contraction: f64,
         net: &Net<Dual<N>>,
-        from: Option<Unknowns>,
+        (from, ending): (Option<Unknowns>, Ending),
     ) -> Result<Outcome<N>, FibreError> {
         self.judged(contraction, || match method {
             _ if self.is_cylinder() => by_cylinder(net, contraction),
             Method::ClosedForm => by_closed_form(net, contraction),
             // This crate never chooses elements.
             Method::Shooting | Method::Membrane => {
-                by_shooting(&self.net, net, contraction, from, (USUAL, Way::Ode))
+                by_shooting(&self.net, net, contraction, from, (ending, Way::Ode))
             }
         })
     }
@@ -158,6 +159,9 @@ impl Problem {
         match outcome() {
             Err(FibreError::NotConverged { .. }) if group > 0.7 * limit => {
                 Err(FibreError::TooSoft { group, limit })
+            }
+            Err(FibreError::NotConverged { .. }) if self.net.undulates(contraction) => {
+                Err(FibreError::Undulates { contraction })
             }
             Ok(outcome)
                 if group > 0.0 && self.net.compliance * outcome.tension > 1.0 && contraction > -0.5 =>

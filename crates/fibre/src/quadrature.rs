@@ -362,7 +362,7 @@ mod tests {
     use super::*;
     use crate::meridian;
     use crate::net::Bladder;
-    use crate::shooting::Unknowns;
+    use crate::unknowns::Unknowns;
     use bulge_numerics::Dual;
 
     fn braid() -> Net<f64> {

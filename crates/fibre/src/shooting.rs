@@ -9,7 +9,8 @@
 //!
 //! In these variables the problem is nearly linear at both ends: for a shallow bulge S = sqrt(2 B/k), and in a long braid S grows with -ln k.
 //! Where lobes or cloth limit the radius, B is nearly the same for all of them and N = push/k a ratio of two numbers near 0 (push: A' less the hoop
-//! term of the cloth): the first unknown is then ln(push/(k B)), from which push(r_mid) = k B (N/B) fixes B; ln(push/B) where an angle carries a part.
+//! term of the cloth): the first unknown is then ln(push/(k B)), from which push(r_mid) = k B (N/B) fixes B; ln(push/B) where an angle carries a part;
+//! asinh(push/(2 B)) with a bladder, which pushes outwards itself where it is narrower than at rest.
 //!
 //! Newton's method takes exact derivatives from the integration of dual numbers, loosely at first; or from the quadrature of the same meridian
 //! (see `quadrature`), which costs a tenth, where the fibres don't stretch.
@@ -18,10 +19,11 @@ use bulge_numerics::{Dual, Real};
 
 use crate::FibreError;
 use crate::continuation::{continuation, stiffening};
-use crate::meridian::{Middle, NoTrajectory, SHORTENING, Trajectory, VOLUME, trajectory};
+use crate::meridian::{NoTrajectory, SHORTENING, Trajectory, VOLUME, trajectory};
 use crate::net::Net;
 use crate::quadrature;
 use crate::start::start;
+use crate::unknowns::{FLAT, Unknowns};
 
 /// Tolerance of the last integrations, relative to the scale of each component.
 pub(crate) const TOLERANCE: f64 = 4e-12;
@@ -32,8 +34,12 @@ const MAX_ITERATIONS: u32 = 40;
 const MOST_EVALUATIONS: u32 = 30_000;
 /// Largest steps of ln|B| and ln|k|.
 const MAX_STEP: [f64; 2] = [0.8, 4.0];
+/// Largest step of ln|k| in the middle of a long cylinder, as a part of it.
+const CYLINDER: f64 = 0.3;
 /// Residual below which Newton's method is trusted not to need backtracking (early residuals are integrated loosely).
 const NEAR: f64 = 1e-2;
+/// Part of the last residual below which the next one is expected.
+const STALLED: f64 = 0.3;
 /// Largest step of the last integration: what the derivatives are exact to.
 const DERIVATIVES: f64 = 1e-9;
 /// Smallest difference of the contraction from that of a straight meridian.
@@ -56,14 +62,30 @@ pub(crate) struct Ending {
     last_but_one: f64,
     /// Evaluations after which a search ends.
     most: u32,
+    /// Whether a start that is given is the only one.
+    alone: bool,
 }
 
 /// Where a second last integration costs as much as the iteration that it saves.
-pub(crate) const USUAL: Ending =
-    Ending { step: 1e-4, tolerance: 1e-7, first: 1e-4, last_but_one: 1e-5, most: MOST_EVALUATIONS };
+pub(crate) const USUAL: Ending = Ending {
+    step: 1e-4,
+    tolerance: 1e-7,
+    first: 1e-4,
+    last_but_one: 1e-5,
+    most: MOST_EVALUATIONS,
+    alone: false,
+};
+/// From a neighbour's solution or not at all.
+pub(crate) const ALONE: Ending = Ending { alone: true, ..USUAL };
 /// Where the last integration carries many derivatives and must not be repeated; and a start that was given lies near.
-pub(crate) const EXACT: Ending =
-    Ending { step: 3e-5, tolerance: 2.5e-10, first: 2.5e-10, last_but_one: 2.5e-10, most: MOST_EVALUATIONS };
+pub(crate) const EXACT: Ending = Ending {
+    step: 3e-5,
+    tolerance: 2.5e-10,
+    first: 2.5e-10,
+    last_but_one: 2.5e-10,
+    most: MOST_EVALUATIONS,
+    alone: false,
+};
 /// The same in a fit, which asks thousands of times and may ask far from sense: nothing that is found takes more.
 pub(crate) const FITTED: Ending = Ending { most: 15_000, ..EXACT };
 /// Newton iterations from a start that was given, after which the search begins anew: a good one takes two or three.
@@ -72,107 +94,6 @@ const MOST_FROM_NEAR: u32 = 8;
 const QUADRATURE: f64 = 1e-5;
 /// Step after which the next one is expected to be the last.
 const LAST_BUT_ONE: f64 = 1e-2;
-
-/// Which side of the fitting's radius the middle lies on, and the two logarithms.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Unknowns {
-    /// +1: bulge, -1: waist.
-    pub(crate) side: f64,
-    /// ln|B|, ln|k|; where lobes or cloth limit the radius ln(push/(k B)), ln|k|, and with an angle besides ln(push/B), ln|k|.
-    pub(crate) logs: [f64; 2],
-}
-
-/// ln|k| below which the middle is a cylinder up to rounding: the integration starts where it is this, see [`Middle::beyond`].
-const FLAT: f64 = -40.0;
-
-/// Part of the way to the radius of the lobes' circle that a start may cover.
-const OPEN: f64 = 0.98;
-
-impl Unknowns {
-    /// A bulge (+1) or a waist (-1) with ln|B| and the second unknown.
-    pub(crate) fn new(net: &Net<f64>, side: f64, [ln_bulge, second]: [f64; 2]) -> Self {
-        if !is_limited(net, side) {
-            return Self { side, logs: [ln_bulge, second] };
-        }
-        let bulge = ln_bulge.exp().min(OPEN * net.most_bulge());
-        let r = net.end_radius + bulge;
-        let slope = (net.acting_at(r).push(r) / bulge).ln();
-        Self { side, logs: [if net.turn == 0.0 { slope - second } else { slope }, second] }
-    }
-
-    /// The middle of the meridian, with the unknowns as variables number 0 and 1 if `D` carries derivatives; `None` if the fibres can't be
-    /// there with a positive tension.
-    ///
-    /// The curvature of a waist is bounded: towards -q^2 r/sigma^2 the tension grows without limit. There the second unknown is that of the
-    /// tension, T = T_c (1 + exp(..)), with T_c the tension of a cylinder of this radius; for a shallow waist it is ln|k| up to a constant.
-    pub(crate) fn middle<D: Real>(
-        &self,
-        net: &Net<D>,
-        variable: impl Fn(f64, usize) -> D,
-    ) -> Option<Middle<D>> {
-        let logs = [variable(self.logs[0], 0), variable(self.logs[1], 1)];
-        if self.logs[1] < FLAT {
-            let middle = Self { side: self.side, logs: [self.logs[0], FLAT] };
-            // The first unknown keeps its derivative; the second one lengthens the cylinder.
-            let middle = middle.curved(net, [logs[0], D::from(FLAT)])?;
-            return middle.beyond(net, -logs[1] + FLAT);
-        }
-        self.curved(net, logs)
-    }
-
-    /// The same where the curvature is one that numbers can have.
-    fn curved<D: Real>(&self, net: &Net<D>, logs: [D; 2]) -> Option<Middle<D>> {
-        let (second, straight) = (logs[1].exp(), D::from(0.0));
-        if is_limited(net, self.side) {
-            let slope = if net.turn.value() == 0.0 { logs[0] + logs[1] } else { logs[0] }; // ln(push/B)
-            let bulge = net.bulge(slope)?;
-            let r = net.end_radius + bulge;
-            let tension = net.acting_at(r.value()).tension_at_equator(r, bulge * slope.exp(), second)?;
-            return Some(Middle { bulge, curvature: second, tension, straight });
-        }
-        let bulge = logs[0].exp() * self.side;
-        let r = net.end_radius + bulge;
-        if r.value() <= 0.0 {
-            return None;
-        }
-        let net = net.acting_at(r.value());
-        let push = net.push(r);
-        if self.side > 0.0 {
-            let tension = net.tension_at_equator(r, push, second)?;
-            return Some(Middle { bulge, curvature: second, tension, straight });
-        }
-        let cylinder = net.tension_at_equator(r, push, D::from(0.0))?;
-        let excess = cylinder * second;
-        let tension = cylinder + excess;
-        let (at_cylinder, local) = (net.local(r, cylinder), net.local(r, tension));
-        // k = (A' - h)/N = -(h(T) - h(T_c))/N; the difference is linear for inextensible fibres, and to first order for a small excess.
-        let linear = net.compliance.value() == 0.0 || second.value() < 1e-6;
-        let hoop = if linear { at_cylinder.hoop_t * excess } else { local.hoop - at_cylinder.hoop };
-        let curvature = -(hoop / local.force);
-        (curvature.value() < 0.0).then_some(Middle { bulge, curvature, tension, straight })
-    }
-
-    /// Whether fibres are slack somewhere.
-    pub(crate) fn is_slack(&self, net: &Net<f64>) -> bool {
-        let slack = |middle: Middle<f64>| net.is_slack(net.end_radius + middle.bulge, middle.tension);
-        net.bladder.is_some() && self.middle(net, |value, _| value).is_some_and(slack)
-    }
-
-    fn seeded<const N: usize>(&self, net: &Net<Dual<N>>) -> Option<Middle<Dual<N>>> {
-        self.middle(net, Dual::variable)
-    }
-}
-
-/// Whether lobes or cloth limit the radius of a bulge: the first unknown is then that of the tension.
-pub(crate) fn is_limited<D: Real>(net: &Net<D>, side: f64) -> bool {
-    side > 0.0 && (net.lobes.is_some() || net.cloth.is_some())
-}
-
-/// Curvature of a waist of inextensible fibres at infinite tension, q^2 r/sigma^2.
-pub(crate) fn steepest(net: &Net<f64>, r: f64) -> f64 {
-    let angle2 = (net.turn * r).powi(2);
-    angle2 / (r * (1.0 - angle2))
-}
 
 /// Counters of a solve.
 #[derive(Debug, Clone, Copy)]
@@ -233,11 +154,12 @@ pub(crate) fn solve(
 ) -> Result<(Unknowns, Effort), FibreError> {
     let mut effort = Effort::of_at_most(ending.most);
     let contraction = beside_straight(net, contraction);
-    if let Some(start) = from
-        && let Ok(found) =
-            newton_within(net, contraction, start, (ending, ending.first), &mut effort, MOST_FROM_NEAR)
-    {
-        return Ok((found, effort));
+    if let Some(start) = from {
+        let near =
+            newton_within(net, contraction, start, (ending, ending.first), &mut effort, MOST_FROM_NEAR);
+        if near.is_ok() || ending.alone {
+            return near.map(|found| (found, effort));
+        }
     }
     let cold = (ending, USUAL.first);
     let direct =
@@ -297,6 +219,7 @@ fn newton_within(
     let mut previous = f64::INFINITY;
     let mut last_step = [0.0, 0.0];
     let mut halvings = 0;
+    let mut loosest = first;
     for iteration in 1..=most {
         effort.iterations += 1;
         let nothing = NoTrajectory { evaluations: 1 };
@@ -328,10 +251,17 @@ fn newton_within(
             continue;
         }
         let Ok(g) = found else { continue };
+        // What the iterations no longer lessen is the error of the integration.
+        if size < NEAR && size > STALLED * previous {
+            loosest = (1e-2 * loosest).max(TOLERANCE);
+        }
         previous = size;
         halvings = 0;
         let step = solve_two([*g[0].gradient(), *g[1].gradient()], [g[0].value(), g[1].value()]);
-        let damping = (MAX_STEP[0] / step[0].abs()).min(MAX_STEP[1] / step[1].abs()).min(1.0);
+        // Along a cylinder the conditions are linear in ln|k|.
+        let most_second =
+            if at.logs[1] < FLAT { MAX_STEP[1].max(CYLINDER * at.logs[1].abs()) } else { MAX_STEP[1] };
+        let damping = (MAX_STEP[0] / step[0].abs()).min(most_second / step[1].abs()).min(1.0);
         last_step = step.map(|s| damping * s);
         at.logs = [at.logs[0] - last_step[0], at.logs[1] - last_step[1]];
         let moved = step[0].abs().max(step[1].abs());
@@ -343,7 +273,7 @@ fn newton_within(
         }
         // The next residual will be about the square of this step: no point in integrating it more exactly than that.
         let most = if moved < LAST_BUT_ONE { ending.last_but_one } else { 1e-5 };
-        tolerance = (1e-2 * moved * moved).clamp(TOLERANCE, most);
+        tolerance = (1e-2 * moved * moved).clamp(TOLERANCE, most.min(loosest));
     }
     Err(FibreError::NotConverged { contraction, residual: previous, iterations: most })
 }
@@ -426,7 +356,14 @@ pub(crate) fn finish<const N: usize>(
             Way::Fastest if quadrature::suits(net) => quadrature::trajectory(net, middle),
             _ => trajectory(net, middle, TOLERANCE),
         };
-        let run = run.map_err(|_| failed.clone())?;
+        let run = match run {
+            Ok(run) => run,
+            // Cloth a thousand times stiffer than the pressure needs is more than the integration can follow; a quadrature takes it.
+            Err(_) if way == Way::Ode && quadrature::suits(net) => {
+                return finish(net, asked, unknowns, Way::Fastest);
+            }
+            Err(_) => return Err(failed),
+        };
         let bulge = middle.bulge;
         let g = residuals(net, Dual::from(contraction), &run);
         let jacobian = g.map(|g| [g.gradient()[0], g.gradient()[1]]);
@@ -438,7 +375,7 @@ pub(crate) fn finish<const N: usize>(
         }
         at.logs = [at.logs[0] - step[0], at.logs[1] - step[1]];
     };
-    let residual = g[0].value().abs().max(g[1].value().abs());
+    let residual = beyond_rounding(g.map(Real::value), jacobian);
     if step[0].abs().max(step[1].abs()) > ACCEPTED || run.first_integral > FIRST_INTEGRAL {
         // Next to fittings on which the fibres nearly lie along the circumference the integration loses digits, a quadrature doesn't.
         if way == Way::Ode && quadrature::suits(net) {
@@ -473,6 +410,13 @@ pub(crate) fn finish<const N: usize>(
         trajectory: run,
         step,
     })
+}
+
+/// The larger residual, less what the rounding of the radius at mid-length makes of it: a long braid that is drawn out is exp(-q S) of the fittings'
+/// radius wide there, which is only known to 1e-16 of theirs.
+fn beyond_rounding(g: [f64; 2], jacobian: [[f64; 2]; 2]) -> f64 {
+    let beyond = |i: usize| (g[i].abs() - f64::EPSILON * jacobian[i][0].abs()).max(0.0);
+    beyond(0).max(beyond(1))
 }
 
 #[cfg(test)]

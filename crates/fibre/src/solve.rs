@@ -2,26 +2,23 @@
 
 use bulge_muscles::{Parameter, Quantity};
 use bulge_numerics::Dual;
-use bulge_numerics::root::{RootError, newton_bracketed};
 
 use crate::FibreError;
 use crate::outcome::{Approach, Outcome, Solution};
 use crate::problem::{Problem, Variable};
+use crate::search::Seen;
 use crate::shape::{Method, Response};
-use crate::shooting::{self, EXACT, Total, Unknowns};
+use crate::shooting::{EXACT, Ending, Total, USUAL};
 use crate::start::longest;
+use crate::unknowns::Unknowns;
 
 /// Ambient pressure for the stiffness at constant gas amount \[Pa\] (standard atmosphere).
 pub const AMBIENT_PRESSURE: f64 = 101_325.0;
 /// Exponent of adiabatic air.
 pub const ADIABATIC: f64 = 1.4;
 
-/// Roots in the contraction are found to a Newton step of this size, whose end is exact to its square.
-const ROOT_TOLERANCE: f64 = 1e-9;
 /// Part of the largest volume within which it can't be told how far from the limit it belongs.
 const FLAT: f64 = 1e-13;
-/// Beyond this contraction no muscle pulls (the slender limit is 0.5431, a braid's 1 - 1/sqrt(3)).
-const FAR: f64 = 0.6;
 
 /// What is given besides the pressure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,27 +31,6 @@ pub enum Given {
     Force(f64),
     /// Enclosed volume with circular cross-sections of the fibre radius \[m^3\].
     Volume(f64),
-}
-
-/// The ends of what a search has come across.
-#[derive(Debug, Clone, Copy)]
-struct Seen {
-    /// The largest force \[N\], and where.
-    force: f64,
-    contraction: f64,
-    /// The least volume \[m^3\].
-    volume: f64,
-}
-
-impl Seen {
-    const NOTHING: Self = Self { force: f64::NEG_INFINITY, contraction: 0.0, volume: f64::INFINITY };
-
-    fn add(&mut self, response: &Response) {
-        if response.force_n > self.force {
-            (self.force, self.contraction) = (response.force_n, response.contraction);
-        }
-        self.volume = self.volume.min(response.volume_m3);
-    }
 }
 
 /// Exact derivatives of force and volume at an equilibrium.
@@ -95,8 +71,15 @@ impl Problem {
     /// # Errors
     /// See [`FibreError`].
     pub fn follow(&self, contraction: f64, approach: Approach) -> Result<Response, FibreError> {
-        let found = self.at(self.method(approach)?, contraction, None);
-        found.map(|found| found.response).map_err(|error| self.explained(error, contraction, approach))
+        let method = self.method(approach)?;
+        let found = self.at(method, contraction, None).or_else(|error| {
+            let error = self.explained(error, contraction, approach);
+            if !matches!(error, FibreError::NotConverged { .. }) {
+                return Err(error);
+            }
+            self.walked(method, contraction).ok_or(error)
+        });
+        found.map(|found| found.response)
     }
 
     /// Where no equilibrium was found beyond the limit, as a long braid or a soft one would bulge in more than one place, the error that says so; else the same. It
@@ -108,8 +91,18 @@ impl Problem {
         }
         match self.contraction_limit(approach) {
             Ok(limit) if contraction > limit => FibreError::BeyondLimit { contraction, limit },
+            Err(FibreError::Slack { limit: Some(limit), .. }) if contraction > limit => {
+                FibreError::Slack { contraction, limit: Some(limit) }
+            }
             _ => error,
         }
+    }
+
+    /// The equilibrium at a contraction, step by step from where one is found.
+    fn walked(&self, method: Method, contraction: f64) -> Option<Found> {
+        let start = self.contraction_start().min(contraction);
+        self.root(method, start, &mut { Seen::NOTHING }, |found| contraction - found.response.contraction)
+            .ok()
     }
 
     /// The contraction at which the force vanishes.
@@ -117,10 +110,13 @@ impl Problem {
     /// # Errors
     /// [`FibreError::NotConverged`], or [`FibreError::Slack`] with its limit where the fibres become slack before.
     pub fn contraction_limit(&self, approach: Approach) -> Result<f64, FibreError> {
-        let method = self.method(approach)?;
+        self.at_limit(self.method(approach)?).map(|found| found.response.contraction)
+    }
+
+    /// The equilibrium at which the force vanishes.
+    fn at_limit(&self, method: Method) -> Result<Found, FibreError> {
         let start = self.contraction_start();
-        let found = self.root(method, start, &mut { Seen::NOTHING }, |found| found.response.force_n);
-        found.map(|found| found.response.contraction)
+        self.root(method, start, &mut { Seen::NOTHING }, |found| found.response.force_n)
     }
 
     /// Exact derivatives of force and volume with respect to the contraction, the pressure and every parameter of the muscle, by dual
@@ -161,7 +157,7 @@ impl Problem {
                 self.pulling(method, approach, (l0 - length) / l0)
             }
             Given::Force(force) => self.with_force(method, approach, force),
-            Given::Volume(volume) => self.with_volume(method, approach, volume),
+            Given::Volume(volume) => self.with_volume(method, volume),
         }
     }
 
@@ -169,7 +165,11 @@ impl Problem {
         let error = match self.at(method, contraction, None) {
             Ok(found) if self.pulls(&found.response) => return Ok(found),
             Ok(found) => FibreError::WouldPush { contraction, force_n: found.response.force_n },
-            Err(error @ (FibreError::NotConverged { .. } | FibreError::Slack { .. })) => error,
+            Err(
+                error @ (FibreError::NotConverged { .. }
+                | FibreError::Slack { .. }
+                | FibreError::Undulates { .. }),
+            ) => error,
             Err(error) => return Err(error),
         };
         // Say where the limit is, if that can be found.
@@ -182,6 +182,10 @@ impl Problem {
         }
         match self.longest() {
             Some(limit) if contraction <= limit => Err(FibreError::TooLong { contraction, limit }),
+            // Step by step from where there is one.
+            _ if matches!(error, FibreError::NotConverged { .. }) => {
+                self.walked(method, contraction).filter(|found| self.pulls(&found.response)).ok_or(error)
+            }
             _ => Err(error),
         }
     }
@@ -208,7 +212,7 @@ impl Problem {
         }
     }
 
-    fn with_volume(&self, method: Method, approach: Approach, volume: f64) -> Result<Found, FibreError> {
+    fn with_volume(&self, method: Method, volume: f64) -> Result<Found, FibreError> {
         if volume <= 0.0 {
             return Err(FibreError::NotPositive { what: "volume", value: volume });
         }
@@ -221,14 +225,14 @@ impl Problem {
             return Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: least });
         }
         // F = -p dV/dl: where nothing stores energy, and nearly where something does, the volume is largest where the force vanishes.
-        let limit = self.contraction_limit(approach)?;
-        let high = self.at(method, limit, None)?.response.volume_m3;
+        let most = self.at_limit(method)?;
+        let (limit, high) = (most.response.contraction, most.response.volume_m3);
         if volume > high * (1.0 + FLAT) {
             return Err(FibreError::VolumeTooLarge { volume_m3: volume, high_m3: high });
         }
         // Next to the limit the volume is flat: within rounding of the largest one it is that of the limit.
         if volume > high * (1.0 - FLAT) {
-            return self.at(method, limit, None);
+            return Ok(most);
         }
         let mut seen = Seen::NOTHING;
         let start = self.contraction_start().min(limit - 0.05 * limit.abs());
@@ -242,120 +246,6 @@ impl Problem {
         }
     }
 
-    /// A contraction inside the range of this muscle to start a search from.
-    fn contraction_start(&self) -> f64 {
-        let net = &self.net;
-        let ends = (net.half_fibre / (1.0 + net.half_fibre)).powi(2);
-        // On fittings of another radius the range of a short braid may lie far from 0.
-        let straight = if self.has_own_fitting() { shooting::straight_contraction(net) } else { None };
-        // Lobes that open early leave little to contract: about a third of their room at either end.
-        let room = net.lobes.map(|lobes| (lobes.limit() - net.depth - net.end_radius) / net.half_fibre);
-        straight.unwrap_or(0.0) + (0.12 * ends).min(room.map_or(f64::INFINITY, |room| 0.1 * room))
-    }
-
-    /// The contraction at which `excess`, which falls with the contraction, is zero. Its derivative is taken from the response.
-    fn root(
-        &self,
-        method: Method,
-        start: f64,
-        seen: &mut Seen,
-        excess: impl Fn(&Found) -> f64,
-    ) -> Result<Found, FibreError> {
-        let l0 = self.muscle.length().si();
-        let mut near: Option<Unknowns> = None;
-        let mut evaluate = |contraction: f64| {
-            let found = self.at(method, contraction, near)?;
-            near = found.unknowns();
-            seen.add(&found.response);
-            Ok::<_, FibreError>(found)
-        };
-        let (mut low, mut x) = self.bracket_below(&mut evaluate, start, &excess)?;
-        // The force of straight inextensible fibres is infinite at 0, and large forces belong to tiny contractions.
-        let tolerance = if self.is_singular() { [0.0, ROOT_TOLERANCE] } else { [ROOT_TOLERANCE, 0.0] };
-        let mut value = |x: f64| {
-            let found = evaluate(x)?;
-            let y = excess(&found);
-            let step = 1e-6 * x.abs().max(1e-3);
-            Ok((y, slope_of(&found, y, &excess, step * l0) * l0))
-        };
-        // Upwards by Newton steps until the sign changes. Where there is no equilibrium any more, half-way back.
-        let mut barrier = FAR;
-        let high = loop {
-            match value(x) {
-                Ok((y, slope)) if y > 0.0 => {
-                    low = x;
-                    let step = -y / slope;
-                    if step.abs() <= tolerance[0] + tolerance[1] * x.abs() {
-                        return evaluate(x + step);
-                    }
-                    x = if step > 0.0 && x + step < barrier { x + step } else { 0.5 * (x + barrier) };
-                }
-                Ok(_) => break x,
-                Err(FibreError::Slack { contraction, .. }) if barrier - low < 1e-9 => {
-                    return Err(FibreError::Slack { contraction, limit: Some(barrier) });
-                }
-                Err(error) if barrier - low < 1e-9 => return Err(error),
-                Err(_) => {
-                    barrier = x;
-                    x = 0.5 * (low + barrier);
-                }
-            }
-            if barrier - low < 1e-9 {
-                return Err(FibreError::NotConverged {
-                    contraction: x,
-                    residual: f64::INFINITY,
-                    iterations: 0,
-                });
-            }
-        };
-        match newton_bracketed(value, low, high, x, tolerance) {
-            Ok(root) => evaluate(root),
-            Err(RootError::Function(error)) => Err(error),
-            Err(RootError::Budget { at, value, .. }) => {
-                Err(FibreError::NotConverged { contraction: at, residual: value, iterations: 100 })
-            }
-        }
-    }
-
-    /// A contraction at which the excess is positive, and where to go on from.
-    fn bracket_below(
-        &self,
-        evaluate: &mut impl FnMut(f64) -> Result<Found, FibreError>,
-        start: f64,
-        excess: &impl Fn(&Found) -> f64,
-    ) -> Result<(f64, f64), FibreError> {
-        if self.is_singular() {
-            return Ok((0.0, start));
-        }
-        let mut good = None;
-        let mut x = start;
-        let mut stride = (0.5 * start.abs()).max(1e-3);
-        let mut failures = 0;
-        for _ in 0..80 {
-            match (evaluate(x), good) {
-                (Ok(found), _) if excess(&found) > 0.0 => return Ok((x, x)),
-                (Ok(_), _) => {
-                    good = Some(x);
-                    stride *= if failures == 0 { 1.6 } else { 1.0 };
-                }
-                // Nothing there: from the last one that exists, with smaller strides.
-                (Err(_), Some(_)) if failures < 12 => {
-                    failures += 1;
-                    stride *= 0.3;
-                }
-                // The start itself lies beyond the range of a very short muscle.
-                (Err(_), None) if failures < 12 => {
-                    failures += 1;
-                    x *= 0.3;
-                    continue;
-                }
-                (Err(error), _) => return Err(error),
-            }
-            x = good.unwrap_or(x) - stride;
-        }
-        Err(FibreError::NotConverged { contraction: x, residual: f64::INFINITY, iterations: 80 })
-    }
-
     /// Whether the force grows without bound as the contraction goes to 0: straight inextensible fibres.
     #[must_use]
     pub fn is_singular(&self) -> bool {
@@ -363,7 +253,7 @@ impl Problem {
     }
 
     /// The contraction at which inextensible fibres are drawn straight, if the muscle has one.
-    fn longest(&self) -> Option<f64> {
+    pub(crate) fn longest(&self) -> Option<f64> {
         if self.net.compliance != 0.0 {
             return None;
         }
@@ -382,6 +272,16 @@ impl Problem {
         method: Method,
         contraction: f64,
         from: Option<Unknowns>,
+    ) -> Result<Found, FibreError> {
+        self.at_with(method, contraction, (from, USUAL))
+    }
+
+    /// The same with the way in which the search ends.
+    pub(crate) fn at_with(
+        &self,
+        method: Method,
+        contraction: f64,
+        from: (Option<Unknowns>, Ending),
     ) -> Result<Found, FibreError> {
         if self.is_scale_free() {
             let outcome = self.outcome(method, contraction, &self.net.lift::<2>(), from)?;
@@ -442,15 +342,6 @@ fn physical<const N: usize>(outcome: &Outcome<N>, value: impl Fn(Variable) -> Du
         gradient[0] = totals[i].by_contraction;
         scales[i] * Dual::new(totals[i].value, gradient)
     })
-}
-
-/// Derivative of an excess of force or volume by the contraction, per length l0: along the exact slopes for a small shortening.
-fn slope_of(found: &Found, y: f64, excess: &impl Fn(&Found) -> f64, shortening: f64) -> f64 {
-    let mut moved = *found;
-    let r = &mut moved.response;
-    r.force_n -= r.stiffness_n_per_m * shortening;
-    r.volume_m3 -= r.volume_slope_m2 * shortening * r.volume_m3 / r.volume_polygon_m3;
-    (excess(&moved) - y) / shortening
 }
 
 /// dF/dl with the gas enclosed, (p + pa) V^g constant: dp/dl = -g (p + pa) V_l/(V + g (p + pa) V_p) in F_l + F_p dp/dl.

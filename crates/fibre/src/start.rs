@@ -3,7 +3,8 @@
 use bulge_numerics::{gauss, root::illinois};
 
 use crate::net::Net;
-use crate::shooting::{Unknowns, is_limited, steepest, straight_contraction};
+use crate::shooting::straight_contraction;
+use crate::unknowns::{Unknowns, is_limited, steepest};
 
 /// Difference of the contraction from that of a straight meridian up to which the start is taken from the linear solution.
 const SHALLOW: f64 = 1e-4;
@@ -258,6 +259,11 @@ fn ln_shape(x: f64) -> f64 {
 /// S = sqrt(1 - q^2 r_m^2)/q  integral dw/sqrt(1 - q^2 r_m^2 cosh^2 w)        x = 1/q  integral sqrt(1 - q^2 r_m^2 cosh^2 w) dw
 /// ```
 pub(crate) fn longest(net: &Net<f64>) -> f64 {
+    drawn_out(net).1
+}
+
+/// The radius at mid-length there, and that contraction.
+pub(crate) fn drawn_out(net: &Net<f64>) -> (f64, f64) {
     let q = net.turn.abs();
     let drawn = |ln_mid: f64| {
         let mid = ln_mid.exp();
@@ -279,5 +285,5 @@ pub(crate) fn longest(net: &Net<f64>) -> f64 {
     let mismatch = |ln_mid: f64| drawn(ln_mid).0 - net.half_fibre;
     // S grows by 1/q for every factor e of the radius.
     let ln_mid = illinois(mismatch, top - q * net.half_fibre - 3.0, top, 1e-13);
-    1.0 - drawn(ln_mid).1 / (net.cos_rest * net.half_fibre)
+    (ln_mid.exp(), 1.0 - drawn(ln_mid).1 / (net.cos_rest * net.half_fibre))
 }

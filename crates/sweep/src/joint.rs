@@ -34,6 +34,11 @@ use crate::plan::{Axis, End, Plan, Quantity, Range, Spacing, TableWish};
 /// Tolerance of an angle without load \[rad\]: a Newton step of this size ends far closer.
 const ANGLE_TOLERANCE: f64 = 1e-9;
 
+/// Contraction from which on a muscle of fibres that don't stretch is asked: at 0 its force is infinite.
+const LEAST_CONTRACTION: f64 = 1e-4;
+/// Part of a pressure to which the least one is found at which a muscle pulls.
+const PRESSURE_TOLERANCE: f64 = 1e-9;
+
 /// Why a joint has no torque, or no angle.
 #[derive(Debug, thiserror::Error)]
 pub enum JointError {
@@ -225,7 +230,7 @@ impl JointMuscle {
         let member = self.family.member(&[contraction, pressure]);
         member
             .and_then(|member| {
-                member.outputs(contraction, &[Output::Force, Output::ForceByContraction], &mut values)
+                member.pulling(contraction, None, &[Output::Force, Output::ForceByContraction], &mut values)
             })
             .map_err(|error| self.failed(angle, pressure, error))?;
         let [force, by_contraction] = values;
@@ -374,9 +379,9 @@ impl Joint {
             let [one, other] = self.pulls(angle, pressures)?;
             Ok::<_, JointError>((one.torque + other.torque, one.by_angle + other.by_angle))
         };
-        let [low, high] = self.angle;
-        let torques = [value(low)?.0, value(high)?.0];
-        let none = JointError::NoRest { pressures, torques, range: self.angle };
+        let torque = |angle: f64| value(angle).map(|(torque, _)| torque);
+        let (range @ [low, high], torques) = self.ends(torque, pressures)?;
+        let none = JointError::NoRest { pressures, torques, range };
         if !(torques[0] >= 0.0 && torques[1] <= 0.0) {
             return Err(none);
         }
@@ -385,6 +390,55 @@ impl Joint {
             Err(RootError::Function(error)) => Err(error),
             Err(RootError::Budget { .. }) => Err(none),
         }
+    }
+
+    /// The range of angles in which both muscles pull at their pressures, with a torque at its ends: that of the joint, or less of it.
+    fn ends(
+        &self,
+        torque: impl Fn(f64) -> Result<f64, JointError>,
+        pressures: [f64; 2],
+    ) -> Result<([f64; 2], [f64; 2]), JointError> {
+        let whole @ [low, high] = self.angle;
+        if let (Ok(first), Ok(last)) = (torque(low), torque(high)) {
+            return Ok((whole, [first, last]));
+        }
+        let [mut low, mut high] = whole;
+        for (muscle, pressure) in self.muscles.iter().zip(pressures) {
+            let limit =
+                muscle.family.member(&[muscle.contraction, pressure]).and_then(|m| m.contraction_limit());
+            let limit = limit.map_err(|error| muscle.failed(0.0, pressure, error))?;
+            let bounds = [if muscle.is_singular { LEAST_CONTRACTION } else { f64::NEG_INFINITY }, limit];
+            for angle in whole {
+                let contraction = muscle.contraction(&self.linkage, angle);
+                let bound = contraction.clamp(bounds[0], bounds[1]);
+                if bound.to_bits() != contraction.to_bits() {
+                    let border = muscle.angle_at(&self.linkage, bound, whole);
+                    if angle > border { high = high.min(border) } else { low = low.max(border) }
+                }
+            }
+        }
+        if low >= high {
+            // One of them doesn't pull at any angle at which the other one does.
+            self.pulls(0.5 * (whole[0] + whole[1]), pressures)?;
+        }
+        Ok(([low, high], [torque(low)?, torque(high)?]))
+    }
+
+    /// The least of the joint's pressures at which a muscle pulls at an angle.
+    fn least_pressure(&self, muscle: &JointMuscle, angle: f64) -> Result<f64, JointError> {
+        let [mut low, mut high] = self.pressure;
+        if muscle.pull(&self.linkage, angle, low).is_ok() {
+            return Ok(low);
+        }
+        muscle.pull(&self.linkage, angle, high)?;
+        while high - low > PRESSURE_TOLERANCE * high {
+            let middle = 0.5 * (low + high);
+            match muscle.pull(&self.linkage, angle, middle) {
+                Ok(_) => high = middle,
+                Err(_) => low = middle,
+            }
+        }
+        Ok(high)
     }
 
     fn inside(&self, angle: f64) -> Result<(), JointError> {

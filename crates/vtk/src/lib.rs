@@ -33,4 +33,4 @@ pub use error::VtkError;
 pub use membrane::{MembranePicture, MembraneSeries, Whole, write_vtu};
 pub use mesh::Mesh;
 pub use series::write_series;
-pub use vtp::write_vtp;
+pub use vtp::{vtp_bytes, write_vtp};

@@ -20,10 +20,21 @@ pub fn write_vtp(path: impl AsRef<Path>, bulge: &Bulge) -> Result<(), VtkError> 
     if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("vtp")) {
         return Err(VtkError::Extension { path: path.to_path_buf() });
     }
+    whole_file::write(path, &encoded(path, bulge)?)
+}
+
+/// The bytes of a `.vtp` file, for a pipe.
+///
+/// # Errors
+/// The bulge can't be drawn.
+pub fn vtp_bytes(bulge: &Bulge) -> Result<Vec<u8>, VtkError> {
+    encoded(Path::new("-"), bulge)
+}
+
+fn encoded(path: &Path, bulge: &Bulge) -> Result<Vec<u8>, VtkError> {
     bulge.check()?;
-    let xml = encode(Mesh::new(bulge), &bulge.shape.response)
-        .map_err(|reason| VtkError::Encode { path: path.to_path_buf(), reason })?;
-    whole_file::write(path, &xml)
+    encode(Mesh::new(bulge), &bulge.shape.response)
+        .map_err(|reason| VtkError::Encode { path: path.to_path_buf(), reason })
 }
 
 /// The bytes of a file.

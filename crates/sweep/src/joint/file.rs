@@ -89,6 +89,17 @@ impl Joint {
         Self::from_toml(&text, &origin, path.parent())
     }
 
+    /// Reads a joint file for questions at single angles and pressures: only what is asked is checked then, not that both muscles pull over the whole of its
+    /// ranges, as maps and tables need it.
+    ///
+    /// # Errors
+    /// As [`Joint::read`], but for the muscles' own limits.
+    pub fn read_for_points(path: impl AsRef<Path>) -> Result<Self, FileError> {
+        let path = path.as_ref();
+        let (text, origin) = (KIND.read(path)?, path.display().to_string());
+        Self::parsed(&text, &origin, path.parent(), check)
+    }
+
     /// Reads a joint from TOML text; `origin` is what messages call the text, usually a file name, and `folder` is where the muscle files lie, if
     /// not in the current one.
     ///
@@ -103,6 +114,18 @@ impl Joint {
     /// # Errors
     /// With the place and the cure, if the text is no valid joint, a muscle can't be read, or the angles leave the domain of a muscle.
     pub fn from_toml(text: &str, origin: &str, folder: Option<&Path>) -> Result<Self, FileError> {
+        Self::parsed(text, origin, folder, |settings, joint| {
+            check(settings, joint)?;
+            joint.muscles.iter().try_for_each(|muscle| check_muscle(settings, joint, muscle))
+        })
+    }
+
+    pub(super) fn parsed(
+        text: &str,
+        origin: &str,
+        folder: Option<&Path>,
+        check: impl Fn(&Settings<'_>, &Self) -> Result<(), FileError>,
+    ) -> Result<Self, FileError> {
         let document = Document::parse(KIND, text, origin)?;
         let settings = document.settings("the joint", TOP);
         settings.check_keys()?;
@@ -280,16 +303,15 @@ fn outputs(settings: &Settings<'_>) -> Result<Vec<JointOutput>, FileError> {
     Ok(found)
 }
 
-/// Refuses ranges that leave the domain of the linkage or of a muscle.
-fn check(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
+/// Refuses ranges that leave the domain of the linkage.
+pub(super) fn check(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
     if joint.pressure[0] <= 0.0 {
         let what = format!("the pressure {} Pa is not possible: it must be > 0", joint.pressure[0]);
         let instead = "write such as `pressure = \"0.5 bar..3 bar\"`";
         return Err(settings.error(settings.value_span("pressure"), what, instead));
     }
     check_bars(settings, joint)?;
-    check_lever(settings, joint)?;
-    joint.muscles.iter().try_for_each(|muscle| check_muscle(settings, joint, muscle))
+    check_lever(settings, joint)
 }
 
 /// Links that don't close, or whose crank stands still, for either muscle: the antagonist's are the mirror image.

@@ -96,7 +96,7 @@ impl JointMuscle {
         let mut values = [0.0; N];
         let member = self.family.member(&[contraction, pressure]);
         member
-            .and_then(|member| member.outputs(contraction, &outputs, &mut values))
+            .and_then(|member| member.pulling(contraction, None, &outputs, &mut values))
             .map_err(|error| self.failed(angle, pressure, error))?;
         Ok((contraction, values))
     }
@@ -179,10 +179,9 @@ impl Joint {
         torque: impl Fn(f64) -> Result<f64, JointError>,
         pressures: [f64; 2],
     ) -> Result<f64, JointError> {
-        let [low, high] = self.angle;
-        let torques = [torque(low)?, torque(high)?];
+        let (range @ [low, high], torques) = self.ends(&torque, pressures)?;
         if !(torques[0] >= 0.0 && torques[1] <= 0.0) {
-            return Err(JointError::NoRest { pressures, torques, range: self.angle });
+            return Err(JointError::NoRest { pressures, torques, range });
         }
         first(|failed| {
             illinois(|angle| kept(torque(angle), failed), low, high, TOLERANCE * (high - low).abs())
@@ -219,7 +218,7 @@ impl Joint {
 
     /// The antagonist's pressure that holds an angle under an outside torque beside a pressure of the agonist; the end of the range where none does.
     fn partner(&self, angle: f64, agonist: f64, outside: f64) -> Result<f64, JointError> {
-        let [low, high] = self.pressure;
+        let (low, high) = (self.least_pressure(&self.muscles[1], angle)?, self.pressure[1]);
         let torque = |p: f64| {
             Ok(self.pulls(angle, [agonist, p])?.map(|pull| pull.torque).iter().sum::<f64>() + outside)
         };
@@ -250,12 +249,13 @@ impl Joint {
 
     /// The agonist's pressures beside which a pressure of the antagonist holds the angle.
     fn agonists(&self, angle: f64, outside: f64) -> Result<[f64; 2], JointError> {
-        let [low, high] = self.pressure;
+        let high = self.pressure[1];
         let [one, other] = &self.muscles;
+        let (low, lowest) = (self.least_pressure(one, angle)?, self.least_pressure(other, angle)?);
         let own = |p: f64| Ok::<_, JointError>(one.pull(&self.linkage, angle, p)?.torque + outside);
         let against = |p: f64| Ok::<_, JointError>(-other.pull(&self.linkage, angle, p)?.torque);
         // Rising in p: what the agonist must reach, and must not pass.
-        let [weakest, strongest] = [against(low)?, against(high)?];
+        let [weakest, strongest] = [against(lowest)?, against(high)?];
         let reached = |torque: f64| {
             first(|failed| {
                 illinois(|p| kept(own(p).map(|own| own - torque), failed), low, high, TOLERANCE * high)

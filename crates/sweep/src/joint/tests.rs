@@ -331,3 +331,36 @@ fn a_four_bar_linkage_loses_no_work() {
     refused(FOUR_BAR, "crank = \"40 mm\"\n", "", &["crank"]);
     refused(PULLEY, "kind", "crank = \"4 mm\"\nkind", &["a pulley has no `crank`", "four-bar"]);
 }
+
+/// A question at one angle or one pair of pressures doesn't fail because of the rest of the range, and is answered as in a narrow one.
+#[test]
+fn only_what_is_asked_is_checked() {
+    for (text, angles, most) in
+        [(PULLEY, "-25 deg..25 deg", "-80 deg..80 deg"), (LEVER, "-25..20 deg", "-70..70 deg")]
+    {
+        let (narrow, wide) = (read(text), text.replace(angles, most));
+        assert!(from(&wide).is_err(), "{wide}");
+        let wide = Joint::parsed(&wide, "j.toml", None, file::check).unwrap();
+        for pressures in [[2e5, 1.5e5], [1e5, 1e5]] {
+            let [one, other] = [&narrow, &wide]
+                .map(|joint| joint.rest(pressures, 0.0).unwrap_or_else(|error| panic!("{error}")));
+            assert!(
+                (one.angle_rad - other.angle_rad).abs() < 1e-9 && one.sides[0].side == other.sides[0].side
+            );
+            let [one, other] = [&narrow, &wide].map(|joint| joint.angle(pressures[0], pressures[1]).unwrap());
+            assert!((one - other).abs() < 1e-8);
+        }
+        let beyond = wide.torque(1.2, 2e5, 2e5).unwrap_err().to_string();
+        assert!(beyond.contains("agonist") || beyond.contains("antagonist"), "{beyond}");
+    }
+    // At the least pressure the rubber of a braid pushes at this angle, at most pressures it doesn't.
+    let folder = tempfile::tempdir().unwrap();
+    let braid = "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nwall = \"1 mm\"\n[effects.bladder-elasticity]\nc10 = \"0.1 MPa\"\n";
+    std::fs::write(folder.path().join("braid.toml"), braid).unwrap();
+    let text = "muscle = \"braid.toml\"\nkind = \"pulley\"\nradius = \"30 mm\"\ncontraction = \"12 %\"\nangle = \"-20 deg..20 deg\"\npressure = \"0.1 bar..6 bar\"\n";
+    assert!(Joint::from_toml(text, "j.toml", Some(folder.path())).is_err());
+    let joint = Joint::parsed(text, "j.toml", Some(folder.path()), file::check).unwrap();
+    let stand = joint.stand(0.1, [4e5, 3e5]).unwrap();
+    let found = joint.pressures_for(0.1, stand.stiffness_nm_per_rad, -stand.torque_nm).unwrap();
+    assert!((found.sides[0].pressure_pa / 4e5 - 1.0).abs() < 1e-6, "{found:?}");
+}

@@ -1,0 +1,263 @@
+//! The search along the contraction: from equilibrium to equilibrium until an excess of force or volume vanishes, or no further.
+
+use bulge_muscles::Quantity;
+use bulge_numerics::root::{RootError, newton_bracketed};
+
+use crate::FibreError;
+use crate::continuation::drawn_taut;
+use crate::net::Net;
+use crate::problem::Problem;
+use crate::shape::{Method, Response};
+use crate::shooting::{self, ALONE, USUAL};
+use crate::solve::Found;
+use crate::start;
+use crate::unknowns::Unknowns;
+
+/// Roots in the contraction are found to a Newton step of this size, whose end is exact to its square.
+const ROOT_TOLERANCE: f64 = 1e-9;
+/// Beyond this contraction no muscle is looked for. A slender one pulls up to 0.5431, a long braid up to 1 - 1/sqrt(3), one on wide fittings farther.
+const FAR: f64 = 0.99;
+/// Part of the meridional force below which fibres count as slack where there is no equilibrium any more.
+const NEARLY_SLACK: f64 = 1e-3;
+/// Step of the contraction from one equilibrium to the next below which there is no next one.
+const SMALLEST: f64 = 1e-9;
+/// Step below which a neighbour's solution is the only start: that from nothing has been tried nearby.
+const BESIDE: f64 = 1e-3;
+/// Equilibria after which a way is given up: one to a border takes about 100.
+const MOST_STEPS: u32 = 150;
+/// Parts of the way from the contraction of drawn-out fibres to a start at which an equilibrium is looked for, from the easiest on.
+const DRAWN_OUT: [f64; 7] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4];
+/// Difference of the contraction from that of drawn-out fibres below which it counts in parts of itself, and the least that numbers tell.
+const DRAWN_OUT_ROOM: f64 = 1e-3;
+const LEAST_ROOM: f64 = 1e-5;
+/// How far elastic fibres are drawn beyond their length for the same.
+const STRETCHED: [f64; 5] = [1e-3, 3e-3, 1e-2, 3e-2, 0.1];
+
+/// The ends of what a search has come across.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seen {
+    /// The largest force \[N\], and where.
+    pub(crate) force: f64,
+    pub(crate) contraction: f64,
+    /// The least volume \[m^3\].
+    pub(crate) volume: f64,
+}
+
+impl Seen {
+    pub(crate) const NOTHING: Self =
+        Self { force: f64::NEG_INFINITY, contraction: 0.0, volume: f64::INFINITY };
+
+    fn add(&mut self, response: &Response) {
+        if response.force_n > self.force {
+            (self.force, self.contraction) = (response.force_n, response.contraction);
+        }
+        self.volume = self.volume.min(response.volume_m3);
+    }
+}
+
+/// The equilibria of a muscle one after the other, each from the last.
+struct Walk<'a, E> {
+    problem: &'a Problem,
+    method: Method,
+    near: Option<Unknowns>,
+    seen: &'a mut Seen,
+    excess: E,
+}
+
+impl<E: Fn(&Found) -> f64> Walk<'_, E> {
+    /// The equilibrium at a contraction; `alone`: only from the last one.
+    fn at(&mut self, contraction: f64, alone: bool) -> Result<Found, FibreError> {
+        let ending = if alone && self.near.is_some() { ALONE } else { USUAL };
+        let found = self.problem.at_with(self.method, contraction, (self.near, ending))?;
+        self.near = found.unknowns();
+        self.seen.add(&found.response);
+        Ok(found)
+    }
+
+    /// The excess and its derivative by the contraction, taken from the response.
+    fn value(&mut self, contraction: f64, alone: bool) -> Result<(f64, f64), FibreError> {
+        let found = self.at(contraction, alone)?;
+        let l0 = self.problem.muscle.length().si();
+        let y = (self.excess)(&found);
+        let step = 1e-6 * contraction.abs().max(1e-3);
+        Ok((y, slope_of(&found, y, &self.excess, step * l0) * l0))
+    }
+
+    /// A contraction at which the excess is positive, and where to go on from.
+    fn below(&mut self, start: f64) -> Result<(f64, f64), FibreError> {
+        if self.problem.is_singular() {
+            return Ok((0.0, start));
+        }
+        self.below_start(start).or_else(|error| self.drawn_out(start).ok_or(error))
+    }
+
+    fn below_start(&mut self, start: f64) -> Result<(f64, f64), FibreError> {
+        let mut good = None;
+        let mut x = start;
+        let mut stride = (0.5 * start.abs()).max(1e-3);
+        let mut failures = 0;
+        for _ in 0..80 {
+            match (self.at(x, false), good) {
+                (Ok(found), _) if (self.excess)(&found) > 0.0 => return Ok((x, x)),
+                (Ok(_), _) => {
+                    good = Some(x);
+                    stride *= if failures == 0 { 1.6 } else { 1.0 };
+                }
+                // Nothing there: from the last one that exists, with smaller strides.
+                (Err(_), Some(_)) if failures < 12 => {
+                    failures += 1;
+                    stride *= 0.3;
+                }
+                // The start itself lies beyond the range of a very short muscle.
+                (Err(_), None) if failures < 12 => {
+                    failures += 1;
+                    x *= 0.3;
+                    continue;
+                }
+                (Err(error), _) => return Err(error),
+            }
+            x = good.unwrap_or(x) - stride;
+        }
+        Err(not_converged(x, 80))
+    }
+
+    /// Drawn out far enough the fibres are nearly straight, carry far more than the pressure, and any muscle has an equilibrium.
+    fn drawn_out(&mut self, start: f64) -> Option<(f64, f64)> {
+        let net = &self.problem.net;
+        let longest = start::longest(&Net { compliance: 0.0, ..*net });
+        let stretched = STRETCHED.iter().filter(|_| net.compliance > 0.0).map(|part| longest - part);
+        let places = DRAWN_OUT.iter().map(|part| longest + part * (start - longest)).chain(stretched);
+        for place in places.collect::<Vec<_>>() {
+            if let Ok(found) = self.at(place, false)
+                && (self.excess)(&found) > 0.0
+            {
+                return Some((place, place));
+            }
+        }
+        let (place, unknowns) = drawn_taut(net)?;
+        self.near = Some(unknowns);
+        let found = self.at(place, true).ok()?;
+        ((self.excess)(&found) > 0.0).then_some((place, place))
+    }
+
+    /// Whether the fibres are all but slack at the last equilibrium.
+    fn is_nearly_slack(&self) -> bool {
+        self.near.is_some_and(|near| near.is_slack_within(&self.problem.net, NEARLY_SLACK))
+    }
+
+    /// Upwards by Newton steps until the sign changes; where there is no equilibrium, with steps half as long until there is none beside the last one.
+    fn up(&mut self, mut low: f64, mut x: f64, tolerance: [f64; 2]) -> Result<Step, FibreError> {
+        // The longest step that is trusted, and the contraction at which fibres were seen slack.
+        let (mut reach, mut slack) = (f64::INFINITY, FAR);
+        let mut failed = false;
+        for _ in 0..MOST_STEPS {
+            match self.value(x, failed && x - low < BESIDE) {
+                Ok((y, slope)) if y > 0.0 => {
+                    let gone = if failed { 1.0 } else { 2.0 } * (x - low);
+                    (low, failed) = (x, false);
+                    let step = -y / slope;
+                    if step.abs() <= tolerance[0] + tolerance[1] * x.abs() {
+                        return Ok(Step::Root(x + step));
+                    }
+                    if reach.is_finite() {
+                        reach = reach.max(gone);
+                    }
+                    let wish = if step > 0.0 { step } else { f64::INFINITY };
+                    x = low + wish.min(reach);
+                    if x >= slack || x >= FAR {
+                        x = 0.5 * (low + slack);
+                    }
+                }
+                Ok(_) => return Ok(Step::Between(low, x)),
+                Err(error) => {
+                    failed = true;
+                    if matches!(error, FibreError::Slack { .. }) {
+                        slack = x;
+                    }
+                    reach = 0.5 * (x - low);
+                    if reach < SMALLEST {
+                        let is_slack = matches!(error, FibreError::Slack { .. }) || self.is_nearly_slack();
+                        let slack = FibreError::Slack { contraction: x, limit: Some(low) };
+                        return Err(if is_slack { slack } else { error });
+                    }
+                    x = low + reach;
+                }
+            }
+            if slack - low < SMALLEST {
+                return Err(if slack < FAR {
+                    FibreError::Slack { contraction: x, limit: Some(low) }
+                } else {
+                    not_converged(x, 0)
+                });
+            }
+        }
+        Err(not_converged(x, MOST_STEPS))
+    }
+}
+
+/// Where a way up ends.
+enum Step {
+    Root(f64),
+    Between(f64, f64),
+}
+
+fn not_converged(contraction: f64, iterations: u32) -> FibreError {
+    FibreError::NotConverged { contraction, residual: f64::INFINITY, iterations }
+}
+
+impl Problem {
+    /// A contraction inside the range of this muscle to start a search from.
+    pub(crate) fn contraction_start(&self) -> f64 {
+        let net = &self.net;
+        let ends = (net.half_fibre / (1.0 + net.half_fibre)).powi(2);
+        // On fittings of another radius the range of a short braid may lie far from 0.
+        let straight = if self.has_own_fitting() { shooting::straight_contraction(net) } else { None };
+        // Lobes that open early leave little to contract: about a third of their room at either end.
+        let room = net.lobes.map(|lobes| (lobes.limit() - net.depth - net.end_radius) / net.half_fibre);
+        straight.unwrap_or(0.0) + (0.12 * ends).min(room.map_or(f64::INFINITY, |room| 0.1 * room))
+    }
+
+    /// How far a contraction is from that of drawn-out fibres, where the force goes to infinity; 1 where that is far.
+    fn room_at(&self, contraction: f64) -> f64 {
+        let room = self.longest().map_or(1.0, |longest| contraction - longest);
+        if room < DRAWN_OUT_ROOM { room.max(LEAST_ROOM) } else { 1.0 }
+    }
+
+    /// The contraction at which `excess`, which falls with the contraction, is zero. Its derivative is taken from the response.
+    pub(crate) fn root(
+        &self,
+        method: Method,
+        start: f64,
+        seen: &mut Seen,
+        excess: impl Fn(&Found) -> f64,
+    ) -> Result<Found, FibreError> {
+        let mut walk = Walk { problem: self, method, near: None, seen, excess };
+        let (low, x) = walk.below(start)?;
+        // The force of straight inextensible fibres is infinite at 0, and large forces belong to tiny contractions.
+        let tolerance = if self.is_singular() {
+            [0.0, ROOT_TOLERANCE]
+        } else {
+            [ROOT_TOLERANCE * self.room_at(low), 0.0]
+        };
+        let (low, high) = match walk.up(low, x, tolerance)? {
+            Step::Root(root) => return walk.at(root, false),
+            Step::Between(low, high) => (low, high),
+        };
+        match newton_bracketed(|x| walk.value(x, false), low, high, high, tolerance) {
+            Ok(root) => walk.at(root, false),
+            Err(RootError::Function(error)) => Err(error),
+            Err(RootError::Budget { at, value, .. }) => {
+                Err(FibreError::NotConverged { contraction: at, residual: value, iterations: 100 })
+            }
+        }
+    }
+}
+
+/// Derivative of an excess of force or volume by the contraction, per length l0: along the exact slopes for a small shortening.
+fn slope_of(found: &Found, y: f64, excess: &impl Fn(&Found) -> f64, shortening: f64) -> f64 {
+    let mut moved = *found;
+    let r = &mut moved.response;
+    r.force_n -= r.stiffness_n_per_m * shortening;
+    r.volume_m3 -= r.volume_slope_m2 * shortening * r.volume_m3 / r.volume_polygon_m3;
+    (excess(&moved) - y) / shortening
+}

@@ -1,0 +1,135 @@
+//! The two unknowns of the shooting and the middle of a meridian that they stand for.
+
+use bulge_numerics::{Dual, Real};
+
+use crate::meridian::Middle;
+use crate::net::Net;
+
+/// Which side of the fitting's radius the middle lies on, and the two logarithms.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Unknowns {
+    /// +1: bulge, -1: waist.
+    pub(crate) side: f64,
+    /// ln|B|, ln|k|; where lobes or cloth limit the radius ln(push/(k B)), ln|k|, and with an angle besides ln(push/B), ln|k|.
+    pub(crate) logs: [f64; 2],
+}
+
+/// ln|k| below which the middle is a cylinder up to rounding: the integration starts where it is this, see [`Middle::beyond`].
+pub(crate) const FLAT: f64 = -40.0;
+
+/// Part of the way to the radius of the lobes' circle that a start may cover.
+const OPEN: f64 = 0.98;
+
+impl Unknowns {
+    /// A bulge (+1) or a waist (-1) with ln|B| and the second unknown.
+    pub(crate) fn new(net: &Net<f64>, side: f64, [ln_bulge, second]: [f64; 2]) -> Self {
+        if !is_limited(net, side) {
+            return Self { side, logs: [ln_bulge, second] };
+        }
+        let bulge = ln_bulge.exp().min(OPEN * net.most_bulge());
+        let r = net.end_radius + bulge;
+        let slope = net.acting_at(r).push(r) / bulge;
+        let first = match (net.bladder.is_some(), net.turn == 0.0) {
+            (true, _) => (0.5 * slope).asinh(),
+            (false, true) => slope.ln() - second,
+            (false, false) => slope.ln(),
+        };
+        Self { side, logs: [first, second] }
+    }
+
+    /// The middle of the meridian, with the unknowns as variables number 0 and 1 if `D` carries derivatives; `None` if the fibres can't be
+    /// there with a positive tension.
+    ///
+    /// The curvature of a waist is bounded: towards -q^2 r/sigma^2 the tension grows without limit. There the second unknown is that of the
+    /// tension, T = T_c + T_p exp(..), with T_c the tension of a cylinder of this radius and T_p the same without rubber; for a shallow waist it
+    /// is ln|k| up to a constant.
+    pub(crate) fn middle<D: Real>(
+        &self,
+        net: &Net<D>,
+        variable: impl Fn(f64, usize) -> D,
+    ) -> Option<Middle<D>> {
+        let logs = [variable(self.logs[0], 0), variable(self.logs[1], 1)];
+        if self.logs[1] < FLAT {
+            let middle = Self { side: self.side, logs: [self.logs[0], FLAT] };
+            // The first unknown keeps its derivative; the second one lengthens the cylinder.
+            let middle = middle.curved(net, [logs[0], D::from(FLAT)])?;
+            return middle.beyond(net, -logs[1] + FLAT);
+        }
+        self.curved(net, logs)
+    }
+
+    /// The same where the curvature is one that numbers can have.
+    fn curved<D: Real>(&self, net: &Net<D>, logs: [D; 2]) -> Option<Middle<D>> {
+        let (second, straight) = (logs[1].exp(), D::from(0.0));
+        if is_limited(net, self.side) {
+            let slope = match (net.bladder.is_some(), net.turn.value() == 0.0) {
+                (true, _) => logs[0].exp() - (-logs[0]).exp(),
+                (false, true) => (logs[0] + logs[1]).exp(),
+                (false, false) => logs[0].exp(),
+            };
+            let bulge = net.bulge(slope)?;
+            let r = net.end_radius + bulge;
+            let tension = net.acting_at(r.value()).tension_at_equator(r, bulge * slope, second)?;
+            return Some(Middle { bulge, curvature: second, tension, straight });
+        }
+        let bulge = logs[0].exp() * self.side;
+        let r = net.end_radius + bulge;
+        if r.value() <= 0.0 {
+            return None;
+        }
+        let net = net.acting_at(r.value());
+        let push = net.push(r);
+        if self.side > 0.0 {
+            let tension = net.tension_at_equator(r, push, second)?;
+            return Some(Middle { bulge, curvature: second, tension, straight });
+        }
+        // A waist is taut where a cylinder of its radius would not be.
+        let cylinder = if net.bladder.is_some() {
+            net.balancing_tension(r, push, D::from(0.0))?
+        } else {
+            net.tension_at_equator(r, push, D::from(0.0))?
+        };
+        let at_cylinder = net.local(r, cylinder);
+        // The tension of a cylinder without rubber, which may carry more than all of the pressure.
+        let unit = if net.bladder.is_some() { push / at_cylinder.hoop_t } else { cylinder };
+        let excess = unit * second;
+        let tension = cylinder + excess;
+        let local = net.local(r, tension);
+        // k = (A' - h)/N = -(h(T) - h(T_c))/N; the difference is linear for inextensible fibres, and to first order for a small excess.
+        let linear = net.compliance.value() == 0.0 || second.value() < 1e-6;
+        let hoop = if linear { at_cylinder.hoop_t * excess } else { local.hoop - at_cylinder.hoop };
+        let curvature = -(hoop / local.force);
+        (curvature.value() < 0.0 && local.force.value() > 0.0).then_some(Middle {
+            bulge,
+            curvature,
+            tension,
+            straight,
+        })
+    }
+
+    /// Whether fibres are slack somewhere.
+    pub(crate) fn is_slack(&self, net: &Net<f64>) -> bool {
+        self.is_slack_within(net, 0.0)
+    }
+
+    /// Whether fibres are slack somewhere, or as good as: they carry less than a part of the meridional force.
+    pub(crate) fn is_slack_within(&self, net: &Net<f64>, part: f64) -> bool {
+        let slack = |middle: Middle<f64>| net.is_slack(net.end_radius + middle.bulge, middle.tension, part);
+        net.bladder.is_some() && self.middle(net, |value, _| value).is_some_and(slack)
+    }
+
+    pub(crate) fn seeded<const N: usize>(&self, net: &Net<Dual<N>>) -> Option<Middle<Dual<N>>> {
+        self.middle(net, Dual::variable)
+    }
+}
+
+/// Whether lobes or cloth limit the radius of a bulge: the first unknown is then that of the tension.
+pub(crate) fn is_limited<D: Real>(net: &Net<D>, side: f64) -> bool {
+    side > 0.0 && (net.lobes.is_some() || net.cloth.is_some())
+}
+
+/// Curvature of a waist of inextensible fibres at infinite tension, q^2 r/sigma^2.
+pub(crate) fn steepest(net: &Net<f64>, r: f64) -> f64 {
+    let angle2 = (net.turn * r).powi(2);
+    angle2 / (r * (1.0 - angle2))
+}
