@@ -459,7 +459,7 @@ fn driven_by_pressure(
         let _ = write!(text, "{:.2},{pressure:.4},{length:.4},{force:.1}", 0.1 * f64::from(i));
         // A file that counts the first three rows of each branch to the one before.
         let stated = if (i.max(3) - 3) % 200 < 100 { 1 } else { -1 };
-        text.push_str(&if direction { format!(",{stated}\n") } else { "\n".to_owned() });
+        let _ = if direction { writeln!(text, ",{stated}") } else { writeln!(text) };
     }
     Data::from_csv(&text, "driven.csv").unwrap()
 }
@@ -483,13 +483,13 @@ fn a_held_length_that_drifts_is_held_and_told() {
         found.of(FindingKind::HeldLengthDrifts).next().map(|finding| finding.says.clone())
     };
     // The frame gives way by 0.6 % of the length; the clamp creeps by as much; a length driven to and fro at each pressure is a motion.
-    let cases: [(&dyn Fn(f64, u32) -> f64, SweepKind); 3] = [
-        (&|p, _| 240.0 + 0.3 * (p - 1.0), SweepKind::Isometric),
-        (&|_, i| 240.0 + 1.5 * f64::from(i) / 400.0, SweepKind::Isometric),
-        (&|_, i| 240.0 + 0.75 * (0.4 * f64::from(i)).sin(), SweepKind::Loop),
+    let pulls = |p: f64| 100.0 * p;
+    let cases = [
+        (driven_by_pressure(|p, _| 240.0 + 0.3 * (p - 1.0), pulls, false), SweepKind::Isometric),
+        (driven_by_pressure(|_, i| 240.0 + 1.5 * f64::from(i) / 400.0, pulls, false), SweepKind::Isometric),
+        (driven_by_pressure(|_, i| 240.0 + 0.75 * (0.4 * f64::from(i)).sin(), pulls, false), SweepKind::Loop),
     ];
-    for (length, kind) in cases {
-        let data = driven_by_pressure(length, |p| 100.0 * p, false);
+    for (data, kind) in cases {
         assert_eq!(kinds(&data), [kind]);
         let says = drifts(&data);
         assert_eq!(says.is_some(), kind == SweepKind::Isometric, "{says:?}");
