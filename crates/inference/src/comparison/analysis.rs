@@ -80,6 +80,10 @@ pub(crate) struct Analysis<'a> {
     pub(crate) full_scale: f64,
     /// What is asked about units, signs and scales.
     pub(crate) findings: Vec<Mismatch>,
+    /// Rows in which the muscle as stated is slack, once that was asked.
+    slack: Option<Vec<usize>>,
+    /// The muscle or the law before anything is added: models made from it share the equilibria that they have solved.
+    root: Model,
     /// A model with all effects, and numbers near those of its best fit.
     pub(crate) near: Option<(&'a Model, &'a [f64])>,
 }
@@ -115,7 +119,10 @@ impl<'a> Analysis<'a> {
         let folds = Folds::of(&record, &levels, &used.mask);
         // Until the noise is known: a hundredth of full scale.
         let noise = Noise::of(muscle, (0.01 * full_scale).max(f64::MIN_POSITIVE));
-        let findings = Vec::new();
+        let root = match &options.law {
+            Some((law, values, free)) => Model::from_law(muscle, law, values, *free),
+            None => Model::new(muscle),
+        };
         Ok(Self {
             data,
             muscle,
@@ -126,18 +133,16 @@ impl<'a> Analysis<'a> {
             folds,
             noise,
             full_scale,
-            findings,
+            findings: Vec::new(),
+            slack: None,
+            root,
             near: None,
         })
     }
 
     /// The base with what the muscle file states, but for those of the first `count` effects: they are fitted anew.
     fn base(&self, count: usize) -> Result<Model, ModelError> {
-        let mut model = match &self.options.law {
-            Some((law, values, free)) => Model::from_law(self.muscle, law, values, *free),
-            None => Model::new(self.muscle),
-        }
-        .for_specimens(self.record.specimens())?;
+        let mut model = self.root.clone().for_specimens(self.record.specimens())?;
         for (effect, values) in &self.options.known {
             let is_asked = |other: &Arc<dyn Effect>| other.card().name == effect.card().name;
             if !self.options.effects[..count].iter().any(is_asked) {
@@ -266,17 +271,38 @@ impl<'a> Analysis<'a> {
         InferenceError::Model { what, source: Box::new(error) }
     }
 
-    /// Asks about units, signs and scales that can't be true, and leaves out rows in which the muscle as stated is slack.
+    /// The same data and muscle with other effects: what was asked is asked, what was solved is solved.
+    pub(crate) fn with_options<'b>(
+        &'b self,
+        options: &'b Options,
+        near: (&'b Model, &'b [f64]),
+    ) -> Result<Analysis<'b>, InferenceError> {
+        let mut other = Analysis::of(self.data, self.muscle, options, Arc::clone(&self.record))?;
+        (other.near, other.findings, other.root) = (Some(near), self.findings.clone(), self.root.clone());
+        if let Some(slack) = &self.slack {
+            other.leave_out_slack(slack.clone());
+        }
+        Ok(other)
+    }
+
+    /// Asks about units, signs and scales that can't be true, and leaves out rows in which the muscle as stated is slack; once.
     pub(crate) fn ask(&mut self) -> Result<(), InferenceError> {
+        if self.slack.is_some() {
+            return Ok(());
+        }
         let prepared = self.model(0)?;
         self.findings = questions(self.data, self.muscle, &prepared.model, &self.record, &self.used.mask);
-        if self.options.law.is_none() {
-            let rows = buckled(&prepared.model, &self.record, &self.used.mask);
-            let why =
-                "slack: the pressure is too low for the rubber of the muscle as stated, and it hardly pulled";
-            self.used.leave_out(self.data, rows, why.to_owned());
-        }
+        let is_law = self.options.law.is_some();
+        let slack = if is_law { Vec::new() } else { buckled(&prepared.model, &self.record, &self.used.mask) };
+        self.leave_out_slack(slack);
         Ok(())
+    }
+
+    fn leave_out_slack(&mut self, rows: Vec<usize>) {
+        let why =
+            "slack: the pressure is too low for the rubber of the muscle as stated, and it hardly pulled";
+        self.used.leave_out(self.data, rows.iter().copied(), why.to_owned());
+        self.slack = Some(rows);
     }
 
     /// What no model can go below, as the residuals of a rung show it.

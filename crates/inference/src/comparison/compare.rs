@@ -4,7 +4,6 @@ use bulge_measurements::{Data, QualityOptions};
 use bulge_model::{Model, ModelError};
 use bulge_muscles::{Muscle, Quantity};
 use rayon::prelude::*;
-use std::sync::Arc;
 
 use crate::comparison::analysis::{Analysis, Climbed, Options, without_state};
 use crate::comparison::document::{Comparison, DataSummary, NoiseFloor};
@@ -29,8 +28,7 @@ pub(crate) fn compare_near(
     options: &Options,
     near: (&Model, &[f64]),
 ) -> Result<Comparison, InferenceError> {
-    let analysis = Analysis::of(other.data, other.muscle, options, Arc::clone(&other.record))?;
-    compared(Analysis { near: Some(near), ..analysis })
+    compared(other.with_options(options, near)?)
 }
 
 fn compared(mut analysis: Analysis<'_>) -> Result<Comparison, InferenceError> {

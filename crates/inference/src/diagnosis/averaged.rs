@@ -9,6 +9,8 @@ use crate::comparison::levels::Levels;
 const PARTS: usize = 16;
 /// Most means that this makes.
 const MOST_PARTS: usize = 5_000;
+/// Cycles of each sweep that are kept in any case: the first has no history, and pure error takes two others.
+const FEWEST_CYCLES: f64 = 3.0;
 /// Groups that scatter by this multiple of the usual variance hold something else than noise.
 const ODD: f64 = 9.0;
 
@@ -40,6 +42,9 @@ impl Averaged {
     pub(crate) fn of(record: &Record, used: &[bool], levels: &Levels, most: usize) -> Option<Self> {
         let rows = used.iter().filter(|counts| **counts).count();
         let size = rows.div_ceil(most.max(1)).max(1);
+        let kept = (size > 1 && record.is_path()).then(|| first_cycles(record, used, levels)).flatten();
+        let used = kept.as_deref().unwrap_or(used);
+        let size = used.iter().filter(|counts| **counts).count().div_ceil(most.max(1)).max(1);
         let mut groups: Vec<Vec<usize>> = Vec::new();
         let mut sweeps: Vec<Range<usize>> = Vec::new();
         let least = if size > 1 && record.is_path() { parts_of_ways(record, used, levels) } else { 1 };
@@ -121,6 +126,42 @@ fn scatter(group: &[usize], residual: &[f64]) -> Option<(f64, f64)> {
             Some(((about - along * along / square).max(0.0), n - 2.0))
         }
     }
+}
+
+/// The rows of the first cycles of each sweep, where there are so many that their means would hide the shape of the loop; none if there are fewer.
+///
+/// Means of several cycles would have no history of their own, and later cycles without those before them a wrong one.
+fn first_cycles(record: &Record, used: &[bool], levels: &Levels) -> Option<Vec<bool>> {
+    let moments = record.moments();
+    let of_sweep = |sweep: &Range<usize>| -> Vec<(usize, usize)> {
+        let rows: Vec<usize> = sweep.clone().filter(|row| used[*row]).collect();
+        // First row of each way, and the rows that it has.
+        runs(&rows, record, levels).map(|run| (run[0], run.len())).collect()
+    };
+    let ways: Vec<Vec<(usize, usize)>> = record.sweeps().iter().map(of_sweep).collect();
+    let cycle =
+        |row: usize, sweep: &Range<usize>| moments[row].cycle.floor() - moments[sweep.start].cycle.floor();
+    let means = |cycles: f64| -> usize {
+        let own = |(sweep, ways): (&Range<usize>, &Vec<(usize, usize)>)| -> usize {
+            let counting = ways.iter().filter(|(row, _)| cycle(*row, sweep) < cycles);
+            counting.map(|(_, length)| PARTS.min(*length)).sum()
+        };
+        record.sweeps().iter().zip(&ways).map(own).sum()
+    };
+    if means(f64::INFINITY) <= MOST_PARTS {
+        return None;
+    }
+    let mut cycles = FEWEST_CYCLES;
+    while means(cycles + 1.0) <= MOST_PARTS {
+        cycles += 1.0;
+    }
+    let mut kept = used.to_vec();
+    for sweep in record.sweeps() {
+        for row in sweep.clone() {
+            kept[row] &= cycle(row, sweep) < cycles;
+        }
+    }
+    Some(kept)
 }
 
 /// Means for each way from one reversal to the next.

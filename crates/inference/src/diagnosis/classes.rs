@@ -77,14 +77,24 @@ impl Class {
 }
 
 impl Given<'_> {
-    /// The class of one of the added effects, all others staying, and the stage without it; none if there is no model without it that these data could come
-    /// from.
-    pub(crate) fn class(&self, base: &Model, stage: &Stage, place: usize) -> Option<(Class, Stage)> {
+    /// The class of one of the added effects, all others staying, and the stage without it, where none was `known`; none if there is no model without it that these
+    /// data could come from.
+    pub(crate) fn class(
+        &self,
+        base: &Model,
+        stage: &Stage,
+        place: usize,
+        known: Option<&Stage>,
+    ) -> Option<(Class, Option<Stage>)> {
         let effect = Arc::clone(&stage.added[place]);
-        let others: Vec<Arc<dyn Effect>> =
-            stage.added.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, e)| Arc::clone(e)).collect();
-        let without = self.refitted(base, stage, &others).ok()?;
-        let without = self.stage(others, without).ok()?;
+        let mut made = None;
+        let without = if let Some(known) = known {
+            known
+        } else {
+            let others = stage.without(place);
+            let fitted = self.refitted(base, stage, &others).ok()?;
+            &*made.insert(self.stage(others, fitted).ok()?)
+        };
         let signal = self.signal(&stage.confirmed, &without.scene).ok()?;
         let name = effect.card().name;
         let own = without.scene.showings.effects.iter().position(|s| s.effect.card().name == name);
@@ -112,9 +122,11 @@ impl Given<'_> {
             .map(|(hypothesis, separation, near)| {
                 let (linear, gain_of) = (hypothesis.log_evidence, hypothesis.gain);
                 let place = hypothesis.effects[0];
-                let tried = near.then(|| self.fitted(base, &without, hypothesis));
+                let known = without.tried.iter().find(|tried| tried.hypothesis.effects == [place]);
+                let tried =
+                    near.then(|| known.cloned().unwrap_or_else(|| self.fitted(base, without, hypothesis)));
                 Self::rival(
-                    &without,
+                    without,
                     place,
                     tempered(linear, gain_of, scatter),
                     separation,
@@ -125,7 +137,7 @@ impl Given<'_> {
             .collect();
         let detectability = dot(&signal, &signal).sqrt() / scatter.sqrt();
         let is_further = stage.added.len() > 1;
-        Some((Class { effect, log_evidence, detectability, scatter, is_further, rivals }, without))
+        Some((Class { effect, log_evidence, detectability, scatter, is_further, rivals }, made))
     }
 
     /// A stage with the best rival instead of an effect, where that is clearly better and explains the data no less.

@@ -16,7 +16,7 @@ use crate::diagnosis::showing::{Showing, Sign, Size, sizes};
 use crate::fit::carry_over::carry_over;
 use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::{FitProblem, free};
-use crate::fit::settle::settled;
+use crate::fit::settle::{cost, settled};
 use crate::fit::states::{is_of_rows, of_start, settled_where_possible};
 
 /// Tolerance of the fits, as a part of what the residuals are.
@@ -24,6 +24,8 @@ const TOLERANCE: f64 = 1e-5;
 /// What a size costs that is twice as large as plausible.
 const IMPLAUSIBLE: f64 = 8.0;
 const EVALUATIONS: usize = 50;
+/// Starts that are followed to their minimum.
+const FOLLOWED: usize = 2;
 
 /// A model with its effects at their best numbers.
 #[derive(Debug, Clone)]
@@ -117,11 +119,35 @@ impl Given<'_> {
         Some(found.problem.theta(&found.minimum.theta))
     }
 
+    /// The starts that are nearest to the data, where there are many: those that have no state at some row are not far enough from them to be told.
+    fn nearest<'s>(
+        &self,
+        prepared: &Prepared,
+        starts: &'s [Vec<f64>],
+        priors: &[Option<(f64, f64)>],
+    ) -> Vec<&'s Vec<f64>> {
+        if starts.len() <= FOLLOWED {
+            return starts.iter().collect();
+        }
+        let distance = |start: &Vec<f64>| {
+            let problem =
+                FitProblem::whitened(&prepared.model, self.record, self.whitening, start.clone(), priors);
+            let at = inside(problem.coordinates(start), &problem.bounds());
+            problem.hold();
+            cost(&problem, &at).unwrap_or(f64::INFINITY)
+        };
+        let mut found: Vec<(f64, &Vec<f64>)> =
+            starts.par_iter().map(|start| (distance(start), start)).collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.into_iter().take(FOLLOWED).map(|(_, start)| start).collect()
+    }
+
     /// The least of the minima that several starts lead to.
     fn best(&self, prepared: Prepared, starts: &[Vec<f64>]) -> Result<Confirmed, ModelError> {
         let priors = nuisance_priors(&prepared);
-        let searched: Vec<Result<(Minimum, Vec<f64>), ModelError>> = starts
-            .par_iter()
+        let searched: Vec<Result<(Minimum, Vec<f64>), ModelError>> = self
+            .nearest(&prepared, starts, &priors)
+            .into_par_iter()
             .map(|start| {
                 self.progress.beat();
                 let problem = FitProblem::whitened(

@@ -207,9 +207,16 @@ fn compared_as_stated(
 fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
     let last = &search.stages[search.stages.len() - 1];
     let of = |place: usize| {
-        if let Some((class, without)) = given.class(model, last, place) {
+        let known = search.of_effects(&last.without(place));
+        if let Some((class, made)) = given.class(model, last, place, known)
+            && let Some(without) = made.as_ref().or(known)
+        {
             let confidence = confidence(given, &without.scene, &without.adequacy.null, &class);
-            return Judged { class, confidence, models: Some((last.confirmed.clone(), without.confirmed)) };
+            return Judged {
+                class,
+                confidence,
+                models: Some((last.confirmed.clone(), without.confirmed.clone())),
+            };
         }
         let name = last.added[place].card().name;
         let holds = |stage: &&Stage| stage.added.iter().any(|effect| effect.card().name == name);

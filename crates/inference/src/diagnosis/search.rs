@@ -24,6 +24,8 @@ const MOST_EFFECTS: usize = 3;
 const FITTED: f64 = 12.0;
 /// A fall of the square of the misfit beyond which tangents say little: then usual numbers are starts too, and the best of each kind are fitted.
 const FAR: f64 = 200.0;
+/// Part of the fall that the tangents say, from which they hold: then no other starts are needed.
+const PROMISED: f64 = 0.95;
 /// Most single effects and most pairs that are fitted.
 const MOST: [usize; 2] = [8, 6];
 /// Forms from which a fit of an effect starts.
@@ -94,6 +96,12 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
+    /// The added effects but one.
+    pub(crate) fn without(&self, place: usize) -> Vec<Arc<dyn Effect>> {
+        let others = self.added.iter().enumerate().filter(|(i, _)| *i != place);
+        others.map(|(_, effect)| Arc::clone(effect)).collect()
+    }
+
     /// How much more than chance the misfit scatters over the smooth functions, as a ratio of variances: 1 if the model explains the data.
     pub(crate) fn scatter(&self) -> f64 {
         let smooth = &self.scene.smooth;
@@ -115,6 +123,16 @@ pub(crate) struct Search {
 }
 
 impl Search {
+    /// The stage of these effects, in any order.
+    pub(crate) fn of_effects(&self, effects: &[Arc<dyn Effect>]) -> Option<&Stage> {
+        let names = |list: &[Arc<dyn Effect>]| {
+            let mut names: Vec<String> = list.iter().map(|effect| effect.card().name.to_owned()).collect();
+            names.sort_unstable();
+            names
+        };
+        self.stages.iter().find(|stage| names(&stage.added) == names(effects))
+    }
+
     /// Another model instead of the last one, and of those on the way to it that have an effect which it lacks.
     pub(crate) fn replace_last(&mut self, stage: Stage) {
         let has = |effect: &Arc<dyn Effect>| {
@@ -208,7 +226,10 @@ impl Given<'_> {
         let starts: Vec<Vec<f64>> =
             hypothesis.starts.iter().map(|start| before.iter().chain(start).copied().collect()).collect();
         let mut confirmed = self.confirm(base, &all, Some(stage.confirmed.numbers()), &starts).ok();
-        if confirmed.is_none() || hypothesis.gain > FAR {
+        let holds = |confirmed: &Confirmed| {
+            confirmed.converged && stage.confirmed.cost() - confirmed.cost() >= PROMISED * hypothesis.gain
+        };
+        if confirmed.is_none() || hypothesis.gain > FAR && !confirmed.as_ref().is_some_and(holds) {
             // Far from where the tangents hold: usual numbers, and nearly none of them.
             let further: Vec<Vec<f64>> = [1.0, 0.1]
                 .iter()

@@ -10,7 +10,7 @@ use bulge_numerics::least_squares::{Bounds, LeastSquaresError, Minimum, Options,
 use crate::fit::problem::FitProblem;
 
 /// Rounds at most.
-const ROUNDS: usize = 6;
+const ROUNDS: usize = 8;
 /// A difference of the sum of squares that doesn't matter: evidence counts in halves of it.
 const NEAR: f64 = 0.01;
 /// The same as a part of the sum of squares.
@@ -26,12 +26,19 @@ pub(crate) fn settled(
     options: &Options,
 ) -> Result<Minimum, LeastSquaresError<ModelError>> {
     let mut at = start.to_vec();
-    let mut began = f64::INFINITY;
+    // Where the equilibria were solved last, and the sum of squares there.
+    let mut solved: Option<(Vec<f64>, f64)> = None;
     for _ in 0..ROUNDS {
         problem.hold();
-        // No equilibrium where the linear ones led, or none at all; nothing to hold; or further from the data than before.
-        let Ok(here) = cost(problem, &at) else { break };
-        if !problem.is_held() || here > began + near(began) {
+        let here = cost(problem, &at).ok();
+        let began = solved.as_ref().map_or(f64::INFINITY, |(_, cost)| *cost);
+        let Some(here) = here.filter(|here| *here <= began + near(began)) else {
+            // No equilibrium where the linear ones led, or further from the data than before: half of the way.
+            let Some((before, _)) = &solved else { break };
+            at = before.iter().zip(&at).map(|(before, at)| 0.5 * (before + at)).collect();
+            continue;
+        };
+        if !problem.is_held() {
             break;
         }
         let minimum = minimise(problem, &at, bounds, options)?;
@@ -39,11 +46,12 @@ pub(crate) fn settled(
             problem.release();
             return Ok(minimum);
         }
-        at = minimum.theta;
-        began = here;
+        let from = std::mem::replace(&mut at, minimum.theta);
+        solved = Some((from, here));
     }
     problem.release();
-    minimise(problem, start, bounds, options)
+    let from = solved.map_or_else(|| start.to_vec(), |(from, _)| from);
+    minimise(problem, &from, bounds, options)
 }
 
 /// Whether no number has moved by more than a small part of its standard deviation.
@@ -63,7 +71,8 @@ fn near(cost: f64) -> f64 {
     NEAR + NEAR_PART * cost
 }
 
-fn cost(problem: &FitProblem<'_>, at: &[f64]) -> Result<f64, ModelError> {
+/// The sum of squares, with derivatives in what is held.
+pub(crate) fn cost(problem: &FitProblem<'_>, at: &[f64]) -> Result<f64, ModelError> {
     let (rows, numbers) = (problem.rows(), problem.parameters());
     let (mut residuals, mut jacobian) = (vec![0.0; rows], vec![0.0; rows * numbers]);
     problem.evaluate(at, 0..rows, &mut residuals, Some(&mut jacobian))?;

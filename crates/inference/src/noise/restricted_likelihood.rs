@@ -1,5 +1,6 @@
 //! Restricted likelihood of noise variances under a linear model (Patterson and Thompson 1971; Harville 1977).
 
+use nalgebra::{DMatrix, DMatrixView};
 use rayon::prelude::*;
 
 use crate::noise::orthonormal::Basis;
@@ -130,41 +131,23 @@ impl Layout {
     }
 }
 
-/// Lower triangle of the products of columns given row by row; always summed in the same order.
+/// Products of columns given row by row, of `width` in a row; always summed in the same order.
 fn products(columns: &[f64], width: usize) -> Vec<f64> {
     let part = |rows: &[f64]| {
-        let mut gram = vec![0.0; width * width];
-        let mut fours = rows.chunks_exact(4 * width);
-        for four in fours.by_ref() {
-            let (a, rest) = four.split_at(width);
-            let (b, rest) = rest.split_at(width);
-            let (c, d) = rest.split_at(width);
-            for i in 0..width {
-                let line = &mut gram[i * width..=i * width + i];
-                let factors = [a[i], b[i], c[i], d[i]];
-                let rows = a.iter().zip(b).zip(c.iter().zip(d));
-                for (sum, ((a, b), (c, d))) in line.iter_mut().zip(rows) {
-                    *sum += (factors[0] * a + factors[1] * b) + (factors[2] * c + factors[3] * d);
-                }
-            }
-        }
-        for row in fours.remainder().chunks_exact(width) {
-            for i in 0..width {
-                for (sum, x) in gram[i * width..=i * width + i].iter_mut().zip(row) {
-                    *sum += row[i] * x;
-                }
-            }
-        }
+        // Rows of the table are columns of the view.
+        let across = DMatrixView::from_slice(rows, width, rows.len() / width);
+        let along = DMatrixView::from_slice_with_strides(rows, rows.len() / width, width, width, 1);
+        let mut gram = DMatrix::zeros(width, width);
+        gram.gemm(1.0, &across, &along, 0.0);
         gram
     };
-    let parts: Vec<Vec<f64>> = columns.par_chunks(ROWS * width).map(part).collect();
-    let mut gram = vec![0.0; width * width];
-    for part in parts {
-        for (sum, x) in gram.iter_mut().zip(part) {
-            *sum += x;
-        }
+    let parts: Vec<DMatrix<f64>> = columns.par_chunks(ROWS * width).map(part).collect();
+    let mut gram = DMatrix::zeros(width, width);
+    for part in &parts {
+        gram += part;
     }
-    gram
+    // Symmetric: by columns is by rows.
+    gram.data.into()
 }
 
 /// Lower Cholesky factor in place; none if the matrix isn't positive.

@@ -19,6 +19,8 @@ const BENDS: f64 = 2.0;
 const RANGE: f64 = 5e-3;
 /// Neighbouring spikes hide each other: those found are bridged, and the rest is looked at again so often.
 const PASSES: usize = 3;
+/// Spikes at more than one turning point in so many are its form.
+const COMES_BACK: usize = 5;
 /// More than one row in so many is the way this quantity scatters.
 const MOST: usize = 20;
 
@@ -79,7 +81,18 @@ fn along(data: &Data, values: &[f64], resolution: &Resolution, share: f64) -> Ve
             found.extend(in_run(&values[sweep.rows.clone()], least).iter().map(|row| sweep.rows.start + row));
         }
     }
+    leave_tips(data, &mut found);
     if MOST * found.len() > values.len() { Vec::new() } else { found }
+}
+
+/// What comes back turn by turn is no spike but a tip, of which few rows show both sides.
+fn leave_tips(data: &Data, found: &mut Vec<usize>) {
+    let turning = data.direction_in_doubt();
+    let turns = |row: &usize| turning.binary_search(row).is_ok();
+    let at_turns = found.iter().filter(|row| turns(row)).count();
+    if at_turns > 1 && COMES_BACK * at_turns > turning.len() {
+        found.retain(|row| !turns(row));
+    }
 }
 
 /// Spikes of one run, in ascending order.
