@@ -17,3 +17,4 @@ pub(crate) mod rivals;
 pub(crate) mod rows;
 pub(crate) mod specimens;
 pub(crate) mod stack;
+pub(crate) mod warnings;

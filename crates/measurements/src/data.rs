@@ -76,16 +76,6 @@ pub(crate) struct Structure {
     pub(crate) scale: f64,
 }
 
-/// What goes to and fro in a sweep: the length, or the pressure where the length is held.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Driven<'a> {
-    /// Its stretches.
-    pub(crate) stretches: &'a [Stretch],
-    /// Contraction, length or pressure of all rows, as measured.
-    pub(crate) values: &'a [f64],
-    pub(crate) band: DeadBand,
-}
-
 impl Data {
     /// Reads files of text, Excel, MATLAB or Parquet, which their first bytes tell apart; `-` is standard input. Several files are one analysis; they
     /// need the same columns, and their sweeps are distinct. Without a column `specimen` all is about specimen "1".
@@ -482,19 +472,6 @@ impl Data {
     /// The stretches of the pressure in the sweeps of [`Data::paths`].
     pub(crate) fn pressure_paths(&self) -> impl Iterator<Item = &[Stretch]> {
         self.structure.pressure_stretches.iter().map(Vec::as_slice)
-    }
-
-    /// The sweeps whose rows follow each other, with what is driven in them.
-    pub(crate) fn driven(&self) -> impl Iterator<Item = (&Sweep, Driven<'_>)> {
-        self.paths().zip(self.pressure_paths()).map(|((sweep, stretches), filling)| {
-            let structure = &self.structure;
-            let driven = if sweep.kind == SweepKind::Isometric {
-                Driven { stretches: filling, values: self.pressure(), band: structure.pressure_band }
-            } else {
-                Driven { stretches, values: self.columns.motion.values(), band: structure.band }
-            };
-            (sweep, driven)
-        })
     }
 
     /// The sweeps whose rows follow each other, with the stretches of their length.

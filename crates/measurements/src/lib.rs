@@ -13,6 +13,7 @@ mod columns;
 mod csv_file;
 mod data;
 mod dimension;
+mod driven;
 mod encoding;
 mod error;
 mod heading;

@@ -1,6 +1,7 @@
 //! Rows whose direction isn't known: at turning points, and at the start of a sweep.
 
-use crate::data::{Data, Driven};
+use crate::data::Data;
+use crate::driven::Driven;
 use crate::stretch::Stretch;
 use std::ops::Range;
 

@@ -1,8 +1,7 @@
 //! A model along a history: the force of every row, with exact derivatives.
 
 use bulge_effects::{Effect, Input, Jet, LANES, Moment, Place, Setting, Stage};
-use bulge_fibre::{Approach, FibreError, Problem, Start};
-use bulge_muscles::{Muscle, Pressure};
+use bulge_muscles::Muscle;
 use bulge_numerics::{Dual, Real};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -11,11 +10,13 @@ use std::sync::Arc;
 use crate::answer::SHAPE;
 use crate::base::Equilibrium;
 use crate::error::ModelError;
+use crate::failure::{RowError, failure};
 use crate::lattice::{FEWEST_NODES, Lattice};
 use crate::model::{AtRest, Base, Chosen, Model};
-use crate::prediction::{Part, Partly, Prediction};
+use crate::prediction::{Partly, Prediction};
 use crate::record::Record;
 use crate::row::NORMAL;
+use crate::segment::{Task, segment};
 use crate::solved::Asked;
 use crate::strands::{self, Strands};
 use crate::warm::{Held, Slots, Warm};
@@ -50,7 +51,7 @@ pub(crate) struct Run<'a> {
     /// Whether equilibria are searched for from those found before, as exactly as a fit needs them.
     pub(crate) within_fit: bool,
     /// Whether a segment ends at its first row without a state.
-    all_or_none: bool,
+    pub(crate) all_or_none: bool,
 }
 
 /// Which variable each lane carries in one pass.
@@ -62,12 +63,6 @@ pub(crate) struct Pass {
     pub(crate) shape_lanes: Vec<Option<usize>>,
     /// (lane, place among the wanted parameters)
     pub(crate) columns: Vec<(usize, usize)>,
-}
-
-/// Why a row has no force.
-pub(crate) enum RowError {
-    Solver { pressure: f64, contraction: f64, source: FibreError },
-    NotFinite,
 }
 
 impl Model {
@@ -83,22 +78,6 @@ impl Model {
     ) -> Result<Prediction, ModelError> {
         let (all, failed) = self.evaluate_with(record, theta, wanted, None, true, &mut Slots::default())?;
         if failed.is_empty() { Ok(all) } else { Err(self.explained(record, theta, failure(failed))) }
-    }
-
-    /// The error with the limit beyond which its first row lies, if that is the reason: a search, which the evaluations of a fit save.
-    #[must_use]
-    pub fn explained(&self, record: &Record, theta: &[f64], error: ModelError) -> ModelError {
-        let ModelError::NoEquilibrium { rows, pressure_pa, contraction, source } = error else {
-            return error;
-        };
-        let specimen = rows.first().and_then(|row| record.moments().get(*row)).map_or(0, |m| m.specimen);
-        let muscle = self.reshape(self.body_of(specimen), theta, &[]).map(|(muscle, _)| muscle);
-        let problem = muscle.ok().and_then(|muscle| Problem::new(&muscle, Pressure::pa(pressure_pa)).ok());
-        let source = match problem {
-            Some(problem) => Box::new(problem.explained(*source, contraction, Approach::Auto)),
-            None => source,
-        };
-        ModelError::NoEquilibrium { rows, pressure_pa, contraction, source }
     }
 
     /// The same within a fit: searches start where those of the evaluation before ended, and each of the rows that count (see
@@ -315,14 +294,6 @@ impl Model {
     }
 }
 
-/// What is asked of every segment.
-struct Task<'a> {
-    record: &'a Record,
-    passes: Vec<Pass>,
-    columns: usize,
-    counts: &'a (dyn Fn(usize) -> bool + Sync),
-}
-
 impl Run<'_> {
     /// The lattice for the rows that count, if it is worth its while; held, if it is to be.
     fn solved(
@@ -367,7 +338,7 @@ impl Run<'_> {
         Some(lattice)
     }
 
-    fn remembers(&self) -> bool {
+    pub(crate) fn remembers(&self) -> bool {
         self.model.effects.iter().any(|chosen| chosen.effect.memory() > 0)
     }
 
@@ -407,7 +378,7 @@ impl Run<'_> {
     }
 
     /// What is remembered along a sweep: of each effect, and of the strands.
-    fn memory(&self) -> Vec<Vec<Jet>> {
+    pub(crate) fn memory(&self) -> Vec<Vec<Jet>> {
         let sizes = self.model.effects.iter().map(|chosen| chosen.effect.memory());
         sizes.chain([strands::MEMORY]).map(|size| vec![Jet::from(0.0); size]).collect()
     }
@@ -476,68 +447,7 @@ impl Run<'_> {
     }
 
     /// Whether rows start from the row before: within a fit where nothing is shot for.
-    fn walks(&self) -> bool {
+    pub(crate) fn walks(&self) -> bool {
         self.within_fit && self.equilibrium.as_ref().is_some_and(|equilibrium| !equilibrium.is_costly())
-    }
-}
-
-fn segment(
-    runs: &[Run<'_>],
-    task: &Task<'_>,
-    rows: Range<usize>,
-    mut part: Part<'_>,
-    slots: &mut [Option<Start>],
-) -> Vec<(usize, RowError)> {
-    let mut failed = Vec::new();
-    // Rows that don't count matter only for what they leave in the memory to those that do.
-    let remembers = runs[0].remembers();
-    let Some(last) = rows.clone().rev().find(|row| (task.counts)(*row)) else { return failed };
-    let rows = rows.start..last + 1;
-    for (number, pass) in task.passes.iter().enumerate() {
-        let mut memory = runs[0].memory();
-        let mut before: Option<(usize, usize)> = None;
-        for (i, row) in rows.clone().enumerate() {
-            let (moment, counts) = (&task.record.moments()[row], (task.counts)(row));
-            let run = &runs[runs[0].model.body_of(moment.specimen)];
-            if moment.begins {
-                memory.iter_mut().flatten().for_each(|m| *m = Jet::from(0.0));
-            }
-            if !(counts || remembers) {
-                continue;
-            }
-            if slots[i].is_none() && run.walks() {
-                let same = before.filter(|(_, body)| *body == run.body);
-                slots[i] = same.and_then(|(before, _)| slots[before].clone());
-            }
-            before = Some((i, run.body));
-            match run.row(moment, pass, &mut memory, &mut slots[i]) {
-                Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
-                Err(error) if counts && number == 0 => {
-                    failed.push((row, error));
-                    if run.all_or_none {
-                        return failed;
-                    }
-                }
-                Ok(_) | Err(_) => {}
-            }
-        }
-    }
-    failed
-}
-
-fn failure(failed: Vec<(usize, RowError)>) -> ModelError {
-    let mut rows = Vec::with_capacity(failed.len());
-    let mut first = None;
-    for (row, error) in failed {
-        rows.push(row);
-        if let (None, RowError::Solver { .. }) = (&first, &error) {
-            first = Some(error);
-        }
-    }
-    match first {
-        Some(RowError::Solver { pressure, contraction, source }) => {
-            ModelError::NoEquilibrium { rows, pressure_pa: pressure, contraction, source: Box::new(source) }
-        }
-        _ => ModelError::NotFinite { rows, what: "look at the readings of these rows and at the parameters" },
     }
 }

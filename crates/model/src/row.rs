@@ -6,7 +6,8 @@ use bulge_fibre::Start;
 use bulge_numerics::{Dual, Real};
 
 use crate::answer::Carried;
-use crate::evaluate::{Pass, RowError, Run};
+use crate::evaluate::{Pass, Run};
+use crate::failure::RowError;
 use crate::lattice;
 use crate::model::Base;
 

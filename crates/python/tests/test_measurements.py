@@ -136,7 +136,6 @@ MISTAKES = {
     "few fields": ("pressure [bar],contraction [%],force [N]\n1,10\n", r"bad\.csv: 1 of 1 rows.*fewer fields than the header \(line 2\)"),
     "not finite": ("pressure [bar],contraction [%],force [N]\n1,1,1\n1,10,nan\n", r"bad\.csv: 1 of 2 rows.*`force \[N\]` is not a finite number \(line 3\)"),
     "empty": ("", r"bad\.csv: is empty: write a header"),
-    "absolute": ("pressure [bara],contraction [%],force [N]\n1.5,10,3\n", r"bad\.csv:1: column `pressure \[bara\]` is an absolute pressure.*subtract"),
 }
 
 

@@ -72,6 +72,7 @@ fn rich_data_have_all_plots_and_bare_data_those_that_there_are() {
         "error-by-specimen",
         "residual-map",
         "loops",
+        "isotonic",
         "contributions",
         "scatter",
         "parameters",

@@ -2,9 +2,9 @@
 
 use bulge_effects::law::Law;
 use bulge_effects::{Catalogue, Effect};
-use bulge_measurements::{Data, Sweep, SweepKind};
+use bulge_measurements::Data;
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
-use bulge_muscles::{Muscle, Parameter, Quantity};
+use bulge_muscles::{Muscle, Quantity};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -13,10 +13,10 @@ use crate::comparison::document::{DataSummary, LeftOut, Mismatch, NoiseFloor, Ru
 use crate::comparison::doubt::doubtful_sd;
 use crate::comparison::floor::noise_floor;
 use crate::comparison::levels::{Folds, Levels};
+use crate::comparison::loops::branches;
 use crate::comparison::mismatch::questions;
 use crate::comparison::requirements::{check_needs, check_size};
 use crate::comparison::rows::{Used, full_scale, lines, used};
-use crate::comparison::specimens::note;
 use crate::comparison::{loops, residuals};
 use crate::error::InferenceError;
 use crate::fit::carry_over::carry_over;
@@ -448,49 +448,6 @@ impl<'a> Analysis<'a> {
         }
     }
 
-    pub(crate) fn warnings(&self, ladder: &[Rung]) -> Vec<String> {
-        let mut warnings: Vec<String> =
-            self.findings.iter().map(ToString::to_string).chain(note(self.data, self.muscle)).collect();
-        let negative = ladder.first().filter(|rung| rung.r_squared < 0.0 && self.findings.is_empty());
-        if let Some(rung) = negative {
-            warnings.push(format!(
-                "the muscle as stated is farther from these forces ({:.1} N) than their mean is (R^2 below 0): check its length and radius, the zero of the contraction, \
-                 and the units of the data",
-                rung.rmse_n
-            ));
-        }
-        if self.folds.is_none() && self.options.held_out {
-            warnings.push(
-                "nothing could be held out: no three pressures, lengths, loads or sweeps were set apart, and no two specimens".to_owned(),
-            );
-        }
-        for rung in ladder {
-            let without = rung.without_state.as_ref();
-            warnings.extend(without.map(|w| without_state(rung.added.as_deref().unwrap_or("base"), w)));
-        }
-        let used = |p: Parameter| matches!(p, Parameter::Length | Parameter::Radius | Parameter::BraidAngle);
-        for (parameter, _) in self.muscle.widths().iter().filter(|(p, _)| !used(*p)) {
-            warnings.push(format!(
-                "the width stated for `{}` is not used: only those of length, radius and braid angle are",
-                parameter.key()
-            ));
-        }
-        let lowest = ladder.iter().filter_map(|rung| rung.held_out_rmse_n).fold(f64::INFINITY, f64::min);
-        if let Some((last, held_out)) = ladder.last().and_then(|rung| Some((rung, rung.held_out_rmse_n?)))
-            && held_out > 1.2 * lowest
-        {
-            warnings.push(format!(
-                "the last effect, `{}`, makes the error on unseen data larger ({held_out:.1} N instead of {lowest:.1} N): it follows these \
-                 rows, not the muscle",
-                last.added.as_deref().unwrap_or("")
-            ));
-        }
-        if let Some(fit) = ladder.last().and_then(|rung| rung.fit.as_ref()) {
-            warnings.extend(fit.warnings.iter().cloned());
-        }
-        warnings
-    }
-
     pub(crate) fn nothing_fitted(&self, theta: Vec<f64>, force: &Vec<f64>) -> Fit {
         let error = residuals::summary(self, force);
         Fit {
@@ -514,22 +471,4 @@ impl<'a> Analysis<'a> {
             warnings: Vec::new(),
         }
     }
-}
-
-/// What the two branches of a loop are called.
-pub(crate) fn branches(data: &Data) -> [&'static str; 2] {
-    let is_isometric = |sweep: &Sweep| sweep.kind == SweepKind::Isometric;
-    match (data.sweeps().iter().any(is_isometric), data.sweeps().iter().all(is_isometric)) {
-        (true, true) => ["filling", "venting"],
-        (true, false) => ["shortening or filling", "lengthening or venting"],
-        (false, _) => ["shortening", "lengthening"],
-    }
-}
-
-/// The sentence on rows of which a model says nothing.
-pub(crate) fn without_state(model: &str, left: &LeftOut) -> String {
-    let LeftOut { why, lines, rows } = left;
-    format!(
-        "`{model}`: {rows} rows have no state with its numbers (line {lines}) and are not in its error; of the first: {why}"
-    )
 }

@@ -5,9 +5,10 @@ use bulge_model::{Model, ModelError};
 use bulge_muscles::{Muscle, Quantity};
 use rayon::prelude::*;
 
-use crate::comparison::analysis::{Analysis, Climbed, Options, without_state};
+use crate::comparison::analysis::{Analysis, Climbed, Options};
 use crate::comparison::document::{Comparison, DataSummary, NoiseFloor};
 use crate::comparison::specimens::{note, of_specimens};
+use crate::comparison::warnings::without_state;
 use crate::comparison::{isotonic, loops, residuals, rivals, stack};
 use crate::error::InferenceError;
 use crate::fit::document::Fit;

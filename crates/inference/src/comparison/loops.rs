@@ -1,11 +1,23 @@
 //! Loops: half of the sum and half of the difference of the lengthening and the shortening branch.
 
+use bulge_measurements::{Data, Sweep, SweepKind};
+
 use crate::comparison::analysis::Analysis;
 use crate::comparison::document::LoopGap;
 use crate::comparison::residuals::{bin, contractions};
 
 /// Bins of contraction.
 const BINS: usize = 25;
+
+/// What the two branches of a loop are called.
+pub(crate) fn branches(data: &Data) -> [&'static str; 2] {
+    let is_isometric = |sweep: &Sweep| sweep.kind == SweepKind::Isometric;
+    match (data.sweeps().iter().any(is_isometric), data.sweeps().iter().all(is_isometric)) {
+        (true, true) => ["filling", "venting"],
+        (true, false) => ["shortening or filling", "lengthening or venting"],
+        (false, _) => ["shortening", "lengthening"],
+    }
+}
 
 /// Sums over one bin: rows, contraction, measured and two models, for shortening and lengthening.
 #[derive(Debug, Clone, Copy, Default)]

@@ -1,8 +1,9 @@
 //! Where the error lies: by each variable, on maps, along curves.
 
-use crate::comparison::analysis::{Analysis, branches};
+use crate::comparison::analysis::Analysis;
 use crate::comparison::document::{Bin, Breakdown, Curve, CurvePoint, ResidualMap};
 use crate::comparison::levels::sweep_of;
+use crate::comparison::loops::branches;
 
 /// Bins of a continuous variable.
 const BINS: usize = 10;

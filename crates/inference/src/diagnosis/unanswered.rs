@@ -3,8 +3,8 @@
 use bulge_measurements::Data;
 use bulge_muscles::{Muscle, Quantity};
 
-use crate::comparison::analysis::branches;
 use crate::comparison::document::{Comparison, DataSummary};
+use crate::comparison::loops::branches;
 use crate::comparison::rows::full_scale;
 use crate::diagnosis::document::{DiagnosedData, DiagnosedNoise, Diagnosis, Remaining, Verdict};
 use crate::diagnosis::write::source;

@@ -2,6 +2,7 @@
 
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::resolution::{Resolution, bounds};
+use crate::sweep::SweepKind;
 use std::ops::Range;
 
 /// Fewer equal rows in a row may be chance.
@@ -17,6 +18,8 @@ const MOVES: f64 = 10.0;
 const MOVES_PART: f64 = 0.02;
 /// A force below this share of the largest may be that of a slack muscle, which stays the same.
 const SLACK: f64 = 0.01;
+/// A force that stays in a larger part of the rows is how this test was made.
+const MOST: f64 = 0.2;
 
 /// Rows that repeat the one before: in all readings, and in the force alone.
 pub(super) struct Frozen {
@@ -44,10 +47,19 @@ pub(super) fn rows(gate: &Gate) -> Frozen {
         })
     };
     let repeats = runs(gate, longest_by_chance(gate), |row| force[row].to_bits());
+    // Under a weight the force is meant to stay.
+    let sweeps = gate.data.sweeps();
+    let is_weight = |row: usize| sweeps[gate.data.sweep_of(row)].kind == SweepKind::Isotonic;
     let is_alone = |rows: &Range<usize>| {
-        moves(rows) && force[rows.start].abs() > SLACK * gate.largest_force && !all.contains(rows)
+        !is_weight(rows.start)
+            && moves(rows)
+            && force[rows.start].abs() > SLACK * gate.largest_force
+            && !all.contains(rows)
     };
-    let alone: Vec<Range<usize>> = repeats.into_iter().filter(is_alone).collect();
+    let mut alone: Vec<Range<usize>> = repeats.into_iter().filter(is_alone).collect();
+    if (alone.iter().map(Range::len).sum::<usize>() as f64) > MOST * force.len() as f64 {
+        alone.clear();
+    }
     // The first row of a run is a reading.
     let repeated = |runs: &[Range<usize>]| runs.iter().flat_map(|run| run.start + 1..run.end).collect();
     Frozen { all: repeated(&all), force: repeated(&alone) }

@@ -1,0 +1,61 @@
+//! What a reader should know before trusting the numbers.
+
+use bulge_muscles::Parameter;
+
+use crate::comparison::analysis::Analysis;
+use crate::comparison::document::{LeftOut, Rung};
+use crate::comparison::specimens::note;
+
+impl Analysis<'_> {
+    /// The warnings, the most important first.
+    pub(crate) fn warnings(&self, ladder: &[Rung]) -> Vec<String> {
+        let mut warnings: Vec<String> =
+            self.findings.iter().map(ToString::to_string).chain(note(self.data, self.muscle)).collect();
+        let negative = ladder.first().filter(|rung| rung.r_squared < 0.0 && self.findings.is_empty());
+        if let Some(rung) = negative {
+            warnings.push(format!(
+                "the muscle as stated is farther from these forces ({:.1} N) than their mean is (R^2 below 0): check its length and radius, the zero of the contraction, \
+                 and the units of the data",
+                rung.rmse_n
+            ));
+        }
+        if self.folds.is_none() && self.options.held_out {
+            warnings.push(
+                "nothing could be held out: no three pressures, lengths, loads or sweeps were set apart, and no two specimens".to_owned(),
+            );
+        }
+        for rung in ladder {
+            let without = rung.without_state.as_ref();
+            warnings.extend(without.map(|w| without_state(rung.added.as_deref().unwrap_or("base"), w)));
+        }
+        let used = |p: Parameter| matches!(p, Parameter::Length | Parameter::Radius | Parameter::BraidAngle);
+        for (parameter, _) in self.muscle.widths().iter().filter(|(p, _)| !used(*p)) {
+            warnings.push(format!(
+                "the width stated for `{}` is not used: only those of length, radius and braid angle are",
+                parameter.key()
+            ));
+        }
+        let lowest = ladder.iter().filter_map(|rung| rung.held_out_rmse_n).fold(f64::INFINITY, f64::min);
+        if let Some((last, held_out)) = ladder.last().and_then(|rung| Some((rung, rung.held_out_rmse_n?)))
+            && held_out > 1.2 * lowest
+        {
+            warnings.push(format!(
+                "the last effect, `{}`, makes the error on unseen data larger ({held_out:.1} N instead of {lowest:.1} N): it follows these \
+                 rows, not the muscle",
+                last.added.as_deref().unwrap_or("")
+            ));
+        }
+        if let Some(fit) = ladder.last().and_then(|rung| rung.fit.as_ref()) {
+            warnings.extend(fit.warnings.iter().cloned());
+        }
+        warnings
+    }
+}
+
+/// The sentence on rows of which a model says nothing.
+pub(crate) fn without_state(model: &str, left: &LeftOut) -> String {
+    let LeftOut { why, lines, rows } = left;
+    format!(
+        "`{model}`: {rows} rows have no state with its numbers (line {lines}) and are not in its error; of the first: {why}"
+    )
+}

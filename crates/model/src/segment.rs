@@ -1,0 +1,63 @@
+//! Rows one after the other, with what is remembered along them.
+
+use bulge_effects::Jet;
+use bulge_fibre::Start;
+use std::ops::Range;
+
+use crate::evaluate::{Pass, Run};
+use crate::failure::RowError;
+use crate::prediction::Part;
+use crate::record::Record;
+
+/// What is asked of every segment.
+pub(crate) struct Task<'a> {
+    pub(crate) record: &'a Record,
+    pub(crate) passes: Vec<Pass>,
+    pub(crate) columns: usize,
+    pub(crate) counts: &'a (dyn Fn(usize) -> bool + Sync),
+}
+
+/// Fills the part of one segment; the rows that count and have no force, with the reason.
+pub(crate) fn segment(
+    runs: &[Run<'_>],
+    task: &Task<'_>,
+    rows: Range<usize>,
+    mut part: Part<'_>,
+    slots: &mut [Option<Start>],
+) -> Vec<(usize, RowError)> {
+    let mut failed = Vec::new();
+    // Rows that don't count matter only for what they leave in the memory to those that do.
+    let remembers = runs[0].remembers();
+    let Some(last) = rows.clone().rev().find(|row| (task.counts)(*row)) else { return failed };
+    let rows = rows.start..last + 1;
+    for (number, pass) in task.passes.iter().enumerate() {
+        let mut memory = runs[0].memory();
+        let mut before: Option<(usize, usize)> = None;
+        for (i, row) in rows.clone().enumerate() {
+            let (moment, counts) = (&task.record.moments()[row], (task.counts)(row));
+            let run = &runs[runs[0].model.body_of(moment.specimen)];
+            if moment.begins {
+                memory.iter_mut().flatten().for_each(|m| *m = Jet::from(0.0));
+            }
+            if !(counts || remembers) {
+                continue;
+            }
+            if slots[i].is_none() && run.walks() {
+                let same = before.filter(|(_, body)| *body == run.body);
+                slots[i] = same.and_then(|(before, _)| slots[before].clone());
+            }
+            before = Some((i, run.body));
+            match run.row(moment, pass, &mut memory, &mut slots[i]) {
+                Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
+                Err(error) if counts && number == 0 => {
+                    failed.push((row, error));
+                    if run.all_or_none {
+                        return failed;
+                    }
+                }
+                Ok(_) | Err(_) => {}
+            }
+        }
+    }
+    failed
+}
