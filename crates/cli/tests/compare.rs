@@ -307,3 +307,29 @@ fn a_curve_is_data() {
         "{columns:?}"
     );
 }
+
+/// Simulated tests as laboratories write them (`validation/real-tests/cases`): every file is read as it is, and compared.
+#[test]
+fn files_of_real_tests_are_answered_as_they_are() {
+    let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/real-tests/cases");
+    let mut kinds = Vec::new();
+    for case in std::fs::read_dir(cases).unwrap() {
+        let case = case.unwrap().path();
+        let words = std::fs::read_to_string(case.join("args")).unwrap();
+        let place = |word: &str| {
+            let is_file = word.starts_with("data.") || word == "muscle.toml";
+            if is_file { case.join(word).display().to_string() } else { word.to_owned() }
+        };
+        let words: Vec<String> = words.lines().map(place).collect();
+        let arguments: Vec<&str> =
+            ["compare", "--json"].into_iter().chain(words.iter().map(String::as_str)).collect();
+        let found = json(&arguments);
+        let base = &found["ladder"][0];
+        // A muscle with friction is off by some per cent of full scale; one that was misread by far more.
+        assert!(base["rmse_percent"].as_f64().unwrap() < 8.0, "{}: {base}", case.display());
+        kinds.extend(found["data"]["sweep_kinds"].as_array().unwrap().iter().cloned());
+    }
+    for kind in ["isometric", "isotonic", "loop"] {
+        assert!(kinds.iter().any(|found| found == kind), "{kind}");
+    }
+}

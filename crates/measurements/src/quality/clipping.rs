@@ -4,8 +4,9 @@ use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
 use crate::resolution::{Resolution, bounds};
 use std::ops::Range;
 
-/// Equal readings in a row that are no chance.
+/// Equal readings that are no chance: in a row, or in several runs of at least two where a test has few rows at each top.
 const RUN: usize = 5;
+const SHORT: usize = 2;
 /// How far the force should have moved, in what it resolves, to be called stuck.
 const FORCE_STEPS: f64 = 10.0;
 /// How far the force has to move, as a share of its range in the sweep, while motion or pressure are stuck and the other keeps still to this share.
@@ -79,22 +80,25 @@ fn in_column(
     is_stuck: &dyn Fn(&Range<usize>, &Range<usize>) -> bool,
 ) -> Vec<usize> {
     let (low, high) = bounds(values);
-    let mut ends = Vec::new();
+    // Rows of stuck runs at the lowest and the highest value.
+    let mut stuck = [0_usize; 2];
     for (sweep, _) in gate.data.paths() {
         let mut start = sweep.rows.start;
         for equal in values[sweep.rows.clone()].chunk_by(|a, b| a == b) {
             let run = start..start + equal.len();
             start = run.end;
             let is_extreme = equal[0] == low || equal[0] == high;
-            if equal.len() >= RUN
+            if equal.len() >= SHORT
                 && equal.len() < sweep.rows.len()
                 && is_extreme
                 && is_stuck(&sweep.rows, &run)
             {
-                ends.push(equal[0]);
+                stuck[usize::from(equal[0] == high)] += equal.len();
             }
         }
     }
+    let is_end = |(end, rows): (f64, usize)| (rows >= RUN).then_some(end);
+    let ends: Vec<f64> = [low, high].into_iter().zip(stuck).filter_map(is_end).collect();
     // Where the range ends for some rows it ends for all.
     let at_end = |row: &usize| ends.contains(&values[*row]);
     gate.data.paths().flat_map(|(sweep, _)| sweep.rows.clone()).filter(at_end).collect()

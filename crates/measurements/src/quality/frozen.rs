@@ -11,6 +11,8 @@ const RUN: usize = 8;
 const STEPS: f64 = 2.0;
 /// Noise below this share of the range is that of the arithmetic: nothing was measured.
 const LEAST: f64 = 1e-7;
+/// The same of the force alone, while the rest moves on.
+const RUN_ALONE: usize = 4;
 /// Chance that a run of equal forces comes about in a file of these rows.
 const CHANCE: f64 = 1e-6;
 /// A pressure or a motion moves on if it spans more of its standard deviations, steps of the sensor, and a larger part of its range.
@@ -88,7 +90,7 @@ fn longest_by_chance(gate: &Gate) -> usize {
     let force = gate.data.force();
     let short: usize = runs(gate, 2, |row| force[row].to_bits())
         .iter()
-        .filter(|run| run.len() < RUN)
+        .filter(|run| run.len() < RUN_ALONE)
         .map(|run| run.len() - 1)
         .sum();
     let rows = force.len().max(1) as f64;
@@ -100,7 +102,7 @@ fn longest_by_chance(gate: &Gate) -> usize {
         reason = "positive, at most some 10^4"
     )]
     let length = length.ceil().clamp(0.0, 1e6) as usize;
-    length.max(RUN)
+    length.max(RUN_ALONE)
 }
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {

@@ -209,6 +209,23 @@ fn a_length_and_a_pressure_that_are_clipped() {
 }
 
 #[test]
+fn tops_of_few_rows_are_clipped_together() {
+    // Triangles of pressure at one length, 8 rows each way; the amplifier ends at 560 N, where each top has two or three rows.
+    let mut noise = Noise::new(7);
+    let bar = |i: usize| 1.0 + 0.6 * (if i % 16 < 8 { i % 16 } else { 16 - i % 16 }) as f64;
+    let rows = 160;
+    let force: Vec<f64> = (0..rows).map(|i| (108.0 * bar(i) + 0.5 * noise.normal()).min(560.0)).collect();
+    let over: Vec<usize> = (0..rows).filter(|row| force[*row] >= 560.0).map(|row| row + 1).collect();
+    let pressure = (0..rows).map(|i| 1e5 * bar(i) + 100.0 * noise.normal()).collect();
+    let length = (0..rows).map(|_| 0.1 + 1e-5 * noise.normal()).collect();
+    let mut columns = Columns::new(pressure, Trace::Contraction(length), force.clone());
+    columns.time_s = Some((0..rows).map(|row| row as f64).collect());
+    assert_eq!(lines(&quality(columns.clone()), FindingKind::Clipped), over);
+    columns.force_n = (0..rows).map(|i| 108.0 * bar(i) + 0.5 * noise.normal()).collect();
+    assert_eq!(quality(columns).of(FindingKind::Clipped).count(), 0);
+}
+
+#[test]
 fn a_recording_that_stands_still() {
     let rows: Vec<usize> = (301..340).collect();
     plants(FindingKind::Frozen, &rows, |columns| {
@@ -218,6 +235,7 @@ fn a_recording_that_stands_still() {
     });
     // A load cell that stood still while the muscle moved on.
     plants(FindingKind::Frozen, &rows, |columns| columns.force_n[300..340].fill(333.3));
+    plants(FindingKind::Frozen, &rows[..7], |columns| columns.force_n[300..308].fill(333.3));
     // One that shows full newtons, at the turning points of a slow loop, doesn't.
     let mut columns = clean_loops(1, 1);
     columns.force_n.iter_mut().for_each(|force| *force = (*force / 5.0).round() * 5.0);
