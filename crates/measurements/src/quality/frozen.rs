@@ -1,7 +1,8 @@
 //! A recording that stood still: rows in a row with the same pressure, motion and force, although the readings are noisy; or a force that did, while the others moved on.
 
+use super::clipping::expected;
 use super::{Finding, FindingKind, Gate, Severity, rows_in_words};
-use crate::resolution::{Resolution, bounds};
+use crate::resolution::Resolution;
 use crate::sweep::SweepKind;
 use std::ops::Range;
 
@@ -15,9 +16,9 @@ const LEAST: f64 = 1e-7;
 const RUN_ALONE: usize = 4;
 /// Chance that a run of equal forces comes about in a file of these rows.
 const CHANCE: f64 = 1e-6;
-/// A pressure or a motion moves on if it spans more of its standard deviations, steps of the sensor, and a larger part of its range.
+/// How far the force should have moved, in what it resolves: its noise, its steps, and this share of its range.
 const MOVES: f64 = 10.0;
-const MOVES_PART: f64 = 0.02;
+const LEAST_SEEN: f64 = 1e-3;
 /// A force below this share of the largest may be that of a slack muscle, which stays the same.
 const SLACK: f64 = 0.01;
 /// A force that stays in a larger part of the rows is how this test was made.
@@ -41,13 +42,9 @@ pub(super) fn rows(gate: &Gate) -> Frozen {
     } else {
         Vec::new()
     };
-    let moves = |rows: &Range<usize>| {
-        [(pressure, resolutions[0]), (motion, resolutions[1])].into_iter().any(|(values, resolution)| {
-            let (low, high) = bounds(&values[rows.clone()]);
-            let least = MOVES * resolution.noise.max(resolution.step);
-            high - low > least.max(MOVES_PART * resolution.range)
-        })
-    };
+    // The force should have changed by more than it resolves.
+    let seen = (3.0 * gate.force.noise).max(gate.force.step).max(LEAST_SEEN * gate.force.range);
+    let moves = |rows: &Range<usize>| expected(gate, rows) > MOVES * seen;
     let repeats = runs(gate, longest_by_chance(gate), |row| force[row].to_bits());
     // Under a weight the force is meant to stay.
     let sweeps = gate.data.sweeps();
@@ -90,7 +87,7 @@ fn longest_by_chance(gate: &Gate) -> usize {
     let force = gate.data.force();
     let short: usize = runs(gate, 2, |row| force[row].to_bits())
         .iter()
-        .filter(|run| run.len() < RUN_ALONE)
+        .filter(|run| run.len() < RUN)
         .map(|run| run.len() - 1)
         .sum();
     let rows = force.len().max(1) as f64;
