@@ -252,7 +252,7 @@ fn under_a_held_load_the_error_is_told_in_contraction() {
     assert!((held.load_n - 300.0).abs() < 1e-9 && held.points.len() == 80);
     // The error is the force's over its slope: exact but for the bend of the characteristic over 0.4 %.
     let [first, last] = held.rmse_contraction;
-    assert!((first - 0.004).abs() < 5e-5 && last < 1e-5, "{first} {last}");
-    assert!(held.points.iter().all(|p| (p.first - p.contraction - 0.004).abs() < 5e-5));
+    assert!((first - 0.004).abs() < 2e-5 && last < 1e-5, "{first} {last}");
+    assert!(held.points.iter().all(|p| (p.first - p.contraction - 0.004).abs() < 3e-5));
     assert_eq!(found.data.branches, ["shortening", "lengthening"]);
 }

@@ -335,3 +335,37 @@ fn strands_turn_with_the_pressure_where_fibres_or_bladder_give() {
     // Rigid fibres without a bladder: the shape doesn't depend on the pressure.
     assert!(turned(&muscle, &[stiff], [1e5, 6e5], 0.1, 10).abs() < 1e-6);
 }
+
+#[test]
+fn rows_beyond_the_limit_have_no_state_with_a_lattice_or_without() {
+    // A stiff bladder at low pressure: equilibria end within the range of contraction, at each pressure elsewhere.
+    let muscle = braid();
+    let model = model(&muscle, &["bladder-elasticity"]);
+    let theta = [6e5];
+    let contractions: Vec<f64> = (0..60).map(|i| 0.004 * f64::from(i)).collect();
+    let pressures: Vec<f64> = (0..12).map(|i| 4e4 * 1.12_f64.powi(i)).collect();
+    let record = map(&pressures, &contractions);
+    let states = |rows: &[bool]| {
+        let found = model.evaluate_partly(&record, &theta, &Wanted::default(), &Warm::of_rows(rows)).unwrap();
+        (found.prediction.force, found.without_state)
+    };
+    let (together, without) = states(&vec![true; record.len()]);
+    assert!(without.len() > 50 && without.len() < record.len() - 50, "{}", without.len());
+    let mut differ = 0;
+    for row in (0..record.len()).step_by(7) {
+        let mut only = vec![false; record.len()];
+        only[row] = true;
+        let (alone, none) = states(&only);
+        differ += usize::from(none.is_empty() == without.contains(&row));
+        if none.is_empty() && together[row].is_finite() {
+            let full = 4e4_f64.mul_add(0.02 * 0.02, alone[row].abs());
+            assert!(
+                (together[row] - alone[row]).abs() < 1e-3 * full,
+                "{row}: {} {}",
+                together[row],
+                alone[row]
+            );
+        }
+    }
+    assert_eq!(differ, 0);
+}

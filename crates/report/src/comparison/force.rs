@@ -11,7 +11,6 @@ use crate::comparison::panel::{BELOW, Panel, columns};
 use crate::comparison::svg::{BOLD, Stroke, Svg, name_fitted};
 use crate::comparison::wording::{has_effects, named, pulls, sentence};
 use crate::comparison::{Plot, WIDTH};
-use crate::palette::{INK, SOFT_INK};
 
 /// Pressure levels in one panel.
 const LEVELS: usize = 8;
@@ -81,11 +80,7 @@ fn axis(quantity: &'static str, values: impl Iterator<Item = f64> + Clone) -> Re
 }
 
 fn entries(shown: &Shown, has_effects: bool) -> Vec<(Mark, String)> {
-    let mut entries = vec![(Mark::Dot(SOFT_INK), "measured".to_owned())];
-    entries.push((Mark::Line(Stroke::dashed(INK, 1.0)), "base alone".to_owned()));
-    if has_effects {
-        entries.push((Mark::Line(Stroke::solid(INK, 2.0)), "with all effects".to_owned()));
-    }
+    let mut entries = legend::models(has_effects);
     entries.extend(shown.named().into_iter().map(|(colour, name)| (Mark::Box(colour), name)));
     entries
 }

@@ -11,7 +11,7 @@ use crate::comparison::panel::{BELOW, Panel, columns};
 use crate::comparison::svg::{Stroke, Svg};
 use crate::comparison::wording::{has_effects, last_model};
 use crate::comparison::{Plot, WIDTH};
-use crate::palette::{self, INK, SOFT_INK};
+use crate::palette;
 
 /// Loads that are drawn.
 const LOADS: usize = 6;
@@ -35,13 +35,7 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let up = || points().flat_map(|p| [p.contraction, p.first, p.last]).map(|c| 100.0 * c);
     let x = Axis::around(across()).ok_or_else(|| PlotError::span("pressure [bar]", across()))?;
     let y = Axis::around(up()).ok_or_else(|| PlotError::span("contraction [%]", up()))?;
-    let mut entries = vec![
-        (Mark::Dot(SOFT_INK), "measured".to_owned()),
-        (Mark::Line(Stroke::dashed(INK, 1.0)), "base alone".to_owned()),
-    ];
-    if has_effects(comparison) {
-        entries.push((Mark::Line(Stroke::solid(INK, 2.0)), "with all effects".to_owned()));
-    }
+    let mut entries = legend::models(has_effects(comparison));
     let colour = |place: usize| palette::colour(place, shown.len());
     entries
         .extend(shown.iter().enumerate().rev().map(|(i, held)| (Mark::Box(colour(i)), newton(held.load_n))));

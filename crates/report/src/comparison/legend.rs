@@ -3,6 +3,7 @@
 use plotters::style::RGBColor;
 
 use crate::comparison::svg::{Anchor, Stroke, Style, Svg, TEXT, width};
+use crate::palette::{INK, SOFT_INK};
 
 /// What stands before the words.
 #[derive(Debug, Clone, Copy)]
@@ -15,6 +16,18 @@ pub(crate) enum Mark {
     Diamond(RGBColor),
     /// A filled rectangle.
     Box(RGBColor),
+}
+
+/// Readings, the base, and the last model if there are effects: what curves of a comparison are drawn with.
+pub(crate) fn models(has_effects: bool) -> Vec<(Mark, String)> {
+    let mut entries = vec![
+        (Mark::Dot(SOFT_INK), "measured".to_owned()),
+        (Mark::Line(Stroke::dashed(INK, 1.0)), "base alone".to_owned()),
+    ];
+    if has_effects {
+        entries.push((Mark::Line(Stroke::solid(INK, 2.0)), "with all effects".to_owned()));
+    }
+    entries
 }
 
 /// Height of a row.
@@ -60,7 +73,6 @@ pub(crate) fn draw(svg: &mut Svg, (left, top): (f64, f64), room: f64, entries: &
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::palette::INK;
 
     #[test]
     fn entries_that_do_not_fit_go_to_the_next_row() {

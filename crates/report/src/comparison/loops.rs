@@ -12,7 +12,6 @@ use crate::comparison::panel::{BELOW, Panel, columns};
 use crate::comparison::svg::{BOLD, Stroke, Svg, name_fitted};
 use crate::comparison::wording::has_effects;
 use crate::comparison::{Plot, WIDTH};
-use crate::palette::{INK, SOFT_INK};
 
 /// Pressure levels that are drawn.
 const LEVELS: usize = 6;
@@ -101,11 +100,7 @@ fn axes(loops: &[&LoopGap], kind: usize) -> Result<(Axis, Axis), PlotError> {
 }
 
 fn entries(shown: &Shown, has_effects: bool) -> Vec<(Mark, String)> {
-    let mut entries = vec![(Mark::Dot(SOFT_INK), "measured".to_owned())];
-    entries.push((Mark::Line(Stroke::dashed(INK, 1.0)), "base alone".to_owned()));
-    if has_effects {
-        entries.push((Mark::Line(Stroke::solid(INK, 2.0)), "with all effects".to_owned()));
-    }
+    let mut entries = legend::models(has_effects);
     entries.extend(shown.named().into_iter().map(|(colour, name)| (Mark::Box(colour), name)));
     entries
 }

@@ -1,0 +1,216 @@
+//! Readings that are none of the muscle's: coarse, clipped, frozen, spikes.
+
+use super::*;
+
+/// Readings on a grid.
+fn on_grid(values: &mut [f64], step: f64) {
+    for value in values {
+        *value = (*value / step).round() * step;
+    }
+}
+
+#[test]
+fn coarse_sensors() {
+    type Column = fn(&mut Columns) -> &mut Vec<f64>;
+    let sensors: [(&str, Column, f64, f64); 3] = [
+        ("force", |columns| &mut columns.force_n, 1.0, 20.0),
+        ("contraction", motion, 5e-4, 5e-3),
+        ("pressure", |columns| &mut columns.pressure_pa, 500.0, 5000.0),
+    ];
+    for (name, column, fine, rough) in sensors {
+        for (step, severity) in [(fine, Severity::Note), (rough, Severity::Warning)] {
+            let mut columns = clean_loops(2, 1);
+            // A regulator that hunts.
+            for (row, pressure) in columns.pressure_pa.iter_mut().enumerate() {
+                *pressure += 1e4 * (0.05 * row as f64).sin();
+            }
+            on_grid(column(&mut columns), step);
+            let (low, high) = crate::resolution::bounds(column(&mut columns));
+            let says = has(&quality(columns), FindingKind::Quantised, severity);
+            let levels = format!("{} levels", ((high - low) / step).round() + 1.0);
+            assert!(
+                says.contains(name)
+                    && says.contains(&levels)
+                    && says.contains(&super::quantisation::four(step)),
+                "{says}"
+            );
+        }
+    }
+    // What is held is judged by its size: 300 N in steps of 1 N are 308 levels, whatever the noise.
+    let mut held = clean_loops(2, 1);
+    let mut noise = Noise::new(4);
+    held.force_n = held.force_n.iter().map(|_| (300.0 + 2.0 * noise.normal()).round()).collect();
+    let largest = crate::resolution::bounds(&held.force_n).1;
+    let says = has(&quality(held), FindingKind::Quantised, Severity::Note);
+    assert!(says.contains(&format!("{} levels up to", largest + 1.0)), "{says}");
+    // Set points aren't readings.
+    let mut columns = clean_loops(2, 1);
+    on_grid(&mut columns.pressure_pa, 1e5);
+    assert_eq!(quality(columns).findings, []);
+}
+
+#[test]
+fn a_force_that_is_clipped() {
+    let limit = 500.0;
+    let columns = clean_loops(2, 1);
+    let over: Vec<usize> = (0..columns.force_n.len()).filter(|row| columns.force_n[*row] > limit).collect();
+    let mut clipped = columns;
+    clipped.force_n.iter_mut().for_each(|f| *f = f.min(limit));
+    let found = lines(&quality(clipped), FindingKind::Clipped);
+    assert!(found.iter().all(|line| over.contains(&(line - 1))), "rows that were not clipped");
+    assert!(found.len() + 10 > over.len() && over.len() > 100, "{} of {}", found.len(), over.len());
+}
+
+#[test]
+fn a_length_and_a_pressure_that_are_clipped() {
+    let columns = clean_loops(2, 1);
+    let over: Vec<usize> = (0..SWEEP).filter(|row| columns.motion.values()[*row] > 0.18).collect();
+    let mut clipped = columns;
+    for c in motion(&mut clipped) {
+        *c = c.min(0.18);
+    }
+    let found = lines(&quality(clipped), FindingKind::Clipped);
+    let of_first: Vec<usize> = found.iter().map(|line| line - 1).filter(|row| *row < SWEEP).collect();
+    assert_eq!(of_first, over);
+
+    // A pressure ramp at fixed length.
+    let mut noise = Noise::new(2);
+    let p: Vec<f64> = (0..400).map(|i| 1e3 * f64::from(i) + 30.0 * noise.normal()).collect();
+    let f: Vec<f64> = p.iter().map(|p| force(*p, 0.1, 0.0) + 0.5 * noise.normal()).collect();
+    let c = (0..400).map(|_| 0.1 + 1e-6 * noise.normal()).collect();
+    let mut columns = Columns::new(p.iter().map(|p| p.min(3e5)).collect(), Trace::Contraction(c), f);
+    columns.time_s = Some((0..400).map(f64::from).collect());
+    let over: Vec<usize> = (0..400).filter(|row| p[*row] > 3e5).map(|row| row + 1).collect();
+    let found = lines(&quality(columns), FindingKind::Clipped);
+    assert!(found.len() + 2 > over.len() && found.iter().all(|line| over.contains(line)), "{found:?}");
+}
+
+#[test]
+fn tops_of_few_rows_are_clipped_together() {
+    // Triangles of pressure at one length, 8 rows each way; the amplifier ends at 560 N, where each top has two or three rows.
+    let mut noise = Noise::new(7);
+    let bar = |i: usize| 1.0 + 0.6 * (if i % 16 < 8 { i % 16 } else { 16 - i % 16 }) as f64;
+    let rows = 160;
+    let force: Vec<f64> = (0..rows).map(|i| (108.0 * bar(i) + 0.5 * noise.normal()).min(560.0)).collect();
+    let over: Vec<usize> = (0..rows).filter(|row| force[*row] >= 560.0).map(|row| row + 1).collect();
+    let pressure = (0..rows).map(|i| 1e5 * bar(i) + 100.0 * noise.normal()).collect();
+    let length = (0..rows).map(|_| 0.1 + 1e-5 * noise.normal()).collect();
+    let mut columns = Columns::new(pressure, Trace::Contraction(length), force.clone());
+    columns.time_s = Some((0..rows).map(|row| row as f64).collect());
+    assert_eq!(lines(&quality(columns.clone()), FindingKind::Clipped), over);
+    columns.force_n = (0..rows).map(|i| 108.0 * bar(i) + 0.5 * noise.normal()).collect();
+    assert_eq!(quality(columns).of(FindingKind::Clipped).count(), 0);
+}
+
+#[test]
+fn a_recording_that_stands_still() {
+    let rows: Vec<usize> = (301..340).collect();
+    plants(FindingKind::Frozen, &rows, |columns| {
+        columns.force_n[300..340].fill(333.3);
+        columns.pressure_pa[300..340].fill(100_010.0);
+        motion(columns)[300..340].fill(0.1765);
+    });
+    // A load cell that stood still while the muscle moved on.
+    plants(FindingKind::Frozen, &rows, |columns| columns.force_n[300..340].fill(333.3));
+    plants(FindingKind::Frozen, &rows[..7], |columns| columns.force_n[300..308].fill(333.3));
+    // One that shows full newtons, at the turning points of a slow loop, doesn't.
+    let mut columns = clean_loops(1, 1);
+    columns.force_n.iter_mut().for_each(|force| *force = (*force / 5.0).round() * 5.0);
+    assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0);
+    // At rest, readings without noise are equal.
+    let mut columns = clean_loops(1, 1);
+    let rows = columns.force_n.len();
+    columns.force_n = (0..rows).map(|row| 300.0 - ((row / 50) as f64)).collect();
+    columns.pressure_pa.fill(2e5);
+    *motion(&mut columns) = (0..rows).map(|row| 0.02 + 0.005 * ((row / 50) as f64)).collect();
+    assert_eq!(quality(columns).of(FindingKind::Frozen).count(), 0);
+}
+
+#[test]
+fn spikes_in_each_column() {
+    plants(FindingKind::Spike, &[150], |columns| columns.force_n[150] += 40.0);
+    plants(FindingKind::Spike, &[150, 151, 900, 901, 902], |columns| {
+        columns.force_n[150..152].iter_mut().for_each(|f| *f -= 30.0);
+        columns.force_n[900..903].iter_mut().for_each(|f| *f += 30.0);
+    });
+    plants(FindingKind::Spike, &[250], |columns| columns.pressure_pa[250] += 2e4);
+    plants(FindingKind::Spike, &[350], |columns| motion(columns)[350] += 0.02);
+}
+
+/// Triangles with Coulomb's friction of this size, so many rows for each of three pressures.
+fn friction_loops(rows: usize, friction: f64, noise_n: f64, seed: u64) -> Columns {
+    let mut noise = Noise::new(seed);
+    let (mut p, mut c, mut f) = (Vec::new(), Vec::new(), Vec::new());
+    for i in 0..3 * rows {
+        let part = (i % rows) as f64 / rows as f64 * 4.0;
+        let (up, way) = (part % 2.0 <= 1.0, 1.0 - (part % 2.0 - 1.0).abs());
+        p.push(1e5 * (1 + i / rows) as f64 + 30.0 * noise.normal());
+        c.push(0.02 + 0.2 * way + 1e-5 * noise.normal());
+        let sign = if up { 1.0 } else { -1.0 };
+        f.push(force(p[i], c[i], 0.0) - friction * sign + noise_n * noise.normal());
+    }
+    let mut columns = Columns::new(p, Trace::Contraction(c), f);
+    columns.time_s = Some((0..3 * rows).map(|i| 0.05 * i as f64).collect());
+    columns
+}
+
+#[test]
+fn clean_rows_are_no_spikes() {
+    let (mut rows, mut called) = (0, 0);
+    for seed in 0..20 {
+        for (size, friction, noise_n) in
+            [(40, 20.0, 1.0), (100, 0.0, 0.5), (400, 30.0, 0.2), (2000, 12.0, 2.0)]
+        {
+            let data = Data::from_columns(friction_loops(size, friction, noise_n, seed)).unwrap();
+            rows += data.len();
+            called += data.spikes(data.force()).len();
+        }
+        let loops = Data::from_columns(clean_loops(2, seed)).unwrap();
+        rows += loops.len();
+        called += loops.spikes(loops.force()).len();
+    }
+    assert!(1000 * called < rows, "{called} of {rows}");
+}
+
+#[test]
+fn spikes_of_20_sigma_in_two_per_cent_of_the_rows() {
+    let (mut planted, mut found, mut wrong) = (0, 0, 0);
+    for seed in 0..10 {
+        let mut columns = friction_loops(400, 6.0, 0.5, seed);
+        let mut noise = Noise::new(100 + seed);
+        let mut spiked = std::collections::BTreeSet::new();
+        while spiked.len() < 24 {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a row")]
+            let row = (noise.uniform() * 1200.0) as usize;
+            if spiked.insert(row) {
+                columns.force_n[row] += if noise.normal() > 0.0 { 10.0 } else { -10.0 };
+            }
+        }
+        let data = Data::from_columns(columns).unwrap();
+        // As a model sees them: what it leaves along the path.
+        let left: Vec<f64> = (0..1200)
+            .map(|row| data.force()[row] - force(data.pressure()[row], data.contraction(1.0)[row], 0.0))
+            .collect();
+        let rows = data.spikes(&left);
+        planted += 24;
+        found += rows.iter().filter(|row| spiked.contains(row)).count();
+        wrong += rows.iter().filter(|row| !spiked.contains(row)).count();
+    }
+    assert!(found * 10 > planted * 8 && wrong * 50 < planted, "{found} of {planted}, {wrong} wrong");
+}
+
+#[test]
+fn heavy_tails_are_hardly_spikes() {
+    let mut called = 0;
+    for seed in 0..10 {
+        let mut columns = friction_loops(400, 6.0, 0.0, seed);
+        let mut noise = Noise::new(200 + seed);
+        for value in &mut columns.force_n {
+            let chi: f64 = (0..3).map(|_| noise.normal().powi(2)).sum();
+            *value += 0.5 * noise.normal() / (chi / 3.0).sqrt();
+        }
+        called += Data::from_columns(columns).map(|data| data.spikes(data.force()).len()).unwrap();
+    }
+    // Student's t with 3 degrees of freedom is beyond 11 in one of 600 rows.
+    assert!(called < 60, "{called} of 12000");
+}
