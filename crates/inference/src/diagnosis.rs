@@ -8,6 +8,7 @@ pub(crate) mod confidence;
 pub(crate) mod confirm;
 pub(crate) mod diagnose;
 pub(crate) mod document;
+mod either;
 pub(crate) mod explained;
 pub(crate) mod ground;
 pub(crate) mod hints;

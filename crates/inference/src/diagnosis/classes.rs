@@ -140,6 +140,17 @@ impl Given<'_> {
         Some((Class { effect, log_evidence, detectability, scatter, is_further, rivals }, made))
     }
 
+    /// A stage without an effect that is no longer worth its price beside those which came after it (backward elimination).
+    pub(crate) fn dropped(&self, base: &Model, stage: &Stage, place: usize, class: &Class) -> Option<Stage> {
+        if stage.added.len() == 1 || class.log_evidence > WORTH[1] {
+            return None;
+        }
+        let others = stage.without(place);
+        let fitted = self.refitted(base, stage, &others).ok()?;
+        let other = self.stage(others, fitted).ok()?;
+        (other.adequate || !stage.adequate).then_some(other)
+    }
+
     /// A stage with the best rival instead of an effect, where that is clearly better and explains the data no less.
     pub(crate) fn swapped(&self, stage: &Stage, place: usize, class: &Class) -> Option<Stage> {
         let converged = |rival: &&Rival| rival.fit.as_ref().is_some_and(|fit| fit.converged);
@@ -151,10 +162,12 @@ impl Given<'_> {
         let mut added = stage.added.clone();
         added.remove(place);
         added.push(Arc::clone(&rival.effect));
-        if rival.fit.as_ref()?.is_absurd(&[Arc::clone(&rival.effect)]) {
+        let fit = rival.fit.as_ref()?;
+        let new = [Arc::clone(&rival.effect)];
+        if fit.is_absurd(&new) || fit.is_idle(&new) {
             return None;
         }
-        let other = self.stage(added, rival.fit.clone()?).ok()?;
+        let other = self.stage(added, fit.clone()).ok()?;
         (other.adequate || !stage.adequate).then_some(other)
     }
 

@@ -6,7 +6,7 @@
 
 use bulge_effects::Effect;
 use bulge_model::{Model, ModelError};
-use bulge_numerics::least_squares::{Bounds, Minimum, Options};
+use bulge_numerics::least_squares::{Bounds, Minimum, Options, Reason};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use crate::diagnosis::showing::{Showing, Sign, Size, sizes};
 use crate::fit::carry_over::carry_over;
 use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::{FitProblem, free};
-use crate::fit::settle::{cost, settled};
+use crate::fit::settle::{NEAR, cost, settled};
 use crate::fit::states::{is_of_rows, of_start, settled_where_possible};
 
 /// Tolerance of the fits, as a part of what the residuals are.
@@ -53,6 +53,19 @@ impl Confirmed {
             let is_of = effects.iter().any(|effect| effect.card().name == p.effect);
             is_of && at_bound.is_some() && !(p.plausible.0..=p.plausible.1).contains(&value)
         })
+    }
+
+    /// Whether all sizes of these effects are off: their model is the one without them.
+    pub(crate) fn is_idle(&self, effects: &[Arc<dyn Effect>]) -> bool {
+        let model = &self.prepared.model;
+        let roles = roles(model);
+        let mut sizes = (0..self.theta.len())
+            .filter_map(|i| {
+                let is_of = |effect: &Arc<dyn Effect>| effect.card().name == model.parameters()[i].effect;
+                roles[i].filter(|_| effects.iter().any(is_of)).map(|size| (i, size))
+            })
+            .peekable();
+        sizes.peek().is_some() && sizes.all(|(i, size)| self.theta[i] == size.off)
     }
 
     /// The sum of squares of whitened residuals and priors.
@@ -93,7 +106,18 @@ impl Given<'_> {
         if thetas.is_empty() {
             thetas.push(first);
         }
-        self.best(prepared, &thetas)
+        let numbers = prepared.model.parameters();
+        for theta in &mut thetas {
+            theta.iter_mut().zip(numbers).for_each(|(value, p)| *value = value.clamp(p.low, p.high));
+        }
+        // Where bounds have made them one, one is enough.
+        let mut different: Vec<Vec<f64>> = Vec::new();
+        for theta in thetas {
+            if !different.contains(&theta) {
+                different.push(theta);
+            }
+        }
+        self.best(prepared, &different)
     }
 
     /// Numbers at which more rows may have a state than at a start: the minimum over those that have one there. All rows must have one in the end: a model
@@ -163,6 +187,7 @@ impl Given<'_> {
                     check_curvature: false,
                     tolerance: TOLERANCE,
                     max_evaluations: EVALUATIONS,
+                    least_decrease: NEAR,
                     ..Options::default()
                 };
                 let from = |inside: &[f64]| settled(&problem, inside, &bounds, &options).map_err(of_start);
@@ -195,7 +220,9 @@ impl Given<'_> {
             return Err(first_error.unwrap_or(ModelError::Values { given: 0, expected: 1 }));
         };
         let log_evidence = log_evidence(&prepared, &theta, &minimum);
-        Ok(Confirmed { converged: minimum.certificate.converged, prepared, theta, minimum, log_evidence })
+        // At a kink as at a stationary point: lower by what counts it doesn't get.
+        let converged = minimum.certificate.converged || minimum.certificate.reason == Reason::Kink;
+        Ok(Confirmed { converged, prepared, theta, minimum, log_evidence })
     }
 }
 

@@ -13,6 +13,7 @@ use crate::comparison::specimens::of_specimens;
 use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
 use crate::diagnosis::document::Diagnosis;
+use crate::diagnosis::either::{is_chance, noise_of_base};
 use crate::diagnosis::ground::{Ground, Stop, effective_rows, ground, ground_again, row_sd};
 use crate::diagnosis::next::{Judged, Limits, NextLimits, next_experiment};
 use crate::diagnosis::scene::Given;
@@ -20,13 +21,14 @@ use crate::diagnosis::search::{Search, Stage};
 use crate::diagnosis::unanswered::{cannot_tell, unanswered};
 use crate::diagnosis::write::{Findings, document};
 use crate::error::InferenceError;
+use crate::noise::whitening::Whitening;
 use crate::progress::Progress;
 
 /// Times that rows without a state are left out.
 const MOST_LEFT_OUT: usize = 8;
 
-/// Times that an accepted effect gives way to a better one.
-const MOST_SWAPS: usize = 3;
+/// Times that an accepted effect gives way to a better one, or to none.
+const MOST_CHANGES: usize = 3;
 
 /// What is diagnosed, besides muscle and data.
 #[derive(Debug, Clone)]
@@ -147,9 +149,37 @@ fn on_rows(
         let given = again.given(law, options);
         let search = given.search(&model, near);
         let search = search.map_err(|error| Stop::at_means(error, &again.averaged, analysis))?;
-        return concluded(analysis, (&given, &again), &model, search, options);
+        return weighed(analysis, (&given, &again), &model, search, options);
     }
-    concluded(analysis, (&given, &ground), &model, search, options)
+    weighed(analysis, (&given, &ground), &model, search, options)
+}
+
+/// What a search has found, unless noise alone explains the readings no worse.
+fn weighed(
+    analysis: &Analysis<'_>,
+    (given, ground): (&Given<'_>, &Ground),
+    model: &Model,
+    mut search: Search,
+    options: &DiagnoseOptions,
+) -> Result<Diagnosis, Stop> {
+    if is_chance(&search) {
+        search.stages[0].adequate = true;
+        return concluded(analysis, (given, ground), model, search, options);
+    }
+    let at_means = |error| Stop::at_means(error, &ground.averaged, analysis);
+    if let Some(law) = noise_of_base(given, ground, &search).map_err(at_means)? {
+        let all = vec![true; given.record.len()];
+        let whitening = Whitening::new(&law, given.record, &all, ground.input_variances())?;
+        let noisy = Given { whitening: &whitening, law: &law, ..*given };
+        let base = search.stages[0].confirmed.numbers();
+        let confirmed = noisy.confirm(model, &[], Some(base), &[]).map_err(at_means)?;
+        let stage = noisy.stage(Vec::new(), confirmed).map_err(at_means)?;
+        if stage.adequate {
+            let search = Search { stages: vec![stage] };
+            return concluded(analysis, (&noisy, ground), model, search, options);
+        }
+    }
+    concluded(analysis, (given, ground), model, search, options)
 }
 
 /// Classes, confidence and the ladder of what a search has found.
@@ -163,9 +193,12 @@ fn concluded(
     let progress = &options.progress;
     progress.at(0.6, "rivals");
     let mut judged = classes(given, model, &search);
-    for _ in 0..MOST_SWAPS {
+    for _ in 0..MOST_CHANGES {
         let last = &search.stages[search.stages.len() - 1];
-        let better = judged.iter().enumerate().find_map(|(place, j)| given.swapped(last, place, &j.class));
+        let better = judged.iter().enumerate().find_map(|(place, j)| {
+            let dropped = given.dropped(model, last, place, &j.class);
+            dropped.or_else(|| given.swapped(last, place, &j.class))
+        });
         let Some(better) = better else { break };
         search.replace_last(better);
         judged = classes(given, model, &search);
@@ -181,7 +214,7 @@ fn concluded(
         search: &search,
         classes: &classes,
         sd_n,
-        effective_rows: effective_rows(given.law, ground, sd_n),
+        effective_rows: effective_rows(given, ground, sd_n),
         known: options.base.effects.len(),
         tolerance_n: options.tolerance_n,
         next,

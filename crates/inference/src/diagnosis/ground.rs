@@ -80,6 +80,11 @@ impl Ground {
         }
     }
 
+    /// Variances of the means on top of the law's white one \[N^2\].
+    pub(crate) fn input_variances(&self) -> &[f64] {
+        &self.input_variances
+    }
+
     /// Variance of a mean as the law says it \[N^2\].
     fn variance(&self) -> f64 {
         let inputs = median(self.input_variances.clone());
@@ -182,11 +187,12 @@ fn unequal(averaged: &Averaged, counts: &[f64], within: f64, stated: Option<&[f6
 }
 
 /// Rows that count as independent: as many single rows as would know a constant as well as the means do.
-pub(crate) fn effective_rows(law: &NoiseLaw, ground: &Ground, sd_n: f64) -> f64 {
+pub(crate) fn effective_rows(given: &Given<'_>, ground: &Ground, sd_n: f64) -> f64 {
+    let law = given.law;
     let inputs = median(ground.input_variances.clone());
     let of_mean = law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs;
     let rows: f64 = ground.averaged.counts().sum();
-    if of_mean > 0.0 { (ground.whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
+    if of_mean > 0.0 { (given.whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
 }
 
 /// Standard deviation of a single row: the law of the means, what the means have averaged, and what noise of pressure and contraction makes of it.

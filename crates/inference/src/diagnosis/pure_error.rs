@@ -22,6 +22,8 @@ const NEAR: f64 = 0.1;
 const HELD: f64 = 2e-3;
 /// Pairs from which the pure error is believed.
 const ENOUGH: usize = 20;
+/// Pairs of two strokes of different sweeps from which a difference of the sweeps can be told: fewer share their neighbours, and their mean takes noise away with it.
+const FEWEST: usize = 6;
 /// Relative standard deviation of the pure error that is there however many pairs there are.
 const SURE: f64 = 0.1;
 /// A correlated part beyond this multiple of the pure error repeats: it is no noise.
@@ -182,7 +184,7 @@ fn compared(one: &Stroke, other: &Stroke, lags: &mut Vec<f64>) -> f64 {
         found.push((difference, 1.0 + (1.0 - w).powi(2) + w * w, (point.at - a.at).abs()));
     }
     let mut scale = 1.0;
-    if one.sweep != other.sweep && found.len() > 1 {
+    if one.sweep != other.sweep && found.len() >= FEWEST {
         // Sweeps may be off as a whole.
         let mean = found.iter().map(|f| f.0).sum::<f64>() / found.len() as f64;
         for pair in &mut found {

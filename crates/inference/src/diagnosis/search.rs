@@ -26,6 +26,8 @@ const FITTED: f64 = 12.0;
 const FAR: f64 = 200.0;
 /// Part of the fall that the tangents say, from which they hold: then no other starts are needed.
 const PROMISED: f64 = 0.95;
+/// A fall of the sum of squares from which a minimum is another one: half a unit of log evidence.
+const LOWER: f64 = 1.0;
 /// Most single effects and most pairs that are fitted.
 const MOST: [usize; 2] = [8, 6];
 /// Forms from which a fit of an effect starts.
@@ -133,13 +135,13 @@ impl Search {
         self.stages.iter().find(|stage| names(&stage.added) == names(effects))
     }
 
-    /// Another model instead of the last one, and of those on the way to it that have an effect which it lacks.
+    /// Another model instead of the last one, and of those on the way to it that aren't on the way to this one.
     pub(crate) fn replace_last(&mut self, stage: Stage) {
         let has = |effect: &Arc<dyn Effect>| {
             stage.added.iter().any(|other| other.card().name == effect.card().name)
         };
         self.stages.pop();
-        self.stages.retain(|before| before.added.iter().all(has));
+        self.stages.retain(|before| before.added.len() < stage.added.len() && before.added.iter().all(has));
         self.stages.push(stage);
     }
 }
@@ -166,6 +168,7 @@ impl Given<'_> {
     pub(crate) fn search(&self, base: &Model, near: (&Model, &[f64])) -> Result<Search, ModelError> {
         let confirmed = self.confirm(base, &[], Some(near), &[])?;
         let mut stages = vec![self.stage(Vec::new(), confirmed)?];
+        let mut again = false;
         while let Some(stage) = stages.last_mut() {
             if stage.adequate {
                 break;
@@ -175,6 +178,11 @@ impl Given<'_> {
                 break;
             }
             stage.tried = self.tried(base, stage);
+            if !again && let Some(lower) = self.lower(base, stage) {
+                (*stage, again) = (lower, true);
+                continue;
+            }
+            again = false;
             let next = ranked(&stage.tried)
                 .into_iter()
                 .filter(|(best, _)| best.hypothesis.effects.len() <= room)
@@ -192,6 +200,24 @@ impl Given<'_> {
         Ok(Search { stages })
     }
 
+    /// The stage at a lower minimum of its model, where a fit with further effects came to one and left them off.
+    fn lower(&self, base: &Model, stage: &Stage) -> Option<Stage> {
+        let effects = &stage.scene.showings.effects;
+        let is_idle = |tried: &&Tried| {
+            let new: Vec<_> =
+                tried.hypothesis.effects.iter().map(|i| Arc::clone(&effects[*i].effect)).collect();
+            tried.confirmed.as_ref().is_some_and(|confirmed| confirmed.is_idle(&new))
+        };
+        let found = stage.tried.iter().filter(is_idle).filter_map(|tried| tried.confirmed.as_ref());
+        let least = found.min_by(|a, b| a.cost().total_cmp(&b.cost()))?;
+        if least.cost() > stage.confirmed.cost() - LOWER {
+            return None;
+        }
+        let confirmed = self.confirm(base, &stage.added, Some(least.numbers()), &[]).ok()?;
+        (confirmed.cost() < stage.confirmed.cost() - LOWER)
+            .then(|| self.stage(stage.added.clone(), confirmed).ok())?
+    }
+
     /// The stage that a hypothesis leads to, and whether the step stands out of what remains; none if it isn't worth its price, or nothing can be seen
     /// from there.
     fn step(&self, stage: &Stage, tried: &Tried, confirmed: &Confirmed) -> Option<(Stage, bool)> {
@@ -199,7 +225,7 @@ impl Given<'_> {
         let effects = &stage.scene.showings.effects;
         let new: Vec<Arc<dyn Effect>> =
             tried.hypothesis.effects.iter().map(|i| Arc::clone(&effects[*i].effect)).collect();
-        if tried.log_evidence <= worth || confirmed.is_absurd(&new) {
+        if tried.log_evidence <= worth || confirmed.is_absurd(&new) || confirmed.is_idle(&new) {
             return None;
         }
         let mut added = stage.added.clone();
@@ -226,9 +252,8 @@ impl Given<'_> {
         let starts: Vec<Vec<f64>> =
             hypothesis.starts.iter().map(|start| before.iter().chain(start).copied().collect()).collect();
         let mut confirmed = self.confirm(base, &all, Some(stage.confirmed.numbers()), &starts).ok();
-        let holds = |confirmed: &Confirmed| {
-            confirmed.converged && stage.confirmed.cost() - confirmed.cost() >= PROMISED * hypothesis.gain
-        };
+        let holds =
+            |confirmed: &Confirmed| stage.confirmed.cost() - confirmed.cost() >= PROMISED * hypothesis.gain;
         if confirmed.is_none() || hypothesis.gain > FAR && !confirmed.as_ref().is_some_and(holds) {
             // Far from where the tangents hold: usual numbers, and nearly none of them.
             let further: Vec<Vec<f64>> = [1.0, 0.1]

@@ -11,7 +11,7 @@ use crate::fit::document::{Convergence, Fit, Fitted};
 use crate::fit::interval;
 use crate::fit::nuisance::Prepared;
 use crate::fit::problem::{FitProblem, free};
-use crate::fit::settle::settled;
+use crate::fit::settle::{NEAR, settled};
 use crate::fit::states::{Settled, is_of_rows, of_start, settled_where_possible};
 use crate::fit::weights::{Noise, effective_rows};
 use bulge_muscles::units::significant;
@@ -179,8 +179,13 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     let problem_of = || FitProblem::new(model, &thin, &used, sd.clone(), start.to_vec(), &prepared.priors);
     let problem = problem_of();
     let bounds = problem.bounds();
-    let options =
-        Options { check_curvature: false, tolerance: 1e-4, max_evaluations: 60, ..Options::default() };
+    let options = Options {
+        check_curvature: false,
+        tolerance: 1e-4,
+        max_evaluations: 60,
+        least_decrease: NEAR,
+        ..Options::default()
+    };
     let mut starts = vec![clamped(problem.coordinates(start), &bounds.lower, &bounds.upper)];
     starts.push(clamped(problem.coordinates(&nearly_off(model, start)), &bounds.lower, &bounds.upper));
     starts.extend(scattered(prepared, &problem, start, STARTS - 2));
@@ -307,13 +312,23 @@ fn settle(problem: &FitProblem<'_>, theta: &[f64], quick: bool) -> Result<Minimu
     let start = clamped(problem.coordinates(theta), &bounds.lower, &bounds.upper);
     // Numbers are then off by this part of sqrt(rows) standard deviations.
     let tolerance = if quick { 1e-4 } else { 1e-5 };
-    let options = Options { check_curvature: false, tolerance, max_evaluations: 200, ..Options::default() };
+    // At a kink of the residuals, to a hundredth of a standard deviation.
+    let least_decrease = if quick { NEAR } else { 1e-4 };
+    let options = Options {
+        check_curvature: false,
+        tolerance,
+        max_evaluations: 200,
+        least_decrease,
+        ..Options::default()
+    };
     settled(problem, &start, &bounds, &options).map_err(of_start)
 }
 
 fn reason(reason: Reason) -> &'static str {
     if reason.is_converged() {
         "residuals are orthogonal to what the numbers can change"
+    } else if reason == Reason::Kink {
+        "the least error lies at a kink: a little further, readings change their direction or a state"
     } else {
         "the search ended before the residuals were orthogonal to what the numbers can change"
     }

@@ -12,7 +12,7 @@ use crate::fit::problem::FitProblem;
 /// Rounds at most.
 const ROUNDS: usize = 8;
 /// A difference of the sum of squares that doesn't matter: evidence counts in halves of it.
-const NEAR: f64 = 0.01;
+pub(crate) const NEAR: f64 = 0.01;
 /// The same as a part of the sum of squares.
 const NEAR_PART: f64 = 1e-6;
 /// Part of a standard deviation that is no way.

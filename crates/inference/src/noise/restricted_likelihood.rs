@@ -1,8 +1,10 @@
 //! Restricted likelihood of noise variances under a linear model (Patterson and Thompson 1971; Harville 1977).
 
+use bulge_model::Record;
 use nalgebra::{DMatrix, DMatrixView};
 use rayon::prelude::*;
 
+use crate::noise::law::NoiseLaw;
 use crate::noise::orthonormal::Basis;
 use crate::noise::whitening::{Components, Layout, Whitening};
 
@@ -105,6 +107,22 @@ impl RestrictedLikelihood {
         };
         deviance.value.is_finite().then_some(deviance)
     }
+}
+
+/// Log restricted likelihood of values under a law and a linear model, up to a constant of the model: `design` is n x m values, row by row. None where the law has no inverse or the
+/// model leaves nothing.
+pub(crate) fn log_likelihood(
+    law: &NoiseLaw,
+    record: &Record,
+    input_variances: &[f64],
+    design: &[f64],
+    values: &[f64],
+) -> Option<f64> {
+    let layout = Layout::new(record, &vec![true; record.len()], input_variances, law.time).ok()?;
+    let basis = Basis::of(design, values.len());
+    let likelihood =
+        RestrictedLikelihood { absolute: true, ..RestrictedLikelihood::new(layout, &basis, values)? };
+    Some(-0.5 * likelihood.deviance(&Components::of(law).ok()?)?.value)
 }
 
 impl Layout {

@@ -200,7 +200,7 @@ pub(crate) struct Components {
 }
 
 impl Components {
-    fn of(law: &NoiseLaw) -> Result<Self, NoiseError> {
+    pub(crate) fn of(law: &NoiseLaw) -> Result<Self, NoiseError> {
         let time = law.time.map_or(1.0, CorrelationTime::value);
         let sds = [law.white_n, law.correlated_n, law.offset_n];
         if let Some(place) = sds.iter().position(|sd| !(sd.is_finite() && *sd >= 0.0)) {

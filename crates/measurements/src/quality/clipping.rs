@@ -7,6 +7,10 @@ use std::ops::Range;
 /// Equal readings that are no chance: in a row, or in several runs of at least two where a test has few rows at each top.
 const RUN: usize = 5;
 const SHORT: usize = 2;
+/// Readings of exactly the largest force that are no chance wherever they are, and how many times as many as of any other force: a noisy load cell repeats none. (At the top of a sine the
+/// largest of coarse readings comes 2.4 times as often as the next, at rest all do.)
+const AGAIN: usize = 8;
+const TIMES: usize = 3;
 /// How far the force should have moved, in what it resolves, to be called stuck.
 const FORCE_STEPS: f64 = 10.0;
 /// How far the force has to move, as a share of its range in the sweep, while motion or pressure are stuck and the other keeps still to this share.
@@ -65,8 +69,12 @@ pub(super) fn in_columns(gate: &Gate) -> Vec<(&'static str, Vec<usize>)> {
             && range_in(motion, run)
                 <= (STILL * gate.motion_resolution().range).max(gate.data.structure.band.width)
     };
+    let mut clipped = in_column(gate, force, &stuck_force);
+    clipped.extend(repeated_top(gate));
+    clipped.sort_unstable();
+    clipped.dedup();
     vec![
-        ("force", in_column(gate, force, &stuck_force)),
+        ("force", clipped),
         (gate.motion_name(), in_column(gate, motion, &stuck_motion)),
         ("pressure", in_column(gate, pressure, &stuck_pressure)),
     ]
@@ -102,6 +110,18 @@ fn in_column(
     // Where the range ends for some rows it ends for all.
     let at_end = |row: &usize| ends.contains(&values[*row]);
     gate.data.paths().flat_map(|(sweep, _)| sweep.rows.clone()).filter(at_end).collect()
+}
+
+/// Rows with the largest force where it comes far more often than any other.
+fn repeated_top(gate: &Gate) -> Vec<usize> {
+    let force = gate.data.force();
+    let mut rows: Vec<usize> = gate.data.paths().flat_map(|(sweep, _)| sweep.rows.clone()).collect();
+    rows.sort_by(|a, b| force[*b].total_cmp(&force[*a]).then(a.cmp(b)));
+    let mut equal = rows.chunk_by(|a, b| force[*a].total_cmp(&force[*b]).is_eq());
+    let top = equal.next().unwrap_or_default();
+    let others = equal.filter(|rows| force[rows[0]].abs() > 1e-9 * gate.largest_force).map(<[usize]>::len);
+    let is_clipped = top.len() >= AGAIN && others.max().is_some_and(|most| top.len() >= TIMES * most);
+    if is_clipped { top.to_vec() } else { Vec::new() }
 }
 
 /// By how much the force should have changed in a run, from how it changed with motion and pressure just before and after.

@@ -7,6 +7,8 @@ use std::ops::Range;
 
 /// Forces within this share of the largest are near zero.
 const NEAR_ZERO: f64 = 1e-3;
+/// However far neighbours lie apart (in a map whose points were set at random that isn't noise), forces beyond this share of the largest are not.
+const SMALL: f64 = 0.05;
 /// Pressures above this share of the largest should give a force.
 const PRESSURE: f64 = 0.02;
 /// Readings near zero in a row that aren't a crossing of zero.
@@ -36,7 +38,8 @@ impl Data {
 
 /// Forces up to this are as good as zero \[N\].
 fn level(gate: &Gate) -> f64 {
-    (4.0 * gate.force.noise).max(gate.force.step).max(NEAR_ZERO * gate.largest_force)
+    let noise = (4.0 * gate.force.noise).min(SMALL * gate.largest_force);
+    noise.max(gate.force.step).max(NEAR_ZERO * gate.largest_force)
 }
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {

@@ -17,6 +17,8 @@ const STEPS: f64 = 4.0;
 const BENDS: f64 = 2.0;
 /// and which share of the range.
 const RANGE: f64 = 5e-3;
+/// Rows further apart than this many usual steps of time have a pause between them.
+const PAUSE: f64 = 3.0;
 /// Neighbouring spikes hide each other: those found are bridged, and the rest is looked at again so often.
 const PASSES: usize = 3;
 /// Spikes at more than one turning point in so many are its form.
@@ -31,7 +33,10 @@ pub(super) fn in_columns<'a>(gate: &Gate<'a>) -> Vec<(&'static str, Vec<usize>)>
         (gate.motion_name(), gate.motion, gate.motion_resolution()),
         ("pressure", gate.data.pressure(), &gate.pressure),
     ];
-    columns.map(|(name, values, resolution)| (name, along(gate.data, values, resolution, RANGE))).to_vec()
+    let paths: Vec<Range<usize>> = gate.data.paths().map(|(sweep, _)| sweep.rows.clone()).collect();
+    columns
+        .map(|(name, values, resolution)| (name, along(gate.data, values, resolution, RANGE, &paths)))
+        .to_vec()
 }
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
@@ -61,24 +66,54 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
 impl Data {
     /// Rows at which `values`, one for each row (such as the difference of measured and computed forces), have spikes: one to three of them beyond what the three on either side
     /// lead to, by 8 standard deviations of their noise and twice the bend of the neighbours. A step, a tip, and a turn of friction are none: each of their
-    /// values is where one of the sides leads. None in a static map.
+    /// values is where one of the sides leads. Sweeps that were recorded without a pause are looked at as one. None in a static map.
     #[must_use]
     pub fn spikes(&self, values: &[f64]) -> Vec<usize> {
         if values.len() != self.len() {
             return Vec::new();
         }
         let sweeps: Vec<Range<usize>> = self.sweeps().iter().map(|sweep| sweep.rows.clone()).collect();
-        along(self, values, &Resolution::of(values, &sweeps), 0.0)
+        let whole = recordings(self);
+        along(self, values, &Resolution::of(values, &sweeps), 0.0, &whole)
     }
 }
 
+/// Rows that were recorded without a pause: where paths are cut at steps of the set points, what a model leaves goes on.
+fn recordings(data: &Data) -> Vec<Range<usize>> {
+    let steps = |rows: &Range<usize>| -> Vec<f64> {
+        data.time().map_or(Vec::new(), |time| time[rows.clone()].windows(2).map(|w| w[1] - w[0]).collect())
+    };
+    let mut found: Vec<Range<usize>> = Vec::new();
+    for (sweep, _) in data.paths() {
+        let mut usual = steps(&sweep.rows);
+        usual.sort_unstable_by(f64::total_cmp);
+        let usual = usual.get(usual.len() / 2).copied();
+        let goes_on = |before: &Range<usize>| {
+            let since = data.time().map(|time| time[sweep.rows.start] - time[before.end - 1]);
+            before.end == sweep.rows.start
+                && since.zip(usual).is_some_and(|(since, usual)| since > 0.0 && since <= PAUSE * usual)
+        };
+        match found.last_mut() {
+            Some(before) if goes_on(before) => before.end = sweep.rows.end,
+            _ => found.push(sweep.rows.clone()),
+        }
+    }
+    found
+}
+
 /// Rows of spikes of a quantity that was read like this; below `share` of its range there are none.
-fn along(data: &Data, values: &[f64], resolution: &Resolution, share: f64) -> Vec<usize> {
+fn along(
+    data: &Data,
+    values: &[f64],
+    resolution: &Resolution,
+    share: f64,
+    runs: &[Range<usize>],
+) -> Vec<usize> {
     let least = (NOISE * resolution.noise).max(STEPS * resolution.step).max(share * resolution.range);
     let mut found = Vec::new();
     if least > 0.0 {
-        for (sweep, _) in data.paths() {
-            found.extend(in_run(&values[sweep.rows.clone()], least).iter().map(|row| sweep.rows.start + row));
+        for run in runs {
+            found.extend(in_run(&values[run.clone()], least).iter().map(|row| run.start + row));
         }
     }
     leave_tips(data, &mut found);

@@ -18,12 +18,17 @@ pub enum Reason {
     StepBelowRounding,
     /// The linearised minimum is lower by less than the rounding of the sum of squares, and no step lowers the latter.
     DecreaseBelowRounding,
+    /// The linearised minimum is lower by less than [`super::Options::least_decrease`], and the step to it was rejected.
+    DecreaseTooSmall,
     /// All residuals are zero.
     ExactFit,
     /// Nothing to vary: no parameters, or all of them fixed.
     NothingFree,
     /// [`super::Options::max_evaluations`] were made. Not converged.
     Budget,
+    /// No step down to one that promises [`super::Options::least_decrease`] lowers the sum of squares: the least value is at a kink of the residuals, where no
+    /// derivative vanishes. Not a stationary point, so not converged.
+    Kink,
     /// No step, however short, lowers the sum of squares although the derivatives promise it: they are wrong or too inexact, or
     /// the residuals jump or can't be evaluated beyond. Not converged.
     Stagnated,
@@ -35,7 +40,7 @@ impl Reason {
     /// Whether the search ended at a minimum.
     #[must_use]
     pub fn is_converged(self) -> bool {
-        !matches!(self, Self::Budget | Self::Stagnated | Self::Saddle)
+        !matches!(self, Self::Budget | Self::Kink | Self::Stagnated | Self::Saddle)
     }
 }
 

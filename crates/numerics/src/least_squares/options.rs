@@ -19,6 +19,9 @@ pub struct Options {
     /// Most evaluations of all residuals, with or without derivatives, before the search is given up; the examination of
     /// curvature is not stopped by it. At least 1; default 2000.
     pub max_evaluations: usize,
+    /// A fall of the sum of squares that isn't worth a shorter trial: a search whose rejected step promised less than this ends there, as at a kink of the
+    /// residuals, where every step but a tiny one is rejected. At least 0; default 0.
+    pub least_decrease: f64,
     /// Whether a stationary point is examined for directions of negative curvature (at the cost of one gradient per free
     /// parameter), along which a saddle is left. Default true.
     pub check_curvature: bool,
@@ -31,6 +34,7 @@ impl Default for Options {
             rank_tolerance: 1e-10,
             first_radius: 1.0,
             max_evaluations: 2000,
+            least_decrease: 0.0,
             check_curvature: true,
         }
     }
@@ -47,6 +51,9 @@ impl Options {
         }
         if !(self.first_radius > 0.0 && self.first_radius < f64::INFINITY) {
             return wrong("first_radius", self.first_radius, "positive and finite");
+        }
+        if !(self.least_decrease >= 0.0 && self.least_decrease < f64::INFINITY) {
+            return wrong("least_decrease", self.least_decrease, "at least 0 and finite");
         }
         if self.max_evaluations == 0 {
             return wrong("max_evaluations", 0.0, "at least 1");

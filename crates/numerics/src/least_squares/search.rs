@@ -152,6 +152,8 @@ pub(super) struct Point {
 enum Progress {
     Moved,
     Stuck,
+    /// Trials are too short to be worth it.
+    Kink,
     Budget,
 }
 
@@ -240,7 +242,11 @@ impl<'a, P: Residuals> Search<'a, P> {
                 Progress::Stuck if newton.predicted <= self.rounding() => {
                     return Reason::DecreaseBelowRounding;
                 }
+                Progress::Kink if newton.predicted <= self.options.least_decrease => {
+                    return Reason::DecreaseTooSmall;
+                }
                 Progress::Stuck => return Reason::Stagnated,
+                Progress::Kink => return Reason::Kink,
             }
         }
     }
@@ -338,6 +344,9 @@ impl<'a, P: Residuals> Search<'a, P> {
                 return Progress::Stuck;
             }
             let Some(point) = self.at(trial.theta.clone()) else {
+                if trial.predicted < self.options.least_decrease {
+                    return Progress::Kink;
+                }
                 self.radius = 0.25 * trial.length;
                 continue;
             };
@@ -361,6 +370,9 @@ impl<'a, P: Residuals> Search<'a, P> {
             }
             if trial.predicted > self.rounding() && self.bend(&trial, &residuals) {
                 return Progress::Moved;
+            }
+            if trial.predicted < self.options.least_decrease {
+                return Progress::Kink;
             }
             let slope = self.slope(&trial.theta);
             self.resize(ratio, actual, slope, trial.length, trial.full);
