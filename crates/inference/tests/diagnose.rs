@@ -7,8 +7,9 @@ use bulge_inference::{
     Block, DiagnoseOptions, Diagnosis, Options, Path, Protocol, ReadingNoise, Verdict, diagnose, simulate,
 };
 use bulge_measurements::{Columns, Data, Trace};
-use bulge_model::Model;
-use bulge_muscles::{Muscle, from_toml};
+use bulge_model::{Model, Record, Wanted};
+use bulge_muscles::{Muscle, Quantity, from_toml};
+use bulge_numerics::Random;
 use std::fmt::Write;
 
 const BRAID: &str = r#"
@@ -384,4 +385,42 @@ fn end_effects_show_in_several_lengths() {
     let (one, three) = (separation(&[250]), separation(&[250, 120, 60]));
     println!("the nearest rival of end-taper: {one:.1} sigma away with one length, {three:.1} with three");
     assert!(three > 2.0 * one, "{three} sigma with three lengths, {one} with one");
+}
+
+/// One run: the length goes to and fro while the pressure climbs. The force has the muscle's own number, `ripple` \[N\] over the contraction in either direction, and noise of `noise`
+/// newtons, most of it the moving average of 23 rows with a triangle's weights: no process that forgets exponentially.
+fn ramp_while_moving(noise: f64, ripple: f64, seed: u64) -> Data {
+    let rows = 600_usize;
+    let phase = |i: usize| i as f64 / 60.0;
+    let contraction: Vec<f64> =
+        (0..rows).map(|i| 0.02 + 0.05 * (1.0 - (std::f64::consts::TAU * phase(i)).cos())).collect();
+    let pressure: Vec<f64> = (0..rows).map(|i| 1.5e5 + 3.5e5 * i as f64 / rows as f64).collect();
+    let mut columns = Columns::new(pressure, Trace::Contraction(contraction.clone()), vec![0.0; rows]);
+    columns.time_s = Some((0..rows).map(|i| i as f64).collect());
+    let data = Data::from_columns(columns.clone()).unwrap();
+    let record = Record::new(&data, muscle().length().si());
+    let exact = Model::new(&muscle()).evaluate(&record, &[], &Wanted::default()).unwrap().force;
+    let mut random = Random::new(seed, 3);
+    let white: Vec<f64> = (0..rows + 22).map(|_| random.normal()).collect();
+    let weights: Vec<f64> = (0..23_i32).map(|k| f64::from(12 - (k - 11).abs())).collect();
+    let norm = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
+    columns.force_n = (0..rows)
+        .map(|i| {
+            let slow: f64 = weights.iter().zip(&white[i..]).map(|(w, x)| w * x).sum::<f64>() / norm;
+            let up = if phase(i).fract() < 0.5 { 1.0 } else { -1.0 };
+            let structure = ripple * up * (150.0 * contraction[i]).sin();
+            exact[i] + structure + noise * (0.8 * slow + 0.6 * random.normal())
+        })
+        .collect();
+    Data::from_columns(columns).unwrap()
+}
+
+#[test]
+fn slow_noise_of_one_run_is_no_structure_and_structure_no_slow_noise() {
+    let claimed: Vec<u64> = (0..8)
+        .filter(|seed| diagnosed(&ramp_while_moving(2.0, 0.0, *seed)).verdict != Verdict::Adequate)
+        .collect();
+    assert_eq!(claimed, [0; 0]);
+    let found = diagnosed(&ramp_while_moving(2.0, 8.0, 1));
+    assert_eq!(found.verdict, Verdict::Unknown, "{}", found.says);
 }

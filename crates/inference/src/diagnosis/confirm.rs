@@ -428,4 +428,41 @@ mod tests {
         assert!((found - sum.ln()).abs() < 0.02, "{found} {}", sum.ln());
         assert!((with.theta[0] - 3.0).abs() < 4.0 * NOISE / 90.0_f64.sqrt() && with.converged);
     }
+
+    #[test]
+    fn an_effect_at_its_bound_is_idle_and_equal_starts_are_one() {
+        let catalogue = Catalogue::builtin();
+        let base = Model::new(&preset("ppam-2-r16").unwrap());
+        let moment = |i: u32| Moment {
+            direction: if i % 30 < 15 { 1.0 } else { -1.0 },
+            ..Moment::at_rest(2e5, 0.05 + 0.01 * f64::from(if i % 30 < 15 { i % 30 } else { 29 - i % 30 }))
+        };
+        let moments: Vec<Moment> = (0..90).map(moment).collect();
+        let record = Record::from_moments(moments, vec![0.0; 90], std::iter::once(0..90).collect()).unwrap();
+        let exact = base.evaluate(&record, &[], &Wanted::default()).unwrap().force;
+        let friction = [Arc::clone(catalogue.find("coulomb-friction").unwrap())];
+        for (sign, idle) in [(1.0, false), (-1.0, true)] {
+            let mut random = Random::new(4, 0);
+            let force = exact.iter().zip(record.moments());
+            let force = force.map(|(f, m)| f - sign * 5.0 * m.direction + random.normal()).collect();
+            let record = record.clone().with_force(force);
+            let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
+            let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
+            let given = Given {
+                catalogue: &catalogue,
+                record: &record,
+                whitening: &whitening,
+                law: &law,
+                row_n: 1.0,
+                seed: 1,
+                tolerance_n: None,
+                only: None,
+                progress: &NOBODY,
+            };
+            let found = given.confirm(&base, &friction, None, &[vec![2.0], vec![2.0]]).unwrap();
+            assert_eq!(found.is_idle(&friction), idle, "{:?}", found.theta);
+            let one = given.confirm(&base, &friction, None, &[vec![2.0]]).unwrap();
+            assert_eq!((one.theta, one.log_evidence.to_bits()), (found.theta, found.log_evidence.to_bits()));
+        }
+    }
 }

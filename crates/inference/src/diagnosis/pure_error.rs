@@ -271,6 +271,27 @@ mod tests {
     }
 
     #[test]
+    fn strokes_of_few_rows_say_nothing_about_noise() {
+        // Set points of three rows each: the mean of three differences that share their neighbours takes most of the noise away.
+        let moments: Vec<Moment> = (0..600)
+            .map(|i| Moment {
+                direction: 1.0,
+                clock: f64::from(i),
+                time: f64::from(i % 3),
+                begins: i % 3 == 0,
+                ..Moment::at_rest(2e5, 0.05 + 0.02 * f64::from(i % 3))
+            })
+            .collect();
+        let sweeps = (0..200).map(|i| 3 * i..3 * i + 3).collect();
+        let record = Record::from_moments(moments, vec![0.0; 600], sweeps).unwrap();
+        let mut random = Random::new(9, 1);
+        let residual: Vec<f64> = (0..600).map(|_| random.normal()).collect();
+        if let Some(found) = BetweenCycles::of(&record, &residual) {
+            assert!((found.variance - 1.0).abs() < 0.2, "{}", found.variance);
+        }
+    }
+
+    #[test]
     fn noise_that_is_slow_stays_in_the_law() {
         // Over 400 s, of which a cycle takes 160 s: the cycles differ by a part of it only.
         let truth = NoiseLaw {

@@ -103,6 +103,37 @@ fn tops_of_few_rows_are_clipped_together() {
 }
 
 #[test]
+fn a_top_that_is_read_again_and_again_is_clipped_wherever_it_is() {
+    // Set points at random: neighbours in the file say nothing about each other.
+    let mut noise = Noise::new(11);
+    let rows = 400;
+    let (mut bar, mut length) = (Vec::new(), Vec::new());
+    for row in 0..rows {
+        bar.push(1.0 + 5.0 * (0.618_034 * row as f64).fract());
+        length.push(0.02 + 0.2 * (0.414_214 * row as f64).fract());
+    }
+    let force: Vec<f64> =
+        (0..rows).map(|i| force(1e5 * bar[i], length[i], 0.0) + 0.5 * noise.normal()).collect();
+    let mut sorted = force.clone();
+    sorted.sort_by(f64::total_cmp);
+    let limit = sorted[rows - 12];
+    let over: Vec<usize> = (0..rows).filter(|row| force[*row] >= limit).map(|row| row + 1).collect();
+    let pressure = bar.iter().map(|bar| 1e5 * bar).collect();
+    let mut columns = Columns::new(pressure, Trace::Contraction(length), force.clone());
+    columns.time_s = Some((0..rows).map(|row| 4.0 * row as f64).collect());
+    assert_eq!(quality(columns.clone()).of(FindingKind::Clipped).count(), 0);
+    columns.force_n.iter_mut().for_each(|f| *f = f.min(limit));
+    assert_eq!(lines(&quality(columns), FindingKind::Clipped), over);
+    // Coarse readings of a sine come often at its top: 2.4 times as often as the next.
+    let bar: Vec<f64> = (0..rows).map(|i| 3.0 + 2.0 * (0.0157 * i as f64).sin()).collect();
+    let force = bar.iter().map(|bar| (20.0 * bar).round()).collect();
+    let pressure = bar.iter().map(|bar| 1e5 * bar).collect();
+    let mut sine = Columns::new(pressure, Trace::Contraction(vec![0.1; rows]), force);
+    sine.time_s = Some((0..rows).map(|row| row as f64).collect());
+    assert_eq!(quality(sine).of(FindingKind::Clipped).count(), 0);
+}
+
+#[test]
 fn a_recording_that_stands_still() {
     let rows: Vec<usize> = (301..340).collect();
     plants(FindingKind::Frozen, &rows, |columns| {
@@ -170,6 +201,34 @@ fn clean_rows_are_no_spikes() {
         called += loops.spikes(loops.force()).len();
     }
     assert!(1000 * called < rows, "{called} of {rows}");
+}
+
+#[test]
+fn spikes_of_what_a_model_leaves_are_found_where_paths_are_cut() {
+    // Set points of pressure, one after the other: each is a run of its own, and what a model leaves goes on.
+    let mut noise = Noise::new(5);
+    let rows = 240;
+    let pressure: Vec<f64> =
+        (0..rows).map(|i| 1e5 * (1 + i / 40 % 3) as f64 + 30.0 * noise.normal()).collect();
+    let length: Vec<f64> = (0..rows).map(|i| 0.02 + 0.001 * (i % 40) as f64).collect();
+    let forces = (0..rows).map(|i| force(pressure[i], length[i], 0.0) + 0.5 * noise.normal()).collect();
+    let mut columns = Columns::new(pressure, Trace::Contraction(length), forces);
+    columns.time_s = Some((0..rows).map(|i| 0.2 * i as f64).collect());
+    columns.sweep = Some(crate::Labels::from_iter((0..rows).map(|i| (i / 40).to_string())));
+    let data = Data::from_columns(columns).unwrap();
+    assert!(data.sweeps().len() > 1);
+    let start = data.sweeps()[1].rows.start;
+    let mut left: Vec<f64> = (0..rows).map(|_| 0.5 * noise.normal()).collect();
+    assert_eq!(data.spikes(&left), [0; 0]);
+    for row in [start, start + 38, 100] {
+        left[row] += 15.0;
+    }
+    assert_eq!(data.spikes(&left), [start, start + 38, 100]);
+    // A step of what it leaves, from one run to the next, is none.
+    for value in &mut left[start + 40..start + 80] {
+        *value += 15.0;
+    }
+    assert_eq!(data.spikes(&left).len(), 3 - usize::from(100 >= start + 40));
 }
 
 #[test]

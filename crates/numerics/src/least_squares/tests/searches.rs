@@ -315,6 +315,34 @@ fn ends_that_are_no_minima_are_not_called_converged() {
 }
 
 #[test]
+fn a_kink_is_the_end_where_shorter_steps_are_not_worth_it() {
+    // (2 + |x - 1|, 0.1 x): least at the kink x = 1, where the derivatives on either side promise a fall.
+    let kinked = model(2, 1, |p, i| {
+        let side = if p[0] < 1.0 { -1.0 } else { 1.0 };
+        Some(if i == 0 { (2.0 + side * (p[0] - 1.0), vec![side]) } else { (0.1 * p[0], vec![0.1]) })
+    });
+    let search = |least_decrease| {
+        let options = Options { least_decrease, check_curvature: false, ..Options::default() };
+        minimise(&kinked, &[-5.0], &Bounds::none(1), &options).unwrap()
+    };
+    let (found, exact) = (search(1e-3), search(0.0));
+    let reasons = [found.certificate.reason, exact.certificate.reason];
+    assert_eq!((reasons, found.certificate.converged), ([Reason::Kink, Reason::Stagnated], false));
+    // The cost has the slope 4 on either side.
+    assert!(found.cost - 4.01 < 1e-3 && (exact.theta[0] - 1.0).abs() < 1e-12, "{found:?}");
+    let work = |end: &Minimum| end.evaluations + end.linearisations;
+    assert!(2 * work(&found) < work(&exact), "{} {}", work(&found), work(&exact));
+    // A smooth minimum is none, and is found as well.
+    let options = Options { least_decrease: 1e-3, ..Options::default() };
+    let smooth = minimise(&rosenbrock(), &[-1.2, 1.0], &Bounds::none(2), &options).unwrap();
+    assert!(smooth.certificate.converged && (smooth.theta[0] - 1.0).abs() < 1e-9);
+    for wrong in [-1.0, f64::NAN, f64::INFINITY] {
+        let options = Options { least_decrease: wrong, ..Options::default() };
+        assert!(minimise(&rosenbrock(), &[-1.2, 1.0], &Bounds::none(2), &options).is_err());
+    }
+}
+
+#[test]
 fn trial_points_without_value_shorten_the_step() {
     // (ln x - ln 1e-3) from x = 2: the Gauss-Newton step goes far below 0.
     for failing in [true, false] {
