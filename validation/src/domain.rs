@@ -2,68 +2,29 @@
 //!
 //! Number i of a seed is the same muscle with the same question in every run, whatever the number of threads.
 
-use bulge_fibre::{
-    Approach, BRAID_ANGLE, BRAIDED_SLENDERNESS, FibreError, Given, PLEATED_SLENDERNESS, Problem, Response,
-};
-use bulge_muscles::{
-    Angle, Bladder, Braided, Construction, Ends, Fault, Fibre, FibreCount, Force, Length, LineStiffness,
-    Muscle, MuscleError, Parameter, Pleated, Pressure, Quantity, Unfolding,
-};
+use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
+use bulge_muscles::{Fault, Muscle, MuscleError, Pressure, Quantity};
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::check::{Check, Claim};
+use crate::integrals;
 use crate::sample::Sampler;
 
-/// Range of the gauge pressure \[Pa\].
-const PRESSURE: [f64; 2] = [1e3, 1.5e6];
-/// Range of the strain by which pressure stretches fibres: about p R l0/(n EA), or 2 pi p r0^2/(n EA sin^2(alpha0)) of a braid.
-const STRETCH: [f64; 2] = [1e-6, 5e-2];
-/// Range of K/(p R) of cloth, in a pleated muscle and in a braid.
-const CLOTH: [[f64; 2]; 2] = [[1e-2, 1e6], [1e-2, 1e3]];
-/// Range of c10 t/(p r0) of a bladder.
-const RUBBER: [f64; 2] = [1e-4, 1e2];
+mod muscles;
+
+use muscles::{KINDS, reference};
+
 /// Largest residual of the end conditions that an answer may have, whose square remains after the last step.
 const RESIDUAL: f64 = 1e-6;
 /// Largest departure from the first integral.
 const FIRST_INTEGRAL: f64 = 1e-9;
+/// Difference of force and volume up to which two equilibria are the same.
+const SAME: f64 = 1e-5;
 /// Evaluations that one equilibrium may take.
 pub const EVALUATIONS: u32 = 60_000;
 /// Cases of a count that are kept.
 const KEPT: usize = 40;
-
-/// A kind of muscle.
-type Kind = (&'static str, fn(&mut Sampler) -> Result<Muscle, MuscleError>);
-
-/// What is drawn, by name.
-const KINDS: [Kind; 15] = [
-    ("pleated", |s| pleated(s, &[])),
-    ("pleated, elastic", |s| pleated(s, &[Extra::Elastic])),
-    ("pleated, deep pleats", |s| pleated(s, &[Extra::Depth])),
-    ("pleated, cloth", |s| pleated(s, &[Extra::Cloth])),
-    ("pleated, misaligned", |s| pleated(s, &[Extra::Misaligned])),
-    ("pleated, lobes", lobes),
-    ("pleated, anything", anything_pleated),
-    ("braid", |s| braid(s, &[])),
-    ("braid, other fittings", |s| braid(s, &[Extra::Fitting])),
-    ("braid, elastic", |s| braid(s, &[Extra::Elastic])),
-    ("braid, bladder", |s| braid(s, &[Extra::Rubber])),
-    ("braid, gas on the inner wall", |s| braid(s, &[Extra::Depth])),
-    ("braid, cloth", |s| braid(s, &[Extra::Cloth])),
-    ("braid, anything", anything_braided),
-    ("cylinder", cylinder),
-];
-
-/// What a muscle may have besides its fibres.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Extra {
-    Elastic,
-    Depth,
-    Cloth,
-    Misaligned,
-    Rubber,
-    Fitting,
-}
 
 /// How a question ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,9 +34,38 @@ enum Ending {
     },
     /// Solved, but not an equilibrium.
     Wrong(String),
-    /// Exit status 1, 3, 4.
-    Refused(Fault, String),
+    /// Exit status 1 and 3.
+    Refused(Fault),
+    /// Exit status 4, and what the first integrals say.
+    Lost(String, Judgement),
     Panicked,
+}
+
+/// What a search by the first integrals ([`integrals::states`]) finds where the shooting found nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Judgement {
+    /// An equilibrium with taut fibres that pulls: the question has an answer.
+    Pulls(integrals::State),
+    /// Only such as would push, or whose fibres are slack: the question has none, which should have been said with a limit.
+    Beyond(integrals::State),
+    /// None.
+    Nothing,
+    /// None, but for this muscle the search can't exclude one.
+    Unknown,
+}
+
+impl Judgement {
+    fn of(muscle: &Muscle, pressure: Pressure, question: Option<Given>) -> Self {
+        let states = integrals::states(muscle, pressure, question);
+        let scale = pressure.si() * muscle.radius().si().powi(2);
+        let pulls = states.iter().find(|state| state.taut && state.force_n >= -1e-6 * scale);
+        match (pulls, states.first()) {
+            (Some(state), _) => Self::Pulls(*state),
+            (None, Some(state)) => Self::Beyond(*state),
+            (None, None) if integrals::can_exclude(muscle) => Self::Nothing,
+            (None, None) => Self::Unknown,
+        }
+    }
 }
 
 /// How the questions to one kind of muscle ended.
@@ -91,6 +81,8 @@ pub struct Count {
     pub no_solution: usize,
     /// Not converged (exit status 4).
     pub not_converged: usize,
+    /// Of these: where the first integrals have an equilibrium that pulls, only one that pushes or has slack fibres, none, and where they can't exclude one.
+    pub judged: [usize; 4],
     /// Answered with something that is no equilibrium.
     pub wrong: usize,
     /// Panics.
@@ -123,11 +115,17 @@ impl Count {
                 keep(&what);
                 self.wrong += 1;
             }
-            Ending::Refused(Fault::Input, _) => self.input += 1,
-            Ending::Refused(Fault::NoSolution, _) => self.no_solution += 1,
-            Ending::Refused(Fault::NotConverged, what) => {
-                keep(&what);
+            Ending::Refused(Fault::Input) => self.input += 1,
+            Ending::Refused(_) => self.no_solution += 1,
+            Ending::Lost(what, judgement) => {
+                keep(&format!("{what}, by the first integrals {judgement:?}"));
                 self.not_converged += 1;
+                self.judged[match judgement {
+                    Judgement::Pulls(_) => 0,
+                    Judgement::Beyond(_) => 1,
+                    Judgement::Nothing => 2,
+                    Judgement::Unknown => 3,
+                }] += 1;
             }
             Ending::Panicked => {
                 keep("panic");
@@ -147,7 +145,7 @@ pub(crate) fn sample() -> Check {
         name: "random muscles of 15 kinds, one question each: part that is neither solved nor refused with a limit",
         source: "residuals, first integral",
         tolerance: SAMPLE.1,
-        why: "0.095 % of 10^5, 1 or 2 of these: most of them braids with stiff cloth on narrow fittings; anything wrong, a panic or too many evaluations counts as all",
+        why: "below 0.1 % of 10^5, 1 or 2 of these: most of them braids with stiff cloth on narrow fittings; anything wrong, a panic or too many evaluations counts as all",
     }
     .run(|tally| {
         let counts = map(1, SAMPLE.0);
@@ -163,6 +161,29 @@ pub(crate) fn sample() -> Check {
     })
 }
 
+/// Questions of which those that are solved are searched for by the first integrals.
+const SEARCHED: usize = 30;
+
+/// The equilibria of random muscles, searched for by their two first integrals.
+pub(crate) fn by_integrals() -> Check {
+    Claim {
+        group: "domain",
+        name: "force and volume of random muscles, all kinds, by a search over two first integrals on a dense grid",
+        source: "first integrals: no differential equation, no start",
+        tolerance: 1e-6,
+        why: "a fibre length is met to 1e-9, the contraction to 1e-13; a force may be a small difference",
+    }
+    .run(|tally| {
+        let both: Vec<_> = (0..SEARCHED).into_par_iter().filter_map(|number| both(1, number)).collect();
+        for found in both {
+            if found.can_exclude || found.off < SAME {
+                tally.add(found.off, || found.case.clone());
+            }
+        }
+        Ok(())
+    })
+}
+
 /// Asks `count` muscles one question each, kind after kind in turn.
 #[must_use]
 pub fn map(seed: u64, count: usize) -> Vec<Count> {
@@ -172,6 +193,53 @@ pub fn map(seed: u64, count: usize) -> Vec<Count> {
         counts[number % KINDS.len()].add(|| format!("number {number}, {case}"), ending);
     }
     counts.into()
+}
+
+/// How often the search by the first integrals finds what the shooting found: of `count` questions those that were solved, those found with the same
+/// force and volume, and the others.
+#[must_use]
+pub fn found_by_integrals(seed: u64, count: usize) -> (usize, usize, Vec<String>) {
+    let both: Vec<Both> = (0..count).into_par_iter().filter_map(|number| both(seed, number)).collect();
+    let missed: Vec<String> = both
+        .iter()
+        .filter(|both| both.off.is_nan() || both.off > SAME)
+        .map(|both| both.case.clone())
+        .collect();
+    (both.len(), both.len() - missed.len(), missed)
+}
+
+/// A question that the shooting solves, searched for by the first integrals.
+struct Both {
+    /// Difference of force and volume of the nearest state, relative; 1 if there is none.
+    off: f64,
+    can_exclude: bool,
+    case: String,
+}
+
+fn both(seed: u64, number: usize) -> Option<Both> {
+    let (muscle, pressure, question) = drawn(seed, number).ok()?;
+    let problem = Problem::new(&muscle, pressure).ok()?;
+    let solved = if let Some(given) = question {
+        problem.solve(given, Approach::Auto).ok()?
+    } else {
+        let limit = problem.contraction_limit(Approach::Auto).ok()?;
+        problem.follow(limit, Approach::Auto).ok()?
+    };
+    let states = integrals::states(&muscle, pressure, question);
+    let scale = pressure.si() * solved.max_radius_m.powi(2) + solved.force_n.abs();
+    let off = |state: &integrals::State| {
+        let force = (state.force_n - solved.force_n).abs() / scale;
+        force.max((state.volume_m3 / solved.volume_m3 - 1.0).abs())
+    };
+    let (kind, _) = KINDS[number % KINDS.len()];
+    Some(Both {
+        off: states.iter().map(off).fold(1.0, f64::min),
+        can_exclude: integrals::can_exclude(&muscle),
+        case: format!(
+            "{kind}, number {number}: {} N, {} m^3 at {} by {question:?}; by the first integrals {states:?}",
+            solved.force_n, solved.volume_m3, solved.contraction
+        ),
+    })
 }
 
 /// Number `number` of a seed: a muscle, its pressure, and what is asked; none: the limit.
@@ -189,18 +257,16 @@ pub fn drawn(seed: u64, number: usize) -> Result<(Muscle, Pressure, Option<Given
 
 /// The question in words and how it ended.
 fn one(seed: u64, number: usize) -> (String, Ending) {
-    let (muscle, pressure, question) = match drawn(seed, number) {
-        Ok(drawn) => drawn,
-        Err(error) => return (String::new(), Ending::Refused(Fault::Input, error.to_string())),
+    let Ok((muscle, pressure, question)) = drawn(seed, number) else {
+        return (String::new(), Ending::Refused(Fault::Input));
     };
     let ending = catch_unwind(AssertUnwindSafe(|| ask(&muscle, pressure, question)));
     let ending = ending.unwrap_or(Ending::Panicked);
-    let case =
-        if matches!(ending, Ending::Solved { .. } | Ending::Refused(Fault::Input | Fault::NoSolution, _)) {
-            String::new()
-        } else {
-            format!("{question:?} at {pressure}, {muscle:?}")
-        };
+    let case = if matches!(ending, Ending::Solved { .. } | Ending::Refused(_)) {
+        String::new()
+    } else {
+        format!("{question:?} at {pressure}, {muscle:?}")
+    };
     (case, ending)
 }
 
@@ -234,7 +300,10 @@ fn ask(muscle: &Muscle, pressure: Pressure, question: Option<Given>) -> Ending {
         Ok(None) => Ending::Solved { evaluations: 0 },
         Ok(Some(found)) => wrong_with(&found, question)
             .map_or(Ending::Solved { evaluations: found.convergence.evaluations }, Ending::Wrong),
-        Err(error) => Ending::Refused(error.fault(), error.to_string()),
+        Err(error) if error.fault() == Fault::NotConverged => {
+            Ending::Lost(error.to_string(), Judgement::of(muscle, pressure, question))
+        }
+        Err(error) => Ending::Refused(error.fault()),
     }
 }
 
@@ -268,130 +337,4 @@ fn wrong_with(found: &Response, question: Option<Given>) -> Option<String> {
     } else {
         missed.then(|| format!("{} N, {} m^3 is not what was asked for", found.force_n, found.volume_m3))
     }
-}
-
-/// The pressure \[Pa\] at which a muscle is asked: part of its name, as groups of stiffness over pressure are drawn.
-fn reference(muscle: &Muscle) -> f64 {
-    muscle.name().parse().unwrap_or(1e5)
-}
-
-fn pleated(sampler: &mut Sampler, extras: &[Extra]) -> Result<Muscle, MuscleError> {
-    let has = |extra| extras.contains(&extra);
-    let pressure = sampler.log_between(PRESSURE[0], PRESSURE[1]);
-    let radius = sampler.log_between(0.002, 0.05);
-    let [low, high] = PLEATED_SLENDERNESS;
-    let most = if has(Extra::Misaligned) { BRAIDED_SLENDERNESS[1] } else { high };
-    let length = radius * sampler.log_between(low, most);
-    let count = sampler.one_of(&[Some(3), Some(12), Some(40), None]);
-    let count = count.map_or(FibreCount::Continuous, FibreCount::Discrete);
-    let construction = Construction::Pleated(Pleated::new(Length::m(radius), count)?);
-    let mut muscle = Muscle::new(pressure.to_string(), Length::m(length), construction)?;
-    if has(Extra::Depth) {
-        muscle = muscle.with(Parameter::PleatDepth, radius * sampler.log_between(1e-3, 2.0))?;
-    }
-    if has(Extra::Misaligned) {
-        let most = (0.9 * radius / (radius + 0.4 * length)).asin();
-        muscle = muscle.with(Parameter::Misalignment, most * sampler.between(0.02, 1.0))?;
-    }
-    finished(sampler, muscle, extras, 0.4 * length)
-}
-
-fn lobes(sampler: &mut Sampler) -> Result<Muscle, MuscleError> {
-    lobed(sampler, &[])
-}
-
-/// Cloth from just wider than the fibres at the fittings to plenty.
-fn lobed(sampler: &mut Sampler, extras: &[Extra]) -> Result<Muscle, MuscleError> {
-    let pressure = sampler.log_between(PRESSURE[0], PRESSURE[1]);
-    let radius = sampler.log_between(0.002, 0.05);
-    let fibres = sampler.log_between(3.0, 300.0).round();
-    let open = radius * sampler.log_between(1.02, 6.0);
-    let most = (PLEATED_SLENDERNESS[1] * radius).min(600.0 * open / fibres);
-    let length = sampler.log_between(PLEATED_SLENDERNESS[0] * radius, most.max(0.6 * radius));
-    let construction = Construction::Pleated(Pleated::new(Length::m(radius), FibreCount::Discrete(3))?);
-    let muscle = Muscle::new(pressure.to_string(), Length::m(length), construction)?
-        .with(Parameter::Fibres, fibres)?
-        .with(Parameter::ClothCircumference, std::f64::consts::TAU * open)?;
-    finished(sampler, muscle, extras, open - radius)
-}
-
-fn anything_pleated(sampler: &mut Sampler) -> Result<Muscle, MuscleError> {
-    let lobes = sampler.chance(0.3);
-    let extras = some(sampler, &[Extra::Elastic, Extra::Depth, Extra::Cloth, Extra::Misaligned]);
-    if lobes { lobed(sampler, &extras) } else { pleated(sampler, &extras) }
-}
-
-fn anything_braided(sampler: &mut Sampler) -> Result<Muscle, MuscleError> {
-    let extras = some(sampler, &[Extra::Elastic, Extra::Depth, Extra::Cloth, Extra::Rubber, Extra::Fitting]);
-    braid(sampler, &extras)
-}
-
-/// Each with the probability one half.
-fn some(sampler: &mut Sampler, all: &[Extra]) -> Vec<Extra> {
-    all.iter().copied().filter(|_| sampler.chance(0.5)).collect()
-}
-
-fn braid(sampler: &mut Sampler, extras: &[Extra]) -> Result<Muscle, MuscleError> {
-    let has = |extra| extras.contains(&extra);
-    let pressure = sampler.log_between(PRESSURE[0], PRESSURE[1]);
-    let radius = sampler.log_between(0.002, 0.03);
-    let length = radius * sampler.log_between(BRAIDED_SLENDERNESS[0], BRAIDED_SLENDERNESS[1]);
-    let angle = Angle::deg(sampler.between(BRAID_ANGLE[0], BRAID_ANGLE[1]));
-    let mut braided = Braided::new(Length::m(radius), angle)?.with_fibres(60)?;
-    let fitting = if has(Extra::Fitting) { radius * sampler.between(0.2, 2.0) } else { radius };
-    if has(Extra::Fitting) {
-        braided = braided.with_fitting_radius(Length::m(fitting))?;
-    }
-    let mut muscle = Muscle::new(pressure.to_string(), Length::m(length), Construction::Braided(braided))?;
-    if has(Extra::Depth) {
-        let depth = radius.min(fitting) * sampler.between(0.01, 0.3);
-        muscle = muscle.with_gas_wall(Some(Length::m(depth)))?;
-    }
-    finished(sampler, muscle, extras, 0.5 * radius)
-}
-
-fn cylinder(sampler: &mut Sampler) -> Result<Muscle, MuscleError> {
-    let extras = some(sampler, &[Extra::Elastic, Extra::Rubber]);
-    let pressure = sampler.log_between(PRESSURE[0], PRESSURE[1]);
-    let radius = sampler.log_between(0.002, 0.03);
-    let angle = Angle::deg(sampler.between(BRAID_ANGLE[0], BRAID_ANGLE[1]));
-    let braided = Braided::new(Length::m(radius), angle)?.with_fibres(60)?.with_ends(Ends::Cylinder);
-    let length = Length::m(radius * sampler.log_between(1.0, 100.0));
-    let muscle = Muscle::new(pressure.to_string(), length, Construction::Braided(braided))?;
-    finished(sampler, muscle, &extras, 0.5 * radius)
-}
-
-/// With what has a stiffness: elastic fibres, a bladder, and cloth that comes taut within twice the `room`.
-fn finished(
-    sampler: &mut Sampler,
-    mut muscle: Muscle,
-    extras: &[Extra],
-    room: f64,
-) -> Result<Muscle, MuscleError> {
-    let (pressure, radius, length) = (reference(&muscle), muscle.radius().si(), muscle.length().si());
-    if extras.contains(&Extra::Elastic) {
-        let pull = match muscle.construction() {
-            Construction::Braided(braided) => {
-                std::f64::consts::TAU * (radius / braided.braid_angle().si().sin()).powi(2)
-            }
-            Construction::Pleated(_) => radius * length,
-        } * pressure;
-        let total = pull / sampler.log_between(STRETCH[0], STRETCH[1]);
-        let each = total / muscle.fibres().map_or(1.0, f64::from);
-        muscle = muscle.with_fibre(Fibre::new(Force::n(each))?)?;
-    }
-    if extras.contains(&Extra::Rubber) {
-        let wall = radius * sampler.log_between(0.01, 0.3);
-        let c10 = Pressure::pa(pressure * radius / wall * sampler.log_between(RUBBER[0], RUBBER[1]));
-        let second = if sampler.chance(0.5) { sampler.between(0.0, 0.5) } else { 0.0 };
-        let c01 = Pressure::pa(second * c10.si());
-        muscle = muscle.with_bladder(Bladder::new(c10, c01, Length::m(wall))?)?;
-    }
-    if extras.contains(&Extra::Cloth) {
-        let unfolded = muscle.end_radius().si() + room * sampler.log_between(1e-3, 2.0);
-        let [low, high] = CLOTH[usize::from(!muscle.is_pleated())];
-        let stiffness = LineStiffness::n_per_m(pressure * radius * sampler.log_between(low, high));
-        muscle = muscle.with_unfolding(Unfolding::new(stiffness, Length::m(unfolded))?);
-    }
-    Ok(muscle)
 }

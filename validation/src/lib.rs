@@ -13,6 +13,7 @@ pub mod domain;
 mod energy;
 mod fluidic_muscle;
 mod force_laws;
+pub mod integrals;
 mod isobars;
 mod limits;
 mod lobes;
@@ -59,6 +60,7 @@ pub const CHECKS: &[fn() -> Check] = &[
     derivative::stiffness,
     isobars::one_by_one,
     domain::sample,
+    domain::by_integrals,
     membrane::spheres::sphere,
     membrane::spheres::limit_points,
     membrane::spheres::triangles,

@@ -6,7 +6,7 @@ use bulge_design::gas::{
 };
 use bulge_model::Extended;
 use bulge_muscles::units::Quantity;
-use bulge_muscles::{Force, Length, Pressure, Ratio, Volume};
+use bulge_muscles::{Force, Length, Muscle, Pressure, Ratio, Volume};
 use bulge_report::lines_svg;
 use clap::{Args, Subcommand};
 use serde_json::json;
@@ -284,6 +284,22 @@ impl Fill {
         Ok(text + &wrote)
     }
 
+    /// A hole that fits into the muscle's end.
+    fn hole(muscle: &Muscle, text: &str) -> Result<Orifice, Failure> {
+        let diameter = quantity::<Length>("--hole", text)?.si();
+        let most = 2.0 * muscle.end_radius().si();
+        if diameter > most {
+            let what = format!(
+                "a hole of {} mm is wider than the end of {}, {} mm: give its diameter, such as \"2 mm\"",
+                significant(1e3 * diameter, 4),
+                muscle.name(),
+                significant(1e3 * most, 4)
+            );
+            return Err(Failure::Value { option: "--hole", what });
+        }
+        Ok(Orifice::hole(diameter)?)
+    }
+
     fn filling<'a>(&self, muscle: &'a Extended) -> Result<Filling<'a>, Failure> {
         let pressure_pa = quantity::<Pressure>("--supply", &self.supply)?.si();
         let temperature_k = AMBIENT_TEMPERATURE_K;
@@ -293,7 +309,7 @@ impl Fill {
             None => Supply::Constant { pressure_pa, temperature_k },
         };
         let orifice = match (&self.hole, &self.conductance) {
-            (Some(hole), _) => Orifice::hole(quantity::<Length>("--hole", hole)?.si())?,
+            (Some(hole), _) => Self::hole(muscle.muscle(), hole)?,
             (None, Some(text)) => {
                 Orifice::new(in_unit("--conductance", text, &CONDUCTANCE)?, self.critical_ratio)?
             }

@@ -48,10 +48,14 @@ pub(crate) fn summary(isobars: &[Isobar]) -> String {
             text,
             "{}   ({})\n",
             Pressure::pa(isobar.pressure_pa),
-            isobar.contraction_limit.map_or("contraction limit not found".to_owned(), |limit| format!(
-                "force vanishes at {} %",
-                significant(100.0 * limit, 5)
-            ))
+            isobar.contraction_limit.map_or("contraction limit not found".to_owned(), |limit| {
+                let limit = significant(100.0 * limit, 5);
+                if isobar.ends_slack {
+                    format!("ends at {limit} %, where the fibres slacken: the bladder carries the rest")
+                } else {
+                    format!("force vanishes at {limit} %")
+                }
+            })
         );
         let heading = ["contraction", "force", "volume", "largest radius", "fibre tension", "stiffness"];
         let units = ["%", "N", "ml", "mm", "N", "N/mm"];

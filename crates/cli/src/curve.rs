@@ -19,8 +19,10 @@ use crate::shape::bulge;
 const MAX_POINTS: usize = 1_000_000;
 /// Most members of a VTK series: each is about a megabyte.
 const MAX_FRAMES: usize = 1000;
-/// Where an inextensible pleated muscle starts by itself: at 0 its force is infinite.
-const FIRST_CONTRACTION: f64 = 0.01;
+/// Part of the way from drawn-out fibres to the limit at which a curve starts by itself: 1 % of a pleated muscle that contracts by 40 %.
+const DRAWN_OUT: f64 = 0.025;
+/// How far before its limit the curve of elastic fibres starts that pull only where they are stretched.
+const FIRST_STRETCH: f64 = 0.05;
 
 /// Isobaric characteristics: force and volume over the contraction.
 #[derive(Debug, Args)]
@@ -155,10 +157,17 @@ impl CurveCommand {
             range::<Ratio>("--contraction", text)?
         } else {
             let muscle = extended.muscle();
-            let limit = extended.contraction_limit(pressure, self.method.approach());
-            let limit = limit.map_err(about_extended(muscle, pressure))?;
-            let singular = muscle.is_pleated() && muscle.fibre().is_none();
-            [if singular { FIRST_CONTRACTION * limit / 0.4 } else { 0.0 }, limit]
+            let end = extended.range_end(pressure, self.method.approach());
+            let limit = end.map_err(about_extended(muscle, pressure))?.contraction();
+            let longest = Problem::new(muscle, pressure).map_err(about(muscle, pressure))?.longest();
+            match longest {
+                // Next to where the fibres are drawn straight the force has no limit.
+                Some(longest) if longest >= 0.0 => [longest + DRAWN_OUT * (limit - longest), limit],
+                // It pulls only where it is drawn out.
+                Some(longest) if limit <= 0.0 => [limit + 0.5 * (longest - limit), limit],
+                None if limit <= 0.0 => [limit - FIRST_STRETCH, limit],
+                _ => [0.0, limit],
+            }
         };
         if low >= high {
             let what = format!(
@@ -237,6 +246,7 @@ fn document(muscle: &Muscle, isobars: &[Isobar]) -> serde_json::Value {
             json!({
                 "pressure_pa": isobar.pressure_pa,
                 "contraction_limit": isobar.contraction_limit,
+                "ends_slack": isobar.ends_slack,
                 "points": isobar.points,
                 "without_equilibrium": without,
             })

@@ -145,8 +145,9 @@ impl ShapeCommand {
                 "{} %   ({})",
                 significant(100.0 * r.contraction, 5),
                 limit.map_or("limit not found".to_owned(), |limit| format!(
-                    "limit {} %",
-                    significant(100.0 * limit, 5)
+                    "limit {} %{}",
+                    significant(100.0 * limit, 5),
+                    if found.ends_slack { ", where the fibres slacken" } else { "" }
                 ))
             ),
         );

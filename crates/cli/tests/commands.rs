@@ -104,6 +104,91 @@ fn what_is_wrong_with_the_input_is_status_1() {
     }
 }
 
+/// Files for every way in: a braid, data, a test's protocol, a sweep, a joint.
+fn ways_in(folder: &Folder, wall: &str, contraction: &str, pressure: &str) -> Vec<Vec<String>> {
+    let braid = format!(
+        "name = \"b\"\nkind = \"braided\"\nlength = \"120 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nwall = \"{wall}\"\n"
+    );
+    let muscle = folder.write("m.toml", &braid);
+    let row = |i: u32| format!("{},{contraction},{}\n", pressure.trim_end_matches(" bar"), 300 - 8 * i);
+    let rows: String = (0..30).map(row).collect();
+    let rows = rows.replace(" %", "");
+    let data = folder.write("d.csv", &format!("pressure [bar],contraction [%],force [N]\n{rows}"));
+    let block = format!(
+        "[[block]]\npressures = [\"{pressure}\"]\ncontraction = \"1 %..{contraction}\"\nshape = \"loops\"\nwave = \"triangle\"\ncycles = 1\nperiod = \"50 s\"\nrows = 10\n"
+    );
+    let protocol = folder.write("p.toml", &block);
+    let sweep = format!(
+        "name = \"s\"\nmuscle = \"m.toml\"\npressure = \"{pressure}\"\noutputs = [\"force\"]\n[axes.contraction]\nrange = \"1 %..{contraction}\"\npoints = 3\n"
+    );
+    let sweep = folder.write("s.toml", &sweep);
+    let joint = format!(
+        "name = \"j\"\nmuscle = \"m.toml\"\nkind = \"pulley\"\nradius = \"20 mm\"\ncontraction = \"{contraction}\"\nangle = \"-5 deg..5 deg\"\npressure = \"0.5 bar..3 bar\"\n"
+    );
+    let joint = folder.write("j.toml", &joint);
+    let (range, sides) = (format!("0 %..{contraction}"), format!("{pressure},2 bar"));
+    let [out, model] = ["out", "model.toml"].map(|name| folder.path(name));
+    [
+        &["shape", &muscle, "--pressure", pressure, "--contraction", contraction][..],
+        &["curve", &muscle, "--pressure", pressure, "--contraction", &range, "--csv", &model],
+        &[
+            "size",
+            "--muscle",
+            &muscle,
+            "--force",
+            "10 N",
+            "--stroke",
+            "5 mm",
+            "--pressure",
+            pressure,
+            "--max-contraction",
+            contraction,
+        ],
+        &["joint", &joint, "--pressure", &sides],
+        &["compare", &data, "--muscle", &muscle, "--out", &out],
+        &["fit", &data, "--muscle", &muscle, "--with", "radius-error", "--out", &model],
+        &["simulate", &muscle, "--protocol", &protocol, "--seed", "1", "--out", &out],
+        &["sweep", &sweep, "--out", &out],
+        &["air", "shut", &muscle, "--pressure", pressure, "--contraction", contraction],
+    ]
+    .map(|arguments| arguments.iter().map(ToString::to_string).collect())
+    .to_vec()
+}
+
+/// Contractions, walls, pressures and holes beyond what a muscle can have: one message and status 1, whatever the way in, and nothing is written.
+#[test]
+fn what_no_muscle_can_have_is_refused_by_every_way_in() {
+    let folder = Folder::new("refused");
+    for (wall, contraction, pressure) in [
+        ("2 mm", "100 %", "2 bar"),
+        ("2 mm", "120 %", "2 bar"),
+        ("-2 mm", "10 %", "2 bar"),
+        ("10 mm", "10 %", "2 bar"),
+        ("2 mm", "10 %", "-2 bar"),
+        ("2 mm", "10 %", "NaN bar"),
+        ("2 mm", "10 %", "inf bar"),
+    ] {
+        for arguments in ways_in(&folder, wall, contraction, pressure) {
+            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            let (status, message) = failure(&arguments);
+            let case = format!("wall {wall}, {contraction}, {pressure}, {}: {message}", arguments[0]);
+            assert_eq!(status, 1, "{case}");
+            assert!(message.starts_with("error: ") && message.matches("error: ").count() == 1, "{case}");
+        }
+        assert_eq!(
+            folder.names(),
+            ["d.csv", "j.toml", "m.toml", "p.toml", "s.toml"],
+            "{wall}, {contraction}, {pressure}"
+        );
+    }
+    for hole in ["-2 mm", "0 mm", "20.1 mm", "NaN mm"] {
+        let muscle = folder.path("m.toml");
+        let (status, message) =
+            failure(&["air", "fill", &muscle, "--supply", "3 bar", "--hole", hole, "--held", "10 %"]);
+        assert!(status == 1 && message.contains("hole"), "{hole}: {message}");
+    }
+}
+
 #[test]
 fn usage_is_status_2() {
     assert_eq!(failure(&["shape", "ppam-2-r16"]).0, 2);
@@ -125,6 +210,7 @@ fn what_does_not_exist_is_status_3_with_the_limit() {
         ("ppam-2-r16", "--force", "-5 N", "41.8497 %"),
         ("ppam-2-r16", "--volume", "1 l", "435.8984 ml"),
         ("ppam-2-r16", "--volume", "1 ml", "88.4672 ml"),
+        ("dmsp-20-250", "--force", "1 MN", "the largest force found is"),
         ("dmsp-20-250", "--contraction", "40 %", "35.4"),
         ("dmsp-20-250", "--contraction", "-9.5 %", "greater than -8."),
     ] {
@@ -177,6 +263,44 @@ fn each_pressure_has_a_range_of_its_own() {
         limit.as_f64().unwrap()
     });
     assert!(limits[1] > limits[0] + 0.02, "{limits:?}");
+}
+
+/// Rubber strained by wide fittings carries all of the pressure before the force vanishes: one limit in `shape`, in its errors and in `curve`, which ends there.
+#[test]
+fn a_muscle_whose_fibres_slacken_ends_there() {
+    let folder = Folder::new("slacken");
+    let text = "name = \"b\"\nkind = \"braided\"\nlength = \"60 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nwall = \"3 mm\"\n\
+        [effects.wall-thickness]\n[effects.end-radius]\nradius = \"16 mm\"\n[effects.bladder-elasticity]\nc10 = \"2 MPa\"\n";
+    let muscle = folder.write("braid.toml", text);
+    let shape = ["shape", &muscle, "--pressure", "2 bar", "--contraction"];
+    let pulling = json(&[&shape[..], &["10 %", "--json"]].concat());
+    assert_eq!(pulling["ends_slack"], true, "{pulling}");
+    let limit = pulling["contraction_limit"].as_f64().unwrap();
+    let printed = String::from_utf8(bulge(&[&shape[..], &["10 %"]].concat()).stdout).unwrap();
+    let (status, message) = failure(&[&shape[..], &["40 %"]].concat());
+    assert_eq!(status, 3);
+    for (text, digits) in [(&printed, 3), (&message, 4)] {
+        let named = format!("{:.digits$} %", 100.0 * limit);
+        assert!(text.contains(&named) && text.contains("slack"), "{named}: {text}");
+    }
+    let curve = ["curve", &muscle, "--pressure", "2 bar", "--points", "9"];
+    let document = json(&[&curve[..], &["--json"]].concat());
+    let curve_json = &document["curves"][0];
+    let points = curve_json["points"].as_array().unwrap();
+    assert_eq!((curve_json["contraction_limit"].as_f64(), points.len()), (Some(limit), 9));
+    assert_eq!(curve_json["ends_slack"], true);
+    assert!(points[8]["force_n"].as_f64().unwrap() > 1.0, "{curve_json}");
+    let text = String::from_utf8(bulge(&curve).stdout).unwrap();
+    assert!(text.contains(&format!("{:.3} %, where the fibres slacken", 100.0 * limit)), "{text}");
+    // Farther is left out, with the limit.
+    let farther = [&curve[..], &["--contraction", "0 %..40 %"]].concat();
+    let text = String::from_utf8(bulge(&farther).stdout).unwrap();
+    assert!(text.contains("left out") && text.contains(&format!("{:.4} %", 100.0 * limit)), "{text}");
+    // Before, its fibres would have to be longer than they are.
+    assert!(text.contains("drawn straight") && !text.contains("converge"), "{text}");
+    // A force beyond all that it reaches is answered by the largest one.
+    let (status, message) = failure(&["shape", &muscle, "--pressure", "2 bar", "--force", "10 MN"]);
+    assert!(status == 3 && message.contains("the largest force found is"), "{message}");
 }
 
 #[test]

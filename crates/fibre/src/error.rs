@@ -49,14 +49,6 @@ pub enum FibreError {
         /// Radius at the fittings \[m\].
         end_m: f64,
     },
-    /// No gas is left inside the wall.
-    #[error("the gas acts {:.4} mm inside a braid whose radius is {:.4} mm: `effects.wall-thickness` must leave room for it", 1e3 * wall_m, 1e3 * radius_m)]
-    WallTooThick {
-        /// Thickness of the wall \[m\].
-        wall_m: f64,
-        /// Radius of the braid, or of its fittings \[m\].
-        radius_m: f64,
-    },
     /// Fittings on which the fibres of the braid would lie along the parallels.
     #[error("the fittings have a radius of {:.4} mm, and this braid can't be wider than {:.4} mm, where its fibres lie along the circumference: at most {:.4} mm", 1e3 * end_m, 1e3 * widest_m, 1e3 * WIDEST_FITTING * widest_m)]
     FittingTooWide {
@@ -216,8 +208,8 @@ impl FibreError {
             | Self::NotFinite { .. }
             | Self::NotPositive { .. }
             | Self::ClothTooNarrow { .. }
-            | Self::WallTooThick { .. }
             | Self::FittingTooWide { .. }
+            | Self::NoLength { .. }
             | Self::NoClosedForm { .. }
             | Self::NothingToShoot => Fault::Input,
             _ => Fault::NoSolution,

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::FibreError;
-use crate::outcome::Approach;
+use crate::outcome::{Approach, has_length};
 use crate::problem::Problem;
-use crate::shape::Response;
-use crate::solve::{ADIABATIC, closed_stiffness};
+use crate::shape::{Method, Response};
+use crate::solve::{ADIABATIC, Found, RangeEnd, closed_stiffness};
 use crate::unknowns::Unknowns;
 
 /// Contractions solved one after the other, each from its neighbour. A fixed number, so that results don't depend on the number of threads.
@@ -19,8 +19,10 @@ const CHUNK: usize = 64;
 pub struct Isobar {
     /// Gauge pressure \[Pa\].
     pub pressure_pa: f64,
-    /// Contraction at which the force vanishes, if it was found.
+    /// Contraction at which the force vanishes, or the fibres slacken where that comes first; if it was found.
     pub contraction_limit: Option<f64>,
+    /// Whether the fibres slacken there, with a force left.
+    pub ends_slack: bool,
     /// Equilibria in the order of the contractions asked for; those that don't exist are left out.
     pub points: Vec<Response>,
     /// What was left out, and why.
@@ -33,7 +35,7 @@ pub struct Isobar {
 /// Where nothing but pressure acts on inextensible fibres, the shape doesn't depend on the pressure and is computed once.
 ///
 /// # Errors
-/// What [`Problem::new`] says, or an approach that doesn't fit the muscle. A contraction without
+/// What [`Problem::new`] says, an approach that doesn't fit the muscle, or a contraction of 100 % and more. A contraction without
 /// equilibrium is no error: it is listed in [`Isobar::without`].
 pub fn isobars(
     muscle: &Muscle,
@@ -58,40 +60,62 @@ impl Problem {
     /// # Errors
     /// See [`isobars`].
     pub fn isobar(&self, contractions: &[f64], approach: Approach) -> Result<Isobar, FibreError> {
-        let limit = self.contraction_limit(approach).ok();
+        contractions.iter().try_for_each(|contraction| has_length(*contraction))?;
+        let (end, longest) = (self.range_end(approach).ok(), self.longest());
         let method = self.method(approach)?;
         let solve = |chunk: &[f64]| {
             let mut last = [None, None];
             let solved = chunk.iter().map(|&contraction| {
-                if let Some(limit) = limit.filter(|limit| contraction > *limit) {
-                    return (contraction, Err(FibreError::BeyondLimit { contraction, limit }));
+                if let Some(end) = end.filter(|end| contraction > end.contraction()) {
+                    return (contraction, Err(end.beyond(contraction)));
+                }
+                if let Some(limit) = longest.filter(|longest| contraction <= *longest) {
+                    return (contraction, Err(FibreError::TooLong { contraction, limit }));
                 }
                 let found = self.at(method, contraction, extrapolate(last, contraction));
                 if let Ok(found) = &found {
                     last = [last[1], found.unknowns().map(|unknowns| (contraction, unknowns))];
                 }
-                let pulling = found.and_then(|found| match found.response {
-                    response if self.pulls(&response) => Ok(response),
-                    response => Err(FibreError::WouldPush { contraction, force_n: response.force_n }),
-                });
-                (contraction, pulling)
+                (contraction, found)
             });
-            solved.collect::<Vec<_>>()
+            let mut solved: Vec<_> = solved.collect();
+            self.backwards(method, &mut solved);
+            solved
         };
         let solved: Vec<Vec<_>> = contractions.par_chunks(CHUNK).map(solve).collect();
         let mut isobar = Isobar {
             pressure_pa: self.pressure,
-            contraction_limit: limit,
+            contraction_limit: end.map(RangeEnd::contraction),
+            ends_slack: matches!(end, Some(RangeEnd::FibresSlacken(_))),
             points: Vec::new(),
             without: Vec::new(),
         };
-        for (contraction, response) in solved.into_iter().flatten() {
-            match response {
-                Ok(response) => isobar.points.push(response),
+        for (contraction, found) in solved.into_iter().flatten() {
+            match found {
+                Ok(Found { response, .. }) if self.pulls(&response) => isobar.points.push(response),
+                Ok(Found { response: Response { force_n, .. }, .. }) => {
+                    isobar.without.push((contraction, FibreError::WouldPush { contraction, force_n }));
+                }
                 Err(error) => isobar.without.push((contraction, error)),
             }
         }
         Ok(isobar)
+    }
+
+    /// What was not found on the way forth, on the way back: a drawn-out muscle is hard to find without a neighbour.
+    fn backwards(&self, method: Method, solved: &mut [(f64, Result<Found, FibreError>)]) {
+        let mut last = [None, None];
+        for (contraction, found) in solved.iter_mut().rev() {
+            if let (Err(FibreError::NotConverged { .. }), Some(near)) =
+                (&*found, extrapolate(last, *contraction))
+                && let Ok(better) = self.at(method, *contraction, Some(near))
+            {
+                *found = Ok(better);
+            }
+            if let Ok(found) = found {
+                last = [last[1], found.unknowns().map(|unknowns| (*contraction, unknowns))];
+            }
+        }
     }
 
     /// The characteristic of a scale-free muscle at this pressure from that at another: forces are proportional to the pressure.

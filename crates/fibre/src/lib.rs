@@ -30,4 +30,4 @@ pub use problem::{
     WIDEST_FITTING,
 };
 pub use shape::{Convergence, MeridianPoint, Method, Response, Shape};
-pub use solve::{ADIABATIC, AMBIENT_PRESSURE, Given, Gradient};
+pub use solve::{ADIABATIC, AMBIENT_PRESSURE, Given, Gradient, RangeEnd};

@@ -146,12 +146,7 @@ impl Problem {
         contraction: f64,
         outcome: impl FnOnce() -> Result<Outcome<N>, FibreError>,
     ) -> Result<Outcome<N>, FibreError> {
-        if !contraction.is_finite() {
-            return Err(FibreError::NotFinite { what: "contraction", value: contraction });
-        }
-        if contraction >= 1.0 {
-            return Err(FibreError::NoLength { contraction });
-        }
+        has_length(contraction)?;
         if self.is_singular() && contraction <= 0.0 {
             return Err(FibreError::TooLong { contraction, limit: 0.0 });
         }
@@ -185,6 +180,17 @@ impl Problem {
         let size = net.half_fibre * net.half_fibre;
         (net.area_factor * net.compliance * std::f64::consts::TAU * size, BALLOONING)
     }
+}
+
+/// Refuses a contraction that leaves no length, whatever the muscle.
+pub(crate) fn has_length(contraction: f64) -> Result<(), FibreError> {
+    if !contraction.is_finite() {
+        return Err(FibreError::NotFinite { what: "contraction", value: contraction });
+    }
+    if contraction >= 1.0 {
+        return Err(FibreError::NoLength { contraction });
+    }
+    Ok(())
 }
 
 fn by_cylinder<const N: usize>(net: &Net<Dual<N>>, contraction: f64) -> Result<Outcome<N>, FibreError> {

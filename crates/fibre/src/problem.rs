@@ -70,8 +70,8 @@ impl Problem {
     ///
     /// # Errors
     /// [`FibreError::PressureNotPositive`], [`FibreError::NotFinite`], [`FibreError::OutOfRange`] outside
-    /// [`PLEATED_SLENDERNESS`], [`BRAIDED_SLENDERNESS`], [`BRAID_ANGLE`], [`LOBED_FIBRES`] and [`LOBED_LENGTH`], [`FibreError::ClothTooNarrow`],
-    /// [`FibreError::WallTooThick`] or [`FibreError::FittingTooWide`].
+    /// [`PLEATED_SLENDERNESS`], [`BRAIDED_SLENDERNESS`], [`BRAID_ANGLE`], [`LOBED_FIBRES`] and [`LOBED_LENGTH`], [`FibreError::ClothTooNarrow`]
+    /// or [`FibreError::FittingTooWide`].
     pub fn new(muscle: &Muscle, pressure: Pressure) -> Result<Self, FibreError> {
         check_ranges(muscle)?;
         Self::checked(Arc::new(muscle.clone()), pressure)
@@ -237,12 +237,6 @@ fn check_ranges(muscle: &Muscle) -> Result<(), FibreError> {
         let (taut, end) = (cloth.unfolded_radius().si(), muscle.end_radius().si());
         if taut < end {
             return Err(FibreError::ClothTooNarrow { taut_m: taut, end_m: end });
-        }
-    }
-    if let Some(wall) = muscle.gas_wall() {
-        let (wall_m, radius_m) = (wall.si(), muscle.radius().si().min(muscle.end_radius().si()));
-        if wall_m >= radius_m {
-            return Err(FibreError::WallTooThick { wall_m, radius_m });
         }
     }
     let inside = |what, value: f64, [low, high]: [f64; 2]| {

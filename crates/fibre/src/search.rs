@@ -16,7 +16,7 @@ use crate::unknowns::Unknowns;
 /// Roots in the contraction are found to a Newton step of this size, whose end is exact to its square.
 const ROOT_TOLERANCE: f64 = 1e-9;
 /// Beyond this contraction no muscle is looked for. A slender one pulls up to 0.5431, a long braid up to 1 - 1/sqrt(3), one on wide fittings farther.
-const FAR: f64 = 0.99;
+pub(crate) const FAR: f64 = 0.99;
 /// Part of the meridional force below which fibres count as slack where there is no equilibrium any more.
 const NEARLY_SLACK: f64 = 1e-3;
 /// Step of the contraction from one equilibrium to the next below which there is no next one.
@@ -145,12 +145,16 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
         self.near.is_some_and(|near| near.is_slack_within(&self.problem.net, NEARLY_SLACK))
     }
 
-    /// Upwards by Newton steps until the sign changes; where there is no equilibrium, with steps half as long until there is none beside the last one.
-    fn up(&mut self, mut low: f64, mut x: f64, tolerance: [f64; 2]) -> Result<Step, FibreError> {
+    /// Upwards by Newton steps until the sign changes, as it has at `end` if that is before [`FAR`]; where there is no equilibrium, with steps half as long until
+    /// there is none beside the last one.
+    fn up(&mut self, mut low: f64, [mut x, end]: [f64; 2], tolerance: [f64; 2]) -> Result<Step, FibreError> {
         // The longest step that is trusted, and the contraction at which fibres were seen slack.
         let (mut reach, mut slack) = (f64::INFINITY, FAR);
         let mut failed = false;
         for _ in 0..MOST_STEPS {
+            if end < FAR && x >= end {
+                return Ok(Step::Between(low, end));
+            }
             match self.value(x, failed && x - low < BESIDE) {
                 Ok((y, slope)) if y > 0.0 => {
                     let gone = if failed { 1.0 } else { 2.0 } * (x - low);
@@ -223,11 +227,12 @@ impl Problem {
         if room < DRAWN_OUT_ROOM { room.max(LEAST_ROOM) } else { 1.0 }
     }
 
-    /// The contraction at which `excess`, which falls with the contraction, is zero. Its derivative is taken from the response.
+    /// The contraction at which `excess`, which falls with the contraction, is zero. Its derivative is taken from the response. The way leads from a start to an end
+    /// where the excess is negative, or [`FAR`].
     pub(crate) fn root(
         &self,
         method: Method,
-        start: f64,
+        [start, end]: [f64; 2],
         seen: &mut Seen,
         excess: impl Fn(&Found) -> f64,
     ) -> Result<Found, FibreError> {
@@ -239,7 +244,7 @@ impl Problem {
         } else {
             [ROOT_TOLERANCE * self.room_at(low), 0.0]
         };
-        let (low, high) = match walk.up(low, x, tolerance)? {
+        let (low, high) = match walk.up(low, [x, end], tolerance)? {
             Step::Root(root) => return walk.at(root, false),
             Step::Between(low, high) => (low, high),
         };

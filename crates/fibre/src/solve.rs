@@ -6,7 +6,7 @@ use bulge_numerics::Dual;
 use crate::FibreError;
 use crate::outcome::{Approach, Outcome, Solution};
 use crate::problem::{Problem, Variable};
-use crate::search::Seen;
+use crate::search::{FAR, Seen};
 use crate::shape::{Method, Response};
 use crate::shooting::{EXACT, Ending, Total, USUAL};
 use crate::start::longest;
@@ -31,6 +31,34 @@ pub enum Given {
     Force(f64),
     /// Enclosed volume with circular cross-sections of the fibre radius \[m^3\].
     Volume(f64),
+}
+
+/// Where the equilibria that pull end as a muscle contracts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RangeEnd {
+    /// The contraction at which the force vanishes.
+    ForceVanishes(f64),
+    /// The contraction at which the fibres slacken, where that comes first: from there on the bladder carries more than the pressure.
+    FibresSlacken(f64),
+}
+
+impl RangeEnd {
+    /// The contraction.
+    #[must_use]
+    pub fn contraction(self) -> f64 {
+        match self {
+            Self::ForceVanishes(contraction) | Self::FibresSlacken(contraction) => contraction,
+        }
+    }
+
+    /// Why there is no pulling equilibrium at a contraction beyond it.
+    #[must_use]
+    pub fn beyond(self, contraction: f64) -> FibreError {
+        match self {
+            Self::ForceVanishes(limit) => FibreError::BeyondLimit { contraction, limit },
+            Self::FibresSlacken(limit) => FibreError::Slack { contraction, limit: Some(limit) },
+        }
+    }
 }
 
 /// Exact derivatives of force and volume at an equilibrium.
@@ -89,11 +117,8 @@ impl Problem {
         if !matches!(error, FibreError::NotConverged { .. }) {
             return error;
         }
-        match self.contraction_limit(approach) {
-            Ok(limit) if contraction > limit => FibreError::BeyondLimit { contraction, limit },
-            Err(FibreError::Slack { limit: Some(limit), .. }) if contraction > limit => {
-                FibreError::Slack { contraction, limit: Some(limit) }
-            }
+        match self.range_end(approach) {
+            Ok(end) if contraction > end.contraction() => end.beyond(contraction),
             _ => error,
         }
     }
@@ -101,8 +126,8 @@ impl Problem {
     /// The equilibrium at a contraction, step by step from where one is found.
     fn walked(&self, method: Method, contraction: f64) -> Option<Found> {
         let start = self.contraction_start().min(contraction);
-        self.root(method, start, &mut { Seen::NOTHING }, |found| contraction - found.response.contraction)
-            .ok()
+        let nothing = &mut { Seen::NOTHING };
+        self.root(method, [start, FAR], nothing, |found| contraction - found.response.contraction).ok()
     }
 
     /// The contraction at which the force vanishes.
@@ -113,10 +138,22 @@ impl Problem {
         self.at_limit(self.method(approach)?).map(|found| found.response.contraction)
     }
 
+    /// Where the equilibria that pull end as the muscle contracts: the one limit that every message and table names.
+    ///
+    /// # Errors
+    /// [`FibreError::NotConverged`], or that there is no equilibrium at all.
+    pub fn range_end(&self, approach: Approach) -> Result<RangeEnd, FibreError> {
+        match self.contraction_limit(approach) {
+            Ok(limit) => Ok(RangeEnd::ForceVanishes(limit)),
+            Err(FibreError::Slack { limit: Some(limit), .. }) => Ok(RangeEnd::FibresSlacken(limit)),
+            Err(error) => Err(error),
+        }
+    }
+
     /// The equilibrium at which the force vanishes.
     fn at_limit(&self, method: Method) -> Result<Found, FibreError> {
         let start = self.contraction_start();
-        self.root(method, start, &mut { Seen::NOTHING }, |found| found.response.force_n)
+        self.root(method, [start, FAR], &mut { Seen::NOTHING }, |found| found.response.force_n)
     }
 
     /// Exact derivatives of force and volume with respect to the contraction, the pressure and every parameter of the muscle, by dual
@@ -173,11 +210,8 @@ impl Problem {
             Err(error) => return Err(error),
         };
         // Say where the limit is, if that can be found.
-        match self.contraction_limit(approach) {
-            Ok(limit) if contraction > limit => return Err(FibreError::BeyondLimit { contraction, limit }),
-            Err(FibreError::Slack { limit: Some(limit), .. }) if contraction > limit => {
-                return Err(FibreError::Slack { contraction, limit: Some(limit) });
-            }
+        match self.range_end(approach) {
+            Ok(end) if contraction > end.contraction() => return Err(end.beyond(contraction)),
             _ => {}
         }
         match self.longest() {
@@ -203,7 +237,8 @@ impl Problem {
             return Err(FibreError::Pushes { force_n: force, limit: self.contraction_limit(approach)? });
         }
         let mut seen = Seen::NOTHING;
-        match self.root(method, self.contraction_start(), &mut seen, |found| found.response.force_n - force) {
+        let way = [self.contraction_start(), FAR];
+        match self.root(method, way, &mut seen, |found| found.response.force_n - force) {
             Err(FibreError::NotConverged { .. }) if seen.force < force => {
                 let Seen { force: high_n, contraction, .. } = seen;
                 Err(FibreError::ForceTooLarge { force_n: force, high_n, contraction })
@@ -236,7 +271,8 @@ impl Problem {
         }
         let mut seen = Seen::NOTHING;
         let start = self.contraction_start().min(limit - 0.05 * limit.abs());
-        match self.root(method, start, &mut seen, |found| volume - found.response.volume_m3) {
+        // Beyond the limit it falls again.
+        match self.root(method, [start, limit], &mut seen, |found| volume - found.response.volume_m3) {
             Ok(found) if self.pulls(&found.response) => Ok(found),
             Err(_) if seen.volume > volume => {
                 Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: seen.volume })
@@ -252,8 +288,9 @@ impl Problem {
         self.net.turn == 0.0 && self.net.compliance == 0.0
     }
 
-    /// The contraction at which inextensible fibres are drawn straight, if the muscle has one.
-    pub(crate) fn longest(&self) -> Option<f64> {
+    /// The contraction at which inextensible fibres are drawn straight, if the muscle has one: equilibria lie beyond it.
+    #[must_use]
+    pub fn longest(&self) -> Option<f64> {
         if self.net.compliance != 0.0 {
             return None;
         }

@@ -3,7 +3,9 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use bulge_fibre::{Approach, Problem};
-use bulge_muscles::{Length, LineStiffness, Muscle, Parameter, Pressure, Quantity, Unfolding, preset};
+use bulge_muscles::{
+    Bladder, Length, LineStiffness, Muscle, Parameter, Pressure, Quantity, Unfolding, preset,
+};
 
 fn braid(length_mm: f64, angle_deg: f64) -> Muscle {
     let file = format!(
@@ -111,20 +113,36 @@ fn hard_equilibria_obey_virtual_work() {
     }
 }
 
-/// What a cold search costs: the counts are the same on every machine. Those of straight fibres rose to 669 when their meridians were first taken by
-/// quadratures whose integrands had 1/r in them.
+/// What a cold search costs: evaluations of the ODE's right-hand side and of the quadratures' integrands, the same on every machine. 336 to 410 of a pleated muscle
+/// until its meridians became quadratures; 471 to 669 while their integrands had 1/r in them; since the substitution in the radius these. A count below its
+/// range is a gain: then these numbers and those of `docs/speed.md` are to be brought up to date.
 #[test]
 fn evaluations_stay_few() {
-    let pleated = Problem::new(&preset("ppam-2-r16").unwrap(), Pressure::bar(1.0)).unwrap();
-    for (contraction, most) in [(1e-6, 80), (0.05, 210), (0.1, 220), (0.2, 260), (0.3, 270), (0.4, 300)] {
-        let count = pleated.follow(contraction, Approach::Shooting).unwrap().convergence.evaluations;
-        assert!(count <= most, "pleated, {contraction}: {count} evaluations");
-    }
-    for (length, contraction, most) in
-        [(30.0, 0.1, 250), (250.0, 0.1, 600), (250.0, 0.3, 920), (1000.0, 0.3, 2400)]
-    {
-        let problem = Problem::new(&braid(length, 25.0), Pressure::bar(3.0)).unwrap();
-        let count = problem.follow(contraction, Approach::Shooting).unwrap().convergence.evaluations;
-        assert!(count <= most, "braid of {length} mm, {contraction}: {count} evaluations");
+    let pleated = preset("ppam-2-r16").unwrap();
+    let elastic = with(&pleated, &[(Parameter::FibreStiffness, 12e3)]);
+    let rubber = |muscle: Muscle| {
+        muscle.with_bladder(Bladder::new(Pressure::kpa(200.0), Pressure::kpa(50.0), Length::mm(1.5)).unwrap())
+    };
+    let long = braid(250.0, 25.0);
+    for (name, muscle, bar, counts) in [
+        (
+            "pleated",
+            &pleated,
+            1.0,
+            &[(1e-6, 78), (0.05, 207), (0.1, 219), (0.2, 255), (0.3, 267), (0.4, 291)][..],
+        ),
+        ("pleated, elastic", &elastic, 1.0, &[(0.0, 228), (0.1, 504), (0.3, 516)]),
+        ("braid, l0/r0 = 3", &braid(30.0, 25.0), 3.0, &[(0.02, 174), (0.1, 243), (0.2, 279)]),
+        ("braid, l0/r0 = 25", &long, 3.0, &[(0.02, 486), (0.1, 582), (0.2, 702), (0.3, 909)]),
+        ("braid, l0/r0 = 100", &braid(1000.0, 25.0), 3.0, &[(0.1, 1788), (0.2, 2268), (0.3, 2388)]),
+        ("braid with bladder", &rubber(long.clone()).unwrap(), 3.0, &[(0.02, 600), (0.1, 720), (0.2, 903)]),
+    ] {
+        let problem = Problem::new(muscle, Pressure::bar(bar)).unwrap();
+        for (contraction, expected) in counts {
+            let count = problem.follow(*contraction, Approach::Shooting).unwrap().convergence.evaluations;
+            // Rounding of another machine's logarithms may shift a step.
+            let is_near = (f64::from(count) / f64::from(*expected) - 1.0).abs() < 0.05;
+            assert!(is_near, "{name}, {contraction}: {count} evaluations, {expected} expected");
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! One equilibrium of a muscle with its effects, as a value: shape, response, limit, and what the effects changed.
 
-use bulge_fibre::{Approach, Given, MeridianPoint, PleatedNumbers, Problem, Response, Shape};
+use bulge_fibre::{Approach, Given, MeridianPoint, PleatedNumbers, Problem, RangeEnd, Response, Shape};
 use bulge_muscles::{Muscle, Pressure, Quantity};
 use serde::Serialize;
 
@@ -13,8 +13,10 @@ pub struct Equilibrium {
     pub muscle: String,
     /// Meridian, and what follows from it; force and stiffness with the effects.
     pub shape: Shape,
-    /// The contraction at which the muscle pulls no more, where it is found.
+    /// The contraction at which the muscle pulls no more or its fibres slacken, where it is found.
     pub contraction_limit: Option<f64>,
+    /// Whether the fibres slacken there, with a force left.
+    pub ends_slack: bool,
     /// Tension of a fibre over its section \[Pa\], if the section is given.
     pub fibre_stress_pa: Option<f64>,
     /// m, phi_R, f and v of a pleated muscle.
@@ -33,6 +35,7 @@ pub struct EquilibriumDocument<'a> {
     #[serde(flatten)]
     response: &'a Response,
     contraction_limit: Option<f64>,
+    ends_slack: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     fibre_stress_pa: Option<f64>,
     #[serde(flatten)]
@@ -80,9 +83,11 @@ impl Equilibrium {
         approach: Approach,
     ) -> Self {
         let muscle = extended.muscle();
+        let end = extended.range_end(problem.pressure(), approach).ok();
         Self {
             muscle: muscle.name().to_owned(),
-            contraction_limit: extended.contraction_limit(problem.pressure(), approach).ok(),
+            contraction_limit: end.map(RangeEnd::contraction),
+            ends_slack: matches!(end, Some(RangeEnd::FibresSlacken(_))),
             fibre_stress_pa: stress(muscle, &shape.response),
             pleated: problem.pleated_numbers(&shape.response),
             shape,
@@ -99,6 +104,7 @@ impl Equilibrium {
             muscle: &self.muscle,
             response: &self.shape.response,
             contraction_limit: self.contraction_limit,
+            ends_slack: self.ends_slack,
             fibre_stress_pa: self.fibre_stress_pa,
             pleated: self.pleated,
             equilibrium_force_n: self.equilibrium_force_n,

@@ -4,7 +4,7 @@
 //! rate, no time). What belongs to a rig or to one specimen is left out: it is no part of the muscle.
 
 use bulge_effects::{Group, Known, Moment};
-use bulge_fibre::{Approach, FibreError, Given, Isobar, Problem, Response, isobars};
+use bulge_fibre::{Approach, FibreError, Given, Isobar, Problem, RangeEnd, Response, isobars};
 use bulge_muscles::{Fault, Muscle, Pressure, Quantity};
 use rayon::prelude::*;
 
@@ -204,8 +204,9 @@ impl Extended {
             return Ok(found);
         }
         for isobar in &mut found {
-            isobar.contraction_limit =
-                self.contraction_limit(Pressure::pa(isobar.pressure_pa), approach).ok();
+            let end = self.range_end(Pressure::pa(isobar.pressure_pa), approach).ok();
+            isobar.contraction_limit = end.map(RangeEnd::contraction);
+            isobar.ends_slack = matches!(end, Some(RangeEnd::FibresSlacken(_)));
             let completed: Vec<Response> =
                 isobar.points.par_iter().map(|point| self.complete(point)).collect::<Result<_, _>>()?;
             let largest = completed.iter().map(|point| point.force_n.abs()).fold(0.0, f64::max);
@@ -225,16 +226,31 @@ impl Extended {
     /// # Errors
     /// As [`Extended::solve`].
     pub fn contraction_limit(&self, pressure: Pressure, approach: Approach) -> Result<f64, ExtendedError> {
+        match self.range_end(pressure, approach)? {
+            RangeEnd::ForceVanishes(limit) => Ok(limit),
+            end @ RangeEnd::FibresSlacken(limit) => Err(end.beyond(limit).into()),
+        }
+    }
+
+    /// Where the equilibria at which the muscle with its effects pulls end; not beyond where those of the equilibrium alone do.
+    ///
+    /// # Errors
+    /// As [`Extended::solve`].
+    pub fn range_end(&self, pressure: Pressure, approach: Approach) -> Result<RangeEnd, ExtendedError> {
         let problem = Problem::new(&self.muscle, pressure)?;
-        let limit = problem.contraction_limit(approach)?;
+        let end = problem.range_end(approach)?;
         if !self.adds {
-            return Ok(limit);
+            return Ok(end);
         }
-        let last = self.complete(&problem.solve(Given::Contraction(limit), approach)?)?;
-        if last.force_n >= 0.0 {
-            return Ok(last.contraction);
+        let last = self.complete(&problem.solve(Given::Contraction(end.contraction()), approach)?)?;
+        if last.force_n < 0.0 {
+            let vanishes = self.solve(pressure, Given::Force(0.0), approach)?;
+            return Ok(RangeEnd::ForceVanishes(vanishes.contraction));
         }
-        Ok(self.solve(pressure, Given::Force(0.0), approach)?.contraction)
+        Ok(match end {
+            RangeEnd::ForceVanishes(_) => RangeEnd::ForceVanishes(last.contraction),
+            RangeEnd::FibresSlacken(_) => RangeEnd::FibresSlacken(last.contraction),
+        })
     }
 }
 

@@ -65,3 +65,62 @@ impl Solved {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lattice::tests::{braid, lattice};
+
+    fn asked(radius: f64, number: f64) -> Asked {
+        Asked {
+            muscle: braid(radius, 1e5).0,
+            numbers: vec![("radius-error".to_owned(), number.to_bits())],
+            shapes: Vec::new(),
+        }
+    }
+
+    /// What is kept is to the bit what would be solved; another muscle, another number or other rows are solved anew.
+    #[test]
+    fn a_hit_is_to_the_bit_a_miss() {
+        let solved = Solved::default();
+        let mut searches = 0;
+        let mut ask = |solved: &Solved, radius: f64, number: f64, most: f64| {
+            let equilibrium = braid(radius, 1e5).1;
+            let unsolved = lattice(&equilibrium, 2e5, most);
+            let (found, starts) = solved.lattice(asked(radius, number), unsolved, |unsolved| {
+                searches += 1;
+                unsolved.solved(&equilibrium, &Starts::default())
+            });
+            let force = found.answer(2.1e5, 0.153).unwrap().force;
+            let bits = [force.value, force.by_pressure, force.by_contraction].map(f64::to_bits);
+            (bits, starts.len(), searches)
+        };
+        let miss = ask(&solved, 10.0, 1.0, 0.2);
+        let hit = ask(&solved, 10.0, 1.0, 0.2);
+        assert_eq!((miss.0, miss.1, 1), hit);
+        let alone = ask(&Solved::default(), 10.0, 1.0, 0.2);
+        assert_eq!((alone.0, alone.1, 2), (hit.0, hit.1, alone.2));
+        assert_eq!(ask(&solved, 10.0, 1.01, 0.2), (hit.0, hit.1, 3));
+        assert_eq!(ask(&solved, 10.0, 1.0, 0.25).2, 4);
+        let other = ask(&solved, 10.1, 1.0, 0.2);
+        assert!(other.0 != hit.0 && other.2 == 5);
+        assert_eq!(ask(&solved, 10.0, 1.0, 0.2), (hit.0, hit.1, 5));
+    }
+
+    /// The oldest makes room.
+    #[test]
+    fn no_more_are_kept_than_there_is_room_for() {
+        let solved = Solved::default();
+        let unsolved = || lattice(&braid(10.0, 1e5).1, 2e5, 0.2);
+        for number in 0..=KEPT {
+            solved.lattice(asked(10.0, number as f64), unsolved(), |unsolved| (unsolved, Starts::default()));
+        }
+        assert_eq!(solved.lock().len(), KEPT);
+        let mut anew = false;
+        solved.lattice(asked(10.0, 0.0), unsolved(), |unsolved| {
+            anew = true;
+            (unsolved, Starts::default())
+        });
+        assert!(anew);
+    }
+}

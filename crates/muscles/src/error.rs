@@ -73,6 +73,16 @@ pub enum MuscleError {
     /// Gas inside a wall of unknown thickness.
     #[error("the gas acts on the inner wall, but `wall` does not say how thick the wall is")]
     NoGasWall,
+    /// No gas is left inside the wall.
+    #[error("`{key}` is {:.4} mm thick, and the braid or its fittings have a radius of {:.4} mm: it must be thinner than that to leave room for gas", 1e3 * wall_m, 1e3 * radius_m)]
+    WallTooThick {
+        /// Where it stands in a muscle file.
+        key: &'static str,
+        /// Thickness of the wall \[m\].
+        wall_m: f64,
+        /// Radius of the braid, or of its fittings \[m\].
+        radius_m: f64,
+    },
     /// Lobes between fibres that have no distance.
     #[error(
         "lobes stand between fibres that can be counted, such as `fibres = 40`: `continuous` fibres have none"
@@ -137,7 +147,9 @@ impl MuscleError {
     #[must_use]
     pub fn key(&self) -> &'static str {
         match self {
-            Self::NotPositive { key, .. } | Self::Negative { key, .. } => key,
+            Self::NotPositive { key, .. } | Self::Negative { key, .. } | Self::WallTooThick { key, .. } => {
+                key
+            }
             Self::TooFewFibres { .. } | Self::FibreCount { .. } => "fibres",
             Self::BraidAngle { .. } => "braid_angle",
             Self::Misalignment { .. } => "effects.fibre-misalignment.angle",

@@ -75,7 +75,7 @@ impl Muscle {
             specimens: Vec::new(),
             data_columns: Vec::new(),
         };
-        muscle.with_name(name)
+        muscle.with_room()?.with_name(name)
     }
 
     /// The same under another name.
@@ -102,12 +102,27 @@ impl Muscle {
     /// The same with a rubber bladder in the braid. Where the muscle has no wall of its own, the bladder is its wall.
     ///
     /// # Errors
-    /// If the muscle is pleated.
+    /// If the muscle is pleated, or the wall leaves no room for gas.
     pub fn with_bladder(mut self, bladder: Bladder) -> Result<Self, MuscleError> {
         if self.is_pleated() {
             return Err(MuscleError::BladderInPleated);
         }
         self.bladder = Some(bladder);
+        self.with_room()
+    }
+
+    /// The same, if its walls leave room for gas inside the braid and its fittings.
+    fn with_room(self) -> Result<Self, MuscleError> {
+        let radius = self.radius().si();
+        let walls = [
+            ("wall", self.wall(), radius),
+            ("effects.wall-thickness", self.gas_wall(), radius.min(self.end_radius().si())),
+        ];
+        for (key, wall, radius_m) in walls {
+            if let Some(wall_m) = wall.map(Quantity::si).filter(|wall| *wall >= radius_m) {
+                return Err(MuscleError::WallTooThick { key, wall_m, radius_m });
+            }
+        }
         Ok(self)
     }
 
@@ -125,7 +140,7 @@ impl Muscle {
     /// wall at the stated radius then needs no correction at all.
     ///
     /// # Errors
-    /// If the thickness is negative or not finite, none is given and the wall's is not known, or the muscle is pleated.
+    /// If the thickness is negative, not finite or leaves no room for gas, none is given and the wall's is not known, or the muscle is pleated.
     pub fn with_gas_wall(mut self, thickness: Option<Length>) -> Result<Self, MuscleError> {
         if self.is_pleated() {
             let (parameter, kind) = (Parameter::GasWall, Kind::Pleated);
@@ -139,7 +154,7 @@ impl Muscle {
             None if self.wall().is_some() => GasWall::Inner,
             None => return Err(MuscleError::NoGasWall),
         });
-        Ok(self)
+        self.with_room()
     }
 
     /// The same with other ends, if it is a braid: clamped in fittings, or a cylinder to the end.
@@ -216,7 +231,7 @@ impl Muscle {
                 Construction::Braided(braided) => changed.change_braided(braided, parameter, value)?,
             },
         }
-        Ok(changed)
+        changed.with_room()
     }
 
     /// The value of a parameter in SI; none if the muscle does not have it.
@@ -507,7 +522,11 @@ mod tests {
         ];
         for muscle in full {
             for parameter in Parameter::ALL {
-                let value = if parameter == Parameter::Fibres { 30.0 } else { 0.0123 };
+                let value = match parameter {
+                    Parameter::Fibres => 30.0,
+                    Parameter::Wall | Parameter::GasWall => 0.0023,
+                    _ => 0.0123,
+                };
                 let muscle = if parameter == Parameter::FibreStiffness {
                     muscle.with(Parameter::Fibres, 30.0).unwrap()
                 } else {
@@ -574,6 +593,14 @@ mod tests {
 
     #[test]
     fn gas_acts_on_the_wall_that_is_there() {
+        assert!(matches!(
+            braided().with(Parameter::Wall, braided().radius().si()),
+            Err(MuscleError::WallTooThick { key: "wall", .. })
+        ));
+        assert!(matches!(
+            braided().with(Parameter::GasWall, braided().radius().si()),
+            Err(MuscleError::WallTooThick { key: "effects.wall-thickness", .. })
+        ));
         assert_eq!(braided().with_gas_wall(None), Err(MuscleError::NoGasWall));
         let message = pleated().with_gas_wall(None).unwrap_err().to_string();
         assert!(message.contains("`gas_wall`") && message.contains("braided"), "{message}");

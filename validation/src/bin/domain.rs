@@ -1,10 +1,12 @@
 //! The domain map as a table: `cargo run --release -p bulge-validation --bin domain -- 100000 [SEED]`, with what went wrong beneath.
 
-use bulge_validation::domain::{Count, map};
+use bulge_validation::domain::{Count, found_by_integrals, map};
 use std::process::ExitCode;
 
 /// Questions where none are stated.
 const COUNT: usize = 100_000;
+/// Questions of which those that are solved are searched for by the first integrals.
+const SEARCHED: usize = 150;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -33,8 +35,20 @@ fn main() -> ExitCode {
         whole.wrong += one.wrong;
         whole.panicked += one.panicked;
         whole.evaluations = whole.evaluations.max(one.evaluations);
+        for (sum, judged) in whole.judged.iter_mut().zip(one.judged) {
+            *sum += judged;
+        }
     }
     print(&whole);
+    let [pulls, beyond, none, unknown] = whole.judged;
+    println!(
+        "status 4 by the first integrals: {pulls} have an equilibrium, {beyond} one that pushes or is slack, {none} none, {unknown} can't be told"
+    );
+    let (solved, found, missed) = found_by_integrals(seed, count.min(SEARCHED));
+    println!("of {solved} that are solved the first integrals find {found}; not");
+    for case in &missed {
+        println!("{case}");
+    }
     for one in &counts {
         for case in &one.cases {
             println!("{}: {case}", one.kind);

@@ -1,0 +1,77 @@
+//! Interpolation is exact to its degree; rows beyond the end of equilibria leave the others as they are.
+
+use super::*;
+use bulge_muscles::{Angle, Bladder, Braided, Construction, Length, Muscle, Pressure};
+
+/// A braid of 25 degrees on rubber, its radius in mm and c10 in Pa.
+pub(crate) fn braid(radius: f64, c10: f64) -> (Muscle, Equilibrium) {
+    let braided = Braided::new(Length::mm(radius), Angle::deg(25.0)).unwrap();
+    let muscle = Muscle::new("b", Length::mm(120.0), Construction::Braided(braided)).unwrap();
+    let rubber = Bladder::new(Pressure::pa(c10), Pressure::pa(0.0), Length::mm(1.5)).unwrap();
+    let muscle = muscle.with_bladder(rubber).unwrap();
+    let equilibrium = Equilibrium::new(&muscle, Vec::new()).unwrap();
+    (muscle, equilibrium)
+}
+
+/// Nodes for rows about a pressure, from 1 % to a contraction.
+pub(crate) fn lattice(equilibrium: &Equilibrium, pressure: f64, most: f64) -> Lattice {
+    let rows: Vec<(f64, [f64; 2])> =
+        [0.9, 1.0, 1.1].iter().map(|part| (part * pressure, [0.01, most])).collect();
+    Lattice::around(equilibrium, 0, 1.0, 0, rows.iter())
+}
+
+fn force(lattice: &Lattice, contraction: f64) -> Option<f64> {
+    lattice.answer(2e5, contraction).map(|answer| answer.force.value)
+}
+
+/// Rows far beyond the end of equilibria change nothing of what lies before it, not in the last bit; up to where the force vanishes rows have whole stencils, and
+/// beyond the end the error is the one that a search ends with.
+#[test]
+fn rows_beyond_the_end_change_nothing_before_it() {
+    let equilibrium = braid(10.0, 3e5).1;
+    let at = |contraction: f64| equilibrium.answer(2e5, contraction, None).map(|found| found.0.force.value);
+    let (mut pulls, mut pushes) = (0.02, 0.6);
+    while pushes - pulls > 1e-6 {
+        let middle = 0.5 * (pulls + pushes);
+        if at(middle).is_ok_and(|force| force > 0.0) { pulls = middle } else { pushes = middle }
+    }
+    let solved = |most: f64| lattice(&equilibrium, 2e5, most).solved(&equilibrium, &Starts::default()).0;
+    let (near, far) = (solved(pulls), solved(0.7));
+    for i in 1..60 {
+        let contraction = 0.01 + (pulls - 0.01) * f64::from(i) / 60.0;
+        let (one, other) = (force(&near, contraction).unwrap(), force(&far, contraction).unwrap());
+        assert_eq!(one.to_bits(), other.to_bits(), "{contraction}");
+        let alone = at(contraction).unwrap();
+        assert!((one - alone).abs() < 1e-4 * at(0.02).unwrap(), "{contraction}: {one} {alone}");
+    }
+    assert!(force(&far, pulls).is_some(), "no whole stencil at {pulls}");
+    // A row without stencil is solved itself, until it is known that there is none.
+    let rows = |contraction| answer(Some(&far), &equilibrium, [2e5, contraction], &mut None);
+    let mut ended = None;
+    for i in 0..100 {
+        let contraction = pulls + (0.69 - pulls) * f64::from(i) / 100.0;
+        match (rows(contraction), at(contraction)) {
+            (Ok(found), Ok(alone)) => {
+                assert!(ended.is_none() && (found.force.value - alone).abs() < 1e-3 * at(0.02).unwrap());
+            }
+            (Err(one), Err(other)) => {
+                ended = Some(contraction);
+                assert_eq!(std::mem::discriminant(&one), std::mem::discriminant(&other), "{one}; {other}");
+            }
+            (one, other) => panic!("{contraction}: {one:?}, {other:?}"),
+        }
+    }
+    assert!(ended.is_some());
+}
+
+#[test]
+fn weights_are_exact_for_degree_five() {
+    for t in [2.0, 2.3, 2.9, 3.0] {
+        let (w, d) = weights(t);
+        let f = |x: f64| ((x - 1.3) * x + 2.0) * x.powi(3) - 4.0;
+        let f_t = |x: f64| 5.0 * x.powi(4) - 4.0 * 1.3 * x.powi(3) + 6.0 * x * x;
+        let value: f64 = (0..WIDTH).map(|k| w[k] * f(k as f64)).sum();
+        let slope: f64 = (0..WIDTH).map(|k| d[k] * f(k as f64)).sum();
+        assert!((value - f(t)).abs() < 1e-11 * f(t).abs() && (slope - f_t(t)).abs() < 1e-11 * f_t(t));
+    }
+}
