@@ -297,7 +297,12 @@ fn every_writer_writes_into_what_a_name_stands_for() {
     }
     // JSON on a standard output that takes nothing is an error as well.
     if let Ok(out) = std::fs::File::options().write(true).open("/dev/full") {
-        let call = Command::new(env!("CARGO_BIN_EXE_bulge")).args(shape).arg("--json").stdout(out).status();
+        let call = Command::new(env!("CARGO_BIN_EXE_bulge"))
+            .args(shape)
+            .arg("--json")
+            .stderr(std::process::Stdio::null())
+            .stdout(out)
+            .status();
         assert_eq!(call.unwrap().code(), Some(1));
     }
     // A report goes into a folder, behind a link too, and into nothing else.
