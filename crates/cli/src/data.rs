@@ -1,7 +1,8 @@
 //! Measured rows on the command line: the files, which column is which, and how they were read.
 
-use bulge_measurements::{ColumnMap, Data, ReadOptions, Reading};
-use bulge_muscles::{Muscle, Quantity};
+use bulge_measurements::{ColumnMap, Data, Reading};
+use bulge_model::read_options;
+use bulge_muscles::Muscle;
 use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -29,16 +30,8 @@ pub(crate) struct DataArguments {
 impl DataArguments {
     /// Reads the files of a muscle's measurements.
     pub(crate) fn read(&self, muscle: &Muscle) -> Result<Data, Failure> {
-        let mut stated = ColumnMap::default();
-        for (quantity, column) in muscle.data_columns() {
-            stated.add(quantity, column)?;
-        }
-        let columns = match &self.columns {
-            Some(text) => text.parse::<ColumnMap>()?.or(&stated),
-            None => stated,
-        };
-        let options = ReadOptions { columns, l0_m: Some(muscle.length().si()) };
-        Ok(Data::read_with(&self.data, &options)?)
+        let columns = self.columns.as_deref().map(str::parse::<ColumnMap>).transpose()?;
+        Ok(Data::read_with(&self.data, &read_options(muscle, columns.as_ref())?)?)
     }
 
     /// The names of the files, as they were given.

@@ -356,6 +356,90 @@ fn a_shipped_muscle_is_a_file_to_start_from() {
     assert_eq!(ask(&file), ask("ppam-2-r16"));
 }
 
+/// Every option that names one file: the same bytes into a file, a link, a FIFO and standard output; a full device is an error and stays a device.
+#[cfg(unix)]
+#[test]
+fn every_writer_writes_into_what_a_name_stands_for() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    let folder = Folder::new("writers");
+    let row = |i: u32| format!("{},{},{}", 1 + i % 3, 5 + i, 900 - 25 * i + 300 * (i % 3));
+    let rows = (0..24).map(row).collect::<Vec<_>>().join("\n");
+    let data = folder.write("data.csv", &format!("pressure [bar],contraction [%],force [N]\n{rows}"));
+    let curve = ["curve", "dmsp-20-250", "--pressure", "1 bar", "--points", "5"];
+    let shape = ["shape", "dmsp-20-250", "--pressure", "1 bar", "--contraction", "10 %", "--points", "5"];
+    let writers: Vec<Vec<&str>> = vec![
+        [&curve[..], &["--csv"]].concat(),
+        [&curve[..], &["--plot"]].concat(),
+        [&shape[..], &["--vtk"]].concat(),
+        vec!["sense", "dmsp-20-250", "--points", "11", "--csv"],
+        vec!["sense", "dmsp-20-250", "--points", "11", "--plot"],
+        vec!["heat", "--pipe", "none", "--plot"],
+        vec!["size", "--force", "300 N", "--stroke", "30 mm", "--plot"],
+        vec!["fit", &data, "--muscle", "dmsp-20-250", "--with", "force-offset", "--out"],
+    ];
+    // As root a device can be made for the test; without being root none can be replaced.
+    let own = folder.path("full.vtp");
+    let is_made =
+        Command::new("mknod").args([own.as_str(), "c", "1", "7"]).output().is_ok_and(|o| o.status.success());
+    let full = if is_made { own.as_str() } else { "/dev/full" };
+    let is_device =
+        |path: &str| std::fs::metadata(path).is_ok_and(|found| found.file_type().is_char_device());
+    for (i, writer) in writers.iter().enumerate() {
+        let call = |target: &str| bulge(&[&writer[..], &[target]].concat());
+        let file = folder.path(&format!("{i}.vtp"));
+        let made = call(&file);
+        assert!(made.status.success(), "{writer:?}: {}", String::from_utf8_lossy(&made.stderr));
+        let expected = std::fs::read(&file).unwrap();
+        assert!(!expected.is_empty());
+        let [link, real] = [format!("{i}-link.vtp"), format!("{i}-real.vtp")];
+        symlink(&real, folder.path(&link)).unwrap();
+        assert!(call(&folder.path(&link)).status.success());
+        assert!(Path::new(&folder.path(&link)).is_symlink(), "{writer:?} replaced a link");
+        assert_eq!(std::fs::read(folder.path(&real)).unwrap(), expected, "{writer:?} through a link");
+        for name in ["-", "/dev/stdout"] {
+            assert!(call(name).stdout == expected, "{writer:?} to {name}");
+        }
+        let fifo = folder.path(&format!("{i}-fifo.vtp"));
+        if Command::new("mkfifo").arg(&fifo).status().is_ok_and(|status| status.success()) {
+            let reader = std::thread::spawn({
+                let fifo = fifo.clone();
+                move || std::fs::read(fifo).unwrap()
+            });
+            assert!(call(&fifo).status.success());
+            assert!(reader.join().unwrap() == expected, "{writer:?} into a FIFO");
+        }
+        // Pictures for ParaView are named by their ending.
+        if is_device(full) && (is_made || writer.last() != Some(&"--vtk")) {
+            let output = call(full);
+            let message = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(
+                output.status.code() == Some(1) && message.contains("No space left"),
+                "{writer:?}: {message}"
+            );
+            assert!(is_device(full), "{writer:?} replaced a device");
+        }
+    }
+    // JSON on a standard output that takes nothing is an error as well.
+    if let Ok(out) = std::fs::File::options().write(true).open("/dev/full") {
+        let call = Command::new(env!("CARGO_BIN_EXE_bulge"))
+            .args(shape)
+            .arg("--json")
+            .stderr(std::process::Stdio::null())
+            .stdout(out)
+            .status();
+        assert_eq!(call.unwrap().code(), Some(1));
+    }
+    // A report goes into a folder, behind a link too, and into nothing else.
+    std::fs::create_dir(folder.path("reports")).unwrap();
+    symlink("reports", folder.path("behind")).unwrap();
+    let compare = ["compare", &data, "--muscle", "dmsp-20-250", "--out"];
+    assert!(bulge(&[&compare[..], &[&folder.path("behind")]].concat()).status.success());
+    assert!(Path::new(&folder.path("reports/report.html")).is_file());
+    let (status, message) = failure(&[&compare[..], &[&data]].concat());
+    assert!(status == 1 && message.contains("it is a file; give the name of a folder"), "{message}");
+    assert!(!folder.names().iter().any(|name| name.starts_with(".unfinished")), "{:?}", folder.names());
+}
+
 /// A link stays, a FIFO is written into, and standard output holds the file and nothing else.
 #[cfg(unix)]
 #[test]

@@ -291,6 +291,64 @@ fn a_laboratory_file_goes_in_as_it_is() {
     assert!(status == 1 && message.contains("there is no column `ch9 [N]`"), "{message}");
 }
 
+/// A file without any unit is the same test, and what was guessed is told with the reason; the sheet of units that two could have is asked for.
+#[test]
+fn units_that_are_not_written_are_guessed_or_asked_for() {
+    let folder = Folder::new("no-units");
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let text = loops(TRUTH);
+    let data = folder.write("data.csv", &text);
+    let bare = "time,sweep,p,contraction,force\n".to_owned() + text.split_once('\n').unwrap().1;
+    let file = folder.write("bare.csv", &bare);
+    let [exact, found] = [&data, &file].map(|file| json(&["compare", file, "--muscle", &muscle, "--json"]));
+    assert_eq!(rmse(&found, 0).to_bits(), rmse(&exact, 0).to_bits());
+    assert_eq!([2, 3].map(|i| found["data"]["columns"][i]["unit"].clone()), ["bar", "%"]);
+    let said = String::from_utf8(bulge(&["compare", &file, "--muscle", &muscle]).stdout).unwrap();
+    assert!(said.contains("no unit is written: the forces are"), "{said}");
+    // Pounds as newtons: then it could be psi.
+    let in_pounds = |line: &str| {
+        let (rest, force) = line.rsplit_once(',').unwrap();
+        force.parse::<f64>().map_or_else(|_| line.to_owned(), |force| format!("{rest},{}", force / 4.448_222))
+    };
+    let pounds = bare.lines().map(in_pounds).collect::<Vec<_>>().join("\n");
+    let file = folder.write("pounds.csv", &pounds);
+    let (status, message) = failure(&["compare", &file, "--muscle", &muscle]);
+    assert!(status == 1 && message.contains("pressure=p [bar], force=force [lbf]"), "{message}");
+    let obeyed =
+        ["compare", &file, "--muscle", &muscle, "--columns", "pressure=p [bar], force=force [lbf]", "--json"];
+    assert!((rmse(&json(&obeyed), 0) / rmse(&exact, 0) - 1.0).abs() < 1e-3);
+}
+
+/// A specimen without rows, a stated direction against the motion, a held length that drifts: each is said, with what to do.
+#[test]
+fn what_contradicts_the_rows_is_said() {
+    let folder = Folder::new("contradicts");
+    let stated = folder.write("stated.toml", &format!("{MUSCLE}\n[specimens.short]\nlength = \"80 mm\"\n"));
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let data = folder.write("data.csv", &loops(TRUTH));
+    let (status, message) = failure(&["compare", &data, "--muscle", &stated]);
+    assert!(status == 1 && message.contains("no row of the data is of the specimen `short`"), "{message}");
+    // The other way round than the motion.
+    let labelled = |line: &str| match line.split(',').next().and_then(|text| text.parse::<usize>().ok()) {
+        Some(row) => format!("{line},{},shrot", if row % 40 < 20 { "down" } else { "up" }),
+        None => format!("{line},direction,specimen"),
+    };
+    let text = loops(TRUTH).lines().map(labelled).collect::<Vec<_>>().join("\n");
+    let labelled = folder.write("labelled.csv", &text);
+    let (status, message) = failure(&["compare", &labelled, "--muscle", &stated]);
+    assert!(status == 1 && message.contains("`[specimens.shrot]`"), "{message}");
+    let said = String::from_utf8(bulge(&["compare", &labelled, "--muscle", &muscle]).stdout).unwrap();
+    assert!(said.contains("with a direction against the motion"), "{said}");
+    let mut held = "time [s],pressure [bar],length [mm],force [N]\n".to_owned();
+    for i in 0..200 {
+        let pressure = 1.0 + 0.04 * f64::from(if i % 100 < 50 { i % 100 } else { 100 - i % 100 });
+        let _ = writeln!(held, "{i},{pressure},{},{}", 100.0 + 0.005 * f64::from(i), 250.0 * pressure);
+    }
+    let held = folder.write("held.csv", &held);
+    let said = String::from_utf8(bulge(&["compare", &held, "--muscle", &muscle]).stdout).unwrap();
+    assert!(said.contains("at held length, whose length changes by up to"), "{said}");
+}
+
 /// What `curve` writes goes into `compare`, and is met.
 #[test]
 fn a_curve_is_data() {

@@ -3,6 +3,7 @@
 pub(crate) mod analysis;
 mod base_law;
 mod buckled;
+pub(crate) mod clock;
 pub(crate) mod compare;
 pub(crate) mod document;
 pub(crate) mod doubt;

@@ -77,6 +77,28 @@ fn loops_and_maps_are_means_of_residuals() {
     assert!((by.bins[0].bias_n[0] - 3.0).abs() < 1e-6 && (by.bins[0].rmse_n[0] - 3.0).abs() < 1e-6);
 }
 
+/// At held length both branches are taken at the same pressure: a muscle without hysteresis has no gap, whatever pressures were read on the way.
+#[test]
+fn a_model_without_hysteresis_has_no_gap_at_held_length() {
+    let plain = muscle("");
+    let model = Model::new(&plain);
+    let mut csv = String::from("time [s],pressure [bar],contraction [-],force [N]\n");
+    for row in 0..160 {
+        let phase = (f64::from(row) * 0.0431).fract();
+        let bar = 1.0 + 6.0 * phase.min(1.0 - phase);
+        let _ = writeln!(csv, "{row},{bar},0.1,{}", model.at_rest(&[], bar * 1e5, 0.1).unwrap().force_n);
+    }
+    let comparison = climbed(&Data::from_csv(&csv, "held.csv").unwrap(), &plain, &[]);
+    assert_eq!(comparison.data.branches, ["filling", "venting"]);
+    assert!(!comparison.loops.is_empty());
+    for gap in &comparison.loops {
+        assert!(
+            gap.half_gap_measured_n.iter().chain(&gap.half_gap_model_n[0]).all(|half| half.abs() < 1e-6),
+            "{gap:?}"
+        );
+    }
+}
+
 #[test]
 fn an_interval_is_students_quantile_times_the_standard_deviation() {
     let data = loops(|row, _| 30.0 + alternating(row));

@@ -1,6 +1,7 @@
 //! Which column is which quantity: as written, as the user says, else guessed; and what was taken for what.
 
 use crate::column_map::{ColumnEntry, ColumnMap, IGNORE};
+use crate::dimension::Scale;
 use crate::error::MeasurementError;
 use crate::heading::{Field, Heading};
 use crate::names::{Guess, Strength, assumed, guesses};
@@ -38,6 +39,13 @@ struct Choice {
     entry: Option<ColumnEntry>,
 }
 
+impl Choice {
+    /// Whether its unit is written, or needn't be.
+    fn has_unit(&self) -> bool {
+        self.guess.unit.is_some() || assumed(self.guess.field).is_some()
+    }
+}
+
 /// Decides, or says all that keeps it from deciding.
 pub(crate) fn assign(header: &Header, map: &ColumnMap) -> Result<Assignment, Vec<MeasurementError>> {
     let mut complaints = Vec::new();
@@ -62,6 +70,8 @@ pub(crate) fn assign(header: &Header, map: &ColumnMap) -> Result<Assignment, Vec
         chosen.extend(guessed(header, field, &open, &taken, &mut complaints));
     }
     settle_motion(&mut chosen);
+    // What an analysis can do without doesn't keep it from being read.
+    chosen.retain(|choice| choice.entry.is_some() || !choice.guess.field.is_optional() || choice.has_unit());
     for (name, is_it) in [
         ("pressure", (|field| field == Field::Pressure) as fn(Field) -> bool),
         ("length` or `contraction", Field::is_motion),
@@ -251,12 +261,16 @@ fn guessed(
         _ => {
             let candidates = all.iter().map(|(place, _)| format!("`{}`", quoted(&header.names[*place])));
             let unit = all[0].1.unit.as_ref().map_or("UNIT", |unit| unit.name.as_str());
+            // Columns of one name are told apart by their numbers.
+            let is_unique = find(header, &header.names[all[0].0]).is_ok();
+            let number = (all[0].0 + 1).to_string();
+            let name = if is_unique { &header.names[all[0].0] } else { &number };
             complaints.push(MeasurementError::Ambiguous {
                 file: header.file.to_owned(),
                 line: header.line,
                 name: field.name(),
                 candidates: candidates.collect::<Vec<_>>().join(", "),
-                instead: entry_text(field, &header.names[all[0].0], unit),
+                instead: entry_text(field, name, unit),
             });
             None
         }
@@ -319,9 +333,14 @@ fn heading(header: &Header, choice: &Choice) -> Result<Heading, MeasurementError
         // A clock has no unit, and one day's times none that is written.
         None => match assumed(field) {
             Some((scale, _)) => scale,
-            None => return Err(no_unit(header, field, name)),
+            None => match unknown_unit(header, field, name) {
+                Some(complaint) => return Err(complaint),
+                None => Scale::SI,
+            },
         },
     };
+    let is_assumed = assumed(field).is_some() && !matches!(field, Field::Contraction | Field::Force);
+    let is_open = choice.guess.unit.is_none() && !is_assumed;
     let is_reversed = choice.entry.as_ref().is_some_and(|entry| entry.is_reversed);
     Ok(Heading {
         field,
@@ -329,16 +348,17 @@ fn heading(header: &Header, choice: &Choice) -> Result<Heading, MeasurementError
         text: quoted(name),
         is_lengthening: choice.guess.is_lengthening,
         is_settled: choice.entry.is_some(),
+        open_unit: is_open.then_some(header.line),
     })
 }
 
-fn no_unit(header: &Header, field: Field, name: &str) -> MeasurementError {
-    // What stands in brackets and is no unit, or nothing.
-    let inside = name.split_once('[').map_or("", |(_, rest)| rest.trim_end_matches([']', ' ']));
-    match problem(field, inside) {
-        Some(problem) => unit_error(header, field, name, problem),
-        None => missing(header, field.name()),
-    }
+/// What is wrong with the unit that stands in the brackets of a heading; none if there is none.
+fn unknown_unit(header: &Header, field: Field, name: &str) -> Option<MeasurementError> {
+    let (_, inside) = name.split_once('[')?;
+    let inside = inside.trim_end_matches([']', ' ']);
+    let is_none = matches!(inside, "" | "-" | "1");
+    let problem = problem(field, inside).filter(|_| !is_none)?;
+    Some(unit_error(header, field, name, problem))
 }
 
 fn unit_error(header: &Header, field: Field, column: &str, problem: UnitError) -> MeasurementError {

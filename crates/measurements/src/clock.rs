@@ -2,14 +2,16 @@
 
 /// Seconds of a day.
 const DAY: f64 = 86_400.0;
-/// A clock that goes back by more than this passed midnight \[s\].
-const MIDNIGHT: f64 = 43_200.0;
+/// Seconds of an hour.
+const HOUR: f64 = 3600.0;
 
 /// A point in time: days since some day (none: only the clock is known), and seconds of the day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Instant {
     day: Option<i64>,
     seconds: f64,
+    /// After which a clock without a date begins again \[s\].
+    round: f64,
 }
 
 /// Turns points in time into seconds since the first of them.
@@ -27,9 +29,9 @@ impl Clock {
         let time = match (first.day, now.day) {
             (Some(start), Some(day)) => (day - start) as f64 * DAY + seconds,
             (None, None) => {
-                // A clock shows no date: it goes on where it was.
-                let days = ((self.last - seconds - MIDNIGHT) / DAY).ceil().max(0.0);
-                seconds + days * DAY
+                // A clock shows no date: if it goes back by more than half a round it went on.
+                let rounds = ((self.last - seconds) / now.round - 0.5).ceil().max(0.0);
+                seconds + rounds * now.round
             }
             _ => return None,
         };
@@ -38,7 +40,8 @@ impl Clock {
     }
 }
 
-/// Reads "2026-03-01T12:00:01.5Z", "01.03.2026 12:00:01,5", "3/1/2026 1:02:03 PM", "12:00:01.5", "00:01:02".
+/// Reads "2026-03-01T12:00:01.5Z", "01.03.2026 12:00:01,5", "3/1/2026 1:02:03 PM", "12:00:01.5", "00:01:02", and the "01:02.5" of spreadsheets, which
+/// leave out the hour.
 pub(crate) fn instant(text: &str) -> Option<Instant> {
     let text = text.trim();
     if !text.contains(':') || text.len() > 40 {
@@ -49,8 +52,20 @@ pub(crate) fn instant(text: &str) -> Option<Instant> {
         _ => (None, text),
     };
     let day = date.map(days).map_or(Some(None), |day| day.map(Some))?;
+    if let (None, Some(seconds)) = (day, seconds_of_hour(clock)) {
+        return Some(Instant { day, seconds, round: HOUR });
+    }
     let (clock, offset) = without_zone(clock)?;
-    Some(Instant { day, seconds: seconds_of_day(clock)? - offset })
+    Some(Instant { day, seconds: seconds_of_day(clock)? - offset, round: DAY })
+}
+
+/// Minutes, and seconds with decimals: without these it would be hours and minutes.
+fn seconds_of_hour(clock: &str) -> Option<f64> {
+    let (minutes, seconds) = clock.split_once(':')?;
+    let (whole_seconds, decimals) = seconds.split_once(['.', ','])?;
+    let is_number = !decimals.is_empty() && decimals.bytes().all(|byte| byte.is_ascii_digit());
+    let decimals = format!("0.{decimals}").parse::<f64>().ok().filter(|_| is_number)?;
+    Some(60.0 * f64::from(whole(minutes, 9999)?) + f64::from(whole(whole_seconds, 59)?) + decimals)
 }
 
 /// The clock without its time zone, and that in seconds.
@@ -145,6 +160,9 @@ mod tests {
             ["13/1/2026 12:00:00", "13/1/2026 12:00:01.5"],
             ["12:00:00.25", "12:00:01.75"],
             ["23:59:59.5", "00:00:01"],
+            ["59:59.5", "00:01.0"],
+            ["12:01,25", "12:02,75"],
+            ["75:59.5", "76:01.0"],
             ["12:00:01:250", "12:00:02:750"],
         ] {
             assert_eq!(seconds(&texts), [Some(0.0), Some(1.5)], "{texts:?}");

@@ -34,6 +34,8 @@ pub(crate) fn read_text(
 ) -> Result<Table, MeasurementError> {
     // A file without any line feed may have the carriage returns of old.
     let line_end = if !text.contains('\n') && text.contains('\r') { '\r' } else { '\n' };
+    let joined = layout::with_one_line_header(text, line_end);
+    let text = joined.as_deref().unwrap_or(text);
     let layout = layout::find(file, text, (line_end, separator), &options.columns)?;
     complain_of_header(file, &layout)?;
     let header = Header {
@@ -90,10 +92,25 @@ pub(crate) fn read_text(
             draft.broken(row, kind, format!("the row has {found} field{plural}, the header has {expected}"));
             continue;
         }
+        if fields[0] == layout.names[0] && fields.iter().zip(&layout.names).all(|(field, name)| field == name)
+        {
+            draft.broken(row, "the header again", "the header again".to_owned());
+            continue;
+        }
+        let mut spoilt = 0;
         for (slot, place) in places.iter().enumerate() {
             if let Err(problem) = draft.slots[slot].push_text(&fields[*place], layout.decimal) {
+                spoilt += 1;
                 draft.spoilt(slot, row, &problem);
             }
+        }
+        if spoilt == places.len() && layout::names_columns(&fields) {
+            let columns: Vec<String> = fields.iter().map(|name| format!("`{}`", quoted(name))).collect();
+            return Err(MeasurementError::SecondTable {
+                file: file.to_owned(),
+                line: i + 1,
+                columns: columns.join(", "),
+            });
         }
     }
     draft.finish(file, options)

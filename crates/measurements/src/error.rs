@@ -96,9 +96,21 @@ pub enum MeasurementError {
         /// The file.
         file: String,
     },
+    /// A header in the middle that isn't that of the rows before.
+    #[error(
+        "{file}:{line}: another table begins here, with the columns {columns}: write it into a file of its own, and name both files"
+    )]
+    SecondTable {
+        /// The file.
+        file: String,
+        /// The line.
+        line: usize,
+        /// Its columns.
+        columns: String,
+    },
     /// Numbers where names should be.
     #[error(
-        "{file}:{line}: `{text}` is a number where a column's name is needed: write a header first, such as `pressure [bar],length [mm],force [N]`"
+        "{file}:{line}: `{text}` is a number where a column's name is needed: write a header first, such as `pressure [bar],length [mm],force [N]`, or say the columns by their numbers, such as `--columns \"time=1 [s],pressure=2 [bar],length=3 [mm],force=4 [N]\"`"
     )]
     NoHeader {
         /// The file.
@@ -139,8 +151,26 @@ pub enum MeasurementError {
         /// A heading as it should be.
         example: &'static str,
     },
+    /// Units that no heading says, and the readings don't show.
+    #[error(
+        "{file}:{line}: {what}: write the unit in brackets behind the name, such as `{example}`, or say it, such as `--columns \"{instead}\"`"
+    )]
+    OpenUnit {
+        /// The file.
+        file: String,
+        /// The line of the header.
+        line: usize,
+        /// Which columns, and what they may be.
+        what: String,
+        /// A heading as it should be.
+        example: &'static str,
+        /// What to write.
+        instead: String,
+    },
     /// One name twice.
-    #[error("{file}:{line}: the columns {first} and {second} are both `{name}`: leave one out")]
+    #[error(
+        "{file}:{line}: the columns {first} and {second} are both `{name}`: leave one out, or say which it is, such as `--columns \"{name}={first}\"`"
+    )]
     TwiceTheColumn {
         /// The file.
         file: String,
@@ -283,6 +313,16 @@ pub enum MeasurementError {
         /// What the reader says.
         why: String,
     },
+    /// A sheet that a workbook doesn't have.
+    #[error("{file}: there is no sheet `{sheet}`: there are {sheets}")]
+    NoSheet {
+        /// The file.
+        file: String,
+        /// What was asked for.
+        sheet: String,
+        /// What there is.
+        sheets: String,
+    },
     /// A file of MATLAB that is cut off or damaged.
     #[error("{file}: is a damaged or cut-off file of MATLAB: write it again with `save('x.mat','-v7')`")]
     Matlab {
@@ -361,8 +401,10 @@ impl MeasurementError {
             | Self::NulByte { line, .. }
             | Self::OpenQuote { line, .. }
             | Self::NoHeader { line, .. }
+            | Self::SecondTable { line, .. }
             | Self::OneField { line, .. }
             | Self::Unit { line, .. }
+            | Self::OpenUnit { line, .. }
             | Self::TwiceTheColumn { line, .. }
             | Self::MissingColumn { line, .. }
             | Self::Ragged { line, .. }

@@ -127,6 +127,8 @@ pub(crate) struct Heading {
     pub(crate) is_lengthening: bool,
     /// Whether the sign is what it should be: stated by the user.
     pub(crate) is_settled: bool,
+    /// Line of the header, where it says no unit and none is assumed: the readings have to show it.
+    pub(crate) open_unit: Option<usize>,
 }
 
 impl Heading {

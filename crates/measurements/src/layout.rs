@@ -21,6 +21,10 @@ const BETWEEN: usize = 4;
 const SHOWN: usize = 3;
 /// Rows that show the decimal sign.
 const TRIED: usize = 500;
+/// Line breaks within the names of a header.
+const MOST_BREAKS: usize = 60;
+/// The units of the channels in the metadata of a recorder's file, a field for each column.
+const CHANNEL_UNITS: &str = "Y_Unit_Label";
 /// The end of the metadata of a recorder's file, by which it is known for certain.
 const END_OF_METADATA: &str = "***End_of_Header***";
 
@@ -82,8 +86,10 @@ pub(crate) fn find(
     let before = lines[..chosen.at.min(lines.len())].iter().filter(|line| is_content(line.trim())).count();
     if before > 0 && chosen.rows_from > chosen.at {
         notes.push(format!(
-            "{before} lines before the header on line {} are no part of the table",
-            chosen.at + 1
+            "{} before the header on line {} {} no part of the table",
+            if before == 1 { "a line".to_owned() } else { format!("{before} lines") },
+            chosen.at + 1,
+            if before == 1 { "is" } else { "are" }
         ));
     }
     let is_headless = chosen.rows_from == chosen.at;
@@ -140,6 +146,43 @@ fn is_exact(names: &[String]) -> bool {
         && exact.iter().any(|field| field.is_motion())
 }
 
+/// Whether a row is a header: it names two at least of pressure, motion and force.
+pub(crate) fn names_columns(fields: &[Cow<'_, str>]) -> bool {
+    let names: Vec<String> = fields.iter().map(ToString::to_string).collect();
+    !names.iter().any(|name| is_number(name)) && score(&names, None, &ColumnMap::default()) >= 2
+}
+
+/// The same text with its header on one line, where it has line breaks within quotes; the lines after it keep their numbers. None if it has no such
+/// header.
+pub(crate) fn with_one_line_header(text: &str, line_end: char) -> Option<String> {
+    let quotes = |line: &str| line.bytes().filter(|byte| *byte == b'"').count();
+    let mut start = 0;
+    let mut lines = text.split_inclusive(line_end).take(LOOKED_AT);
+    let first = lines.find(|line| {
+        let is_open = quotes(line) % 2 == 1;
+        start += if is_open { 0 } else { line.len() };
+        is_open
+    })?;
+    let (mut end, mut open, mut breaks) = (start + first.len(), true, 0);
+    for line in lines.take(MOST_BREAKS) {
+        end += line.len();
+        breaks += 1;
+        open ^= quotes(line) % 2 == 1;
+        if !open {
+            break;
+        }
+    }
+    let header = text[start..end].trim_end_matches(['\r', '\n']);
+    if open || header.len() > LONGEST {
+        return None;
+    }
+    let header = header.replace(['\r', '\n'], " ");
+    let (_, names) = plain(&header, None)?;
+    let names: Vec<Cow<'_, str>> = names.into_iter().map(Cow::Owned).collect();
+    let blank = line_end.to_string().repeat(breaks + 1);
+    names_columns(&names).then(|| [&text[..start], header.as_str(), blank.as_str(), &text[end..]].concat())
+}
+
 /// How many of pressure, motion and force, or of the columns that the user names, a header has.
 fn score(names: &[String], units: Option<&[String]>, map: &ColumnMap) -> usize {
     let beneath = |place: usize| units.and_then(|units| units.get(place)).map(String::as_str);
@@ -186,7 +229,22 @@ fn best(lines: &[&str], start: usize, separator: Option<Separator>, map: &Column
             }
         }
     }
+    if let Some(best) = best.as_mut().filter(|best| best.units.is_none()) {
+        best.units = units_of_channels(&lines[..best.at], best);
+    }
     best
+}
+
+/// Units that the metadata state for columns whose names say none.
+fn units_of_channels(metadata: &[&str], header: &Candidate) -> Option<Vec<String>> {
+    let line = metadata.iter().rfind(|line| line.trim_start().starts_with(CHANNEL_UNITS))?;
+    let mut stated = fields(line, header.separator)?;
+    stated.resize(header.names.len(), String::new());
+    let says_own = |name: &str| name.contains(['[', '(']);
+    let known = |text: &str| Field::ALL.iter().any(|field| unit(*field, text).is_some());
+    let of =
+        |(text, name): (String, &String)| if known(&text) && !says_own(name) { text } else { String::new() };
+    Some(stated.into_iter().zip(&header.names).map(of).collect())
 }
 
 /// The ways in which a line can be the header of the rows beneath it.

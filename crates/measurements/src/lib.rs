@@ -21,6 +21,7 @@ mod history;
 mod isobars;
 mod layout;
 mod line;
+mod magnitude;
 mod matlab;
 mod motion;
 mod names;
@@ -44,6 +45,7 @@ mod table;
 #[cfg(test)]
 mod tests {
     mod dialects;
+    mod strangers;
 }
 mod turning;
 mod unit;

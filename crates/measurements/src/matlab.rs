@@ -322,7 +322,7 @@ mod tests {
             ("big", file(&variables(true), true), plain.clone()),
             ("compressed", file(&packed, false), plain.clone()),
             ("structure", file(&[structure], false), plain.clone()),
-            ("matrix", file(&[matrix], false), ReadOptions { columns: map, l0_m: None }),
+            ("matrix", file(&[matrix], false), ReadOptions { columns: map, ..ReadOptions::default() }),
         ] {
             let table = read("d.mat", &bytes, &options).unwrap_or_else(|error| panic!("{name}: {error}"));
             assert_eq!((table.columns.force_n.as_slice(), table.lines), (&F[..], vec![1, 2, 3, 4]), "{name}");

@@ -34,7 +34,7 @@ pub(crate) fn settle(
         return Err(MeasurementError::BothMotions { file: file.to_owned() });
     }
     let text = slots[contraction].heading.text.clone();
-    note(reading, &text, None, "ignored: it follows from the length".to_owned());
+    note(reading, &text, None, "ignored: it follows from the length");
     slots.remove(contraction);
     Ok(())
 }
@@ -73,7 +73,7 @@ fn displacement(
         && rows(is_good).all(|row| (LENGTHS[0] * l0..=LENGTHS[1] * l0).contains(&values[row]));
     if is_length {
         slots[place].become_column(Field::Length, |value| value);
-        let says = "taken for the length itself: its readings are about as long as the muscle".to_owned();
+        let says = "taken for the length itself: its readings are about as long as the muscle";
         note(reading, &heading.text, Some("length"), says);
         return Ok(());
     }
@@ -92,7 +92,7 @@ fn displacement(
         bulge_muscles::units::rounded(1e3 * l0, 6),
         sign.why
     );
-    note(reading, &heading.text, Some("displacement"), says);
+    note(reading, &heading.text, Some("displacement"), &says);
     Ok(())
 }
 
@@ -129,12 +129,12 @@ fn sign(slots: &[Slot], place: usize, is_good: &[bool]) -> Sign {
 }
 
 /// Says of a column what became of it.
-fn note(reading: &mut Reading, column: &str, quantity: Option<&str>, says: String) {
+fn note(reading: &mut Reading, column: &str, quantity: Option<&str>, says: &str) {
     if let Some(used) =
         reading.columns.iter_mut().find(|used| used.column == column && used.quantity.is_some())
     {
         used.quantity = quantity.map(str::to_owned);
         used.guessed |= quantity.is_some();
-        used.says = Some(says);
+        used.add(says);
     }
 }

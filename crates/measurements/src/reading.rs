@@ -10,6 +10,9 @@ pub struct ReadOptions {
     pub columns: ColumnMap,
     /// Length of the unpressurised muscle \[m\], > 0: a displacement is measured from it.
     pub l0_m: Option<f64>,
+    /// Force over gauge pressure \[m^2\] of the muscle as stated, at contractions in ascending order: which unit a pressure has whose heading says
+    /// none. Empty where it isn't known.
+    pub pull: Vec<[f64; 2]>,
 }
 
 /// What a column of a file was taken for.
@@ -30,6 +33,14 @@ pub struct ColumnUse {
     /// What else is to be said of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub says: Option<String>,
+}
+
+impl ColumnUse {
+    /// Says more of it.
+    pub(crate) fn add(&mut self, says: &str) {
+        let before = self.says.take().map_or_else(String::new, |before| format!("{before}; "));
+        self.says = Some(before + says);
+    }
 }
 
 /// A row that can't be used.

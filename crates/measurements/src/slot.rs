@@ -22,6 +22,8 @@ pub(crate) struct Slot {
     pub(crate) heading: Heading,
     values: Values,
     clock: Option<Clock>,
+    /// Fields with a unit of their own.
+    pub(crate) units_inside: usize,
 }
 
 impl Slot {
@@ -33,7 +35,7 @@ impl Slot {
             Field::Direction => Values::Directions(Vec::with_capacity(rows)),
             _ => Values::Numbers(Vec::with_capacity(rows)),
         };
-        Self { heading, values, clock: None }
+        Self { heading, values, clock: None, units_inside: 0 }
     }
 
     /// The next field, as text without blanks around it. What can't be used leaves a gap: a value that no row may keep.
@@ -72,6 +74,7 @@ impl Slot {
                 };
                 let value = match found {
                     Err(problem @ CellError::UnitInside { .. }) => {
+                        self.units_inside += 1;
                         self.heading.with_unit_inside(text).ok_or(problem)?
                     }
                     found => found?,

@@ -22,7 +22,7 @@ const MOST_BYTES: u64 = 2 << 30;
 const PARQUET_MAGIC: &[u8] = b"PAR1";
 
 /// The first bytes of other files in which people keep measurements, what they are, and what to do.
-const FOREIGN: [(&[u8], &str, &str); 6] = [
+const FOREIGN: [(&[u8], &str, &str); 12] = [
     (b"\xd0\xcf\x11\xe0", "a spreadsheet of an old kind", "save it as .xlsx, or export the sheet as CSV"),
     (b"\x1f\x8b", "compressed by gzip", "unpack it first"),
     (b"\x28\xb5\x2f\xfd", "compressed by Zstandard", "unpack it first"),
@@ -32,8 +32,19 @@ const FOREIGN: [(&[u8], &str, &str); 6] = [
         "in MATLAB, load it and write `save('x.mat','-v7')`; elsewhere write CSV or Parquet",
     ),
     (b"ARROW1", "an Arrow (Feather) file", "write Parquet or CSV"),
+    (b"<html", MARKUP, AS_TABLE),
+    (b"<HTML", MARKUP, AS_TABLE),
+    (b"<!DOCTYPE", MARKUP, AS_TABLE),
+    (b"<?xml", MARKUP, AS_TABLE),
+    (b"[{", "JSON", AS_TABLE),
+    (b"{", "JSON", AS_TABLE),
     (b"TDSm", "a TDMS file of LabVIEW", "export CSV"),
 ];
+/// Pages that call themselves tables.
+const MARKUP: &str = "a page of HTML or XML, whatever its name says";
+const AS_TABLE: &str = "open it in a spreadsheet or a script, and save it as .xlsx or CSV";
+/// What stands between a workbook's name and that of one of its sheets.
+const SHEET: char = '#';
 /// The name of standard input.
 const STDIN: &str = "-";
 
@@ -55,10 +66,11 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// Reads a file of the kind that its first bytes say; text if none does.
+    /// Reads a file of the kind that its first bytes say; text if none does. `book.xlsx#name` is one sheet of a workbook.
     pub(crate) fn read(path: &Path, options: &ReadOptions) -> Result<Self, MeasurementError> {
         let is_stdin = path == Path::new(STDIN);
         let name = if is_stdin { "standard input".to_owned() } else { path.display().to_string() };
+        let (path, sheet) = sheet_of(path);
         let bytes = if is_stdin { read_all(&name, std::io::stdin().lock()) } else { read_file(&name, path) }?;
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let is_parquet = bytes.starts_with(PARQUET_MAGIC);
@@ -68,7 +80,7 @@ impl Source {
             return Err(MeasurementError::Parquet { file: name, why, instead });
         }
         if !is_parquet {
-            return Self::bytes(&name, &bytes, options);
+            return Self::sheet(&name, &bytes, sheet, options);
         }
         let sha256 = fingerprint(&bytes);
         Ok(Self::new(&name, sha256, parquet_file::read(&name, bytes::Bytes::from(bytes), options)?))
@@ -76,12 +88,24 @@ impl Source {
 
     /// Reads what is in memory: a workbook, MATLAB, else text.
     pub(crate) fn bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Self, MeasurementError> {
+        Self::sheet(name, bytes, None, options)
+    }
+
+    /// The same, of a workbook the sheet that is named.
+    fn sheet(
+        name: &str,
+        bytes: &[u8],
+        sheet: Option<&str>,
+        options: &ReadOptions,
+    ) -> Result<Self, MeasurementError> {
         let foreign = |file: String| {
-            let known = FOREIGN.iter().find(|(start, _, _)| bytes.starts_with(start));
+            let text = bytes.trim_ascii_start();
+            let known =
+                FOREIGN.iter().find(|(start, _, _)| bytes.starts_with(start) || text.starts_with(start));
             known.map(|(_, what, instead)| MeasurementError::OtherFormat { file, what, instead })
         };
         let table = if spreadsheet::is_one(bytes) {
-            spreadsheet::read(name, bytes, options)?
+            spreadsheet::read(name, bytes, sheet, options)?
         } else if let Some(error) = foreign(name.to_owned()) {
             return Err(error);
         } else if matlab::is_one(bytes) {
@@ -89,7 +113,11 @@ impl Source {
         } else {
             csv_file::read(name, bytes, options)?
         };
-        Ok(Self::new(name, fingerprint(bytes), table))
+        let sha256 = match sheet {
+            Some(sheet) => fingerprint(&[bytes, sheet.as_bytes()].concat()),
+            None => fingerprint(bytes),
+        };
+        Ok(Self::new(name, sha256, table))
     }
 
     /// Checks the columns of a program.
@@ -116,6 +144,17 @@ impl Source {
     fn new(name: &str, sha256: String, table: Table) -> Self {
         let file = SourceFile { name: name.to_owned(), sha256, rows: table.lines.len() };
         Self { file, table }
+    }
+}
+
+/// The file and the sheet of `book.xlsx#name`, unless a file has this name.
+fn sheet_of(path: &Path) -> (&Path, Option<&str>) {
+    let parts = path.to_str().filter(|_| !path.exists()).and_then(|name| name.rsplit_once(SHEET));
+    match parts {
+        Some((file, sheet)) if Path::new(file).is_file() && !sheet.is_empty() => {
+            (Path::new(file), Some(sheet))
+        }
+        _ => (path, None),
     }
 }
 

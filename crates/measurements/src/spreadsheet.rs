@@ -22,40 +22,85 @@ pub(crate) fn is_one(bytes: &[u8]) -> bool {
     bytes.starts_with(ZIP_MAGIC)
 }
 
-/// Reads a workbook. `file` is its name, for messages.
-pub(crate) fn read(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Table, MeasurementError> {
-    let refused =
-        |why: &XlsxError| MeasurementError::Workbook { file: file.to_owned(), why: quoted(&why.to_string()) };
-    let mut book = Xlsx::new(Cursor::new(bytes)).map_err(|error| refused(&error))?;
+/// Reads the named sheet of a workbook, else the first with a table. `file` is its name, for messages.
+pub(crate) fn read(
+    file: &str,
+    bytes: &[u8],
+    sheet: Option<&str>,
+    options: &ReadOptions,
+) -> Result<Table, MeasurementError> {
+    let mut book = Xlsx::new(Cursor::new(bytes)).map_err(|error| refused(file, &error))?;
     let names = book.sheet_names().clone();
+    if let Some(sheet) = sheet {
+        if names.iter().any(|name| name == sheet) {
+            return one(&mut book, file, sheet, options)
+                .unwrap_or_else(|| Err(MeasurementError::Empty { file: file.to_owned() }));
+        }
+        let sheets = names.iter().map(|name| format!("`{}`", quoted(name))).collect::<Vec<_>>().join(", ");
+        return Err(MeasurementError::NoSheet { file: file.to_owned(), sheet: quoted(sheet), sheets });
+    }
     let mut complaint = None;
-    for name in &names {
-        let text = match text(&mut book, name) {
-            Ok(text) if text.trim().is_empty() => continue,
-            Ok(text) if text.len() > MOST_BYTES => {
-                let (bytes, limit) = (text.len() as u64, MOST_BYTES as u64);
-                return Err(MeasurementError::TooLarge { file: file.to_owned(), bytes, limit });
-            }
-            Ok(text) => text,
-            Err(error) => {
-                complaint.get_or_insert(refused(&error));
-                continue;
-            }
-        };
-        match csv_file::read_text(file, &text, Some(Separator::Byte(b'\t')), options) {
-            Ok(mut table) => {
-                if names.len() > 1 {
-                    table.reading.notes.push(format!("{file}: read from the sheet `{}`", quoted(name)));
-                }
+    for (place, name) in names.iter().enumerate() {
+        match one(&mut book, file, name, options) {
+            Some(Ok(mut table)) => {
+                table.reading.notes.extend(other_sheets(&mut book, file, &names, place, options));
                 return Ok(table);
             }
+            Some(Err(error @ MeasurementError::TooLarge { .. })) => return Err(error),
             // The first sheet with anything in it is the one that was meant.
-            Err(error) => {
+            Some(Err(error)) => {
                 complaint.get_or_insert(error);
             }
+            None => {}
         }
     }
     Err(complaint.unwrap_or_else(|| MeasurementError::Empty { file: file.to_owned() }))
+}
+
+/// Which sheet was read, and what other tables there are.
+fn other_sheets(
+    book: &mut Xlsx<Cursor<&[u8]>>,
+    file: &str,
+    names: &[String],
+    read: usize,
+    options: &ReadOptions,
+) -> Option<String> {
+    let others: Vec<String> = names[read + 1..]
+        .iter()
+        .filter(|name| matches!(one(book, file, name, options), Some(Ok(_))))
+        .map(|name| format!("`{}`", quoted(name)))
+        .collect();
+    let what = format!("{file}: read from the sheet `{}`", quoted(&names[read]));
+    match others.first() {
+        None => (names.len() > 1).then_some(what),
+        Some(_) => Some(format!(
+            "{what}, not from {}: name each that is to be read, such as `{file}#{}`",
+            others.join(", "),
+            quoted(&names[read])
+        )),
+    }
+}
+
+/// One sheet; none if nothing is in it.
+fn one(
+    book: &mut Xlsx<Cursor<&[u8]>>,
+    file: &str,
+    sheet: &str,
+    options: &ReadOptions,
+) -> Option<Result<Table, MeasurementError>> {
+    Some(match text(book, sheet) {
+        Ok(text) if text.trim().is_empty() => return None,
+        Ok(text) if text.len() > MOST_BYTES => {
+            let (bytes, limit) = (text.len() as u64, MOST_BYTES as u64);
+            Err(MeasurementError::TooLarge { file: file.to_owned(), bytes, limit })
+        }
+        Ok(text) => csv_file::read_text(file, &text, Some(Separator::Byte(b'\t')), options),
+        Err(error) => Err(refused(file, &error)),
+    })
+}
+
+fn refused(file: &str, why: &XlsxError) -> MeasurementError {
+    MeasurementError::Workbook { file: file.to_owned(), why: quoted(&why.to_string()) }
 }
 
 /// A sheet as lines of fields with tabs between them; the lines are those of the sheet.
@@ -238,7 +283,7 @@ mod tests {
                 &["@46082.50004629630", "2.5", "294", "#N/A"],
             ],
         ]);
-        let table = read("d.xlsx", &bytes, &ReadOptions::default()).unwrap();
+        let table = read("d.xlsx", &bytes, None, &ReadOptions::default()).unwrap();
         assert_eq!(table.columns.force_n, [812.25, 790.125, 771.0, 752.5]);
         assert_eq!(table.columns.pressure_pa, [2.5e5; 4]);
         let time = table.columns.time_s.unwrap();
@@ -255,13 +300,30 @@ mod tests {
     }
 
     #[test]
+    fn sheets_by_their_names() {
+        let head: &[&str] = &["pressure [bar]", "length [mm]", "force [N]"];
+        let bytes = workbook(&[&[head, &["1", "300", "5"]], &[head, &["2", "300", "9"]], &[&["Notes"]]]);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("b.xlsx");
+        std::fs::write(&path, bytes).unwrap();
+        let name = |sheet: &str| format!("{}#{sheet}", path.display());
+        let both = crate::Data::read(&[name("S1"), name("S2")]).unwrap();
+        assert_eq!(both.force(), [5.0, 9.0]);
+        let first = crate::Data::read(&[&path]).unwrap();
+        let notes = first.reading().notes.join("\n");
+        assert!(notes.contains("the sheet `S1`, not from `S2`: name each"), "{notes}");
+        let error = crate::Data::read(&[name("S4")]).unwrap_err().to_string();
+        assert!(error.contains("no sheet `S4`: there are `S1`, `S2`, `S3`"), "{error}");
+    }
+
+    #[test]
     fn damaged_workbooks_are_errors() {
         let bytes = workbook(&[&[
             &["pressure [bar]", "length [mm]", "force [N]"],
             &["1", "300", "5"],
             &["1", "290", "4"],
         ]]);
-        assert!(read("d.xlsx", &bytes, &ReadOptions::default()).is_ok());
+        assert!(read("d.xlsx", &bytes, None, &ReadOptions::default()).is_ok());
         let mut state = 1_u64;
         let mut next = |below: usize| {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -274,7 +336,7 @@ mod tests {
                 changed[at] = u8::try_from(next(256)).unwrap();
             }
             changed.truncate(bytes.len() - if next(8) == 0 { next(bytes.len()) } else { 0 });
-            if let Err(error) = read("d.xlsx", &changed, &ReadOptions::default()) {
+            if let Err(error) = read("d.xlsx", &changed, None, &ReadOptions::default()) {
                 assert!(error.to_string().contains("d.xlsx"), "{error}");
             }
         }

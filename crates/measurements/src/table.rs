@@ -4,6 +4,7 @@ use crate::cell_error::CellError;
 use crate::columns::{Columns, Labels};
 use crate::error::MeasurementError;
 use crate::heading::Field;
+use crate::magnitude;
 use crate::motion;
 use crate::order;
 use crate::reading::{ColumnUse, ReadOptions, Reading};
@@ -116,6 +117,7 @@ impl Draft {
         reading.set_apart_rows = bad.len();
         let mut lines = self.lines;
         let is_good = good(rows, &bad);
+        magnitude::settle(file, &mut self.slots, &is_good, options, &mut reading)?;
         motion::settle(file, &mut self.slots, &is_good, options, &mut reading)?;
         let mut columns = columns(self.slots);
         if !bad.is_empty() {

@@ -83,7 +83,8 @@ pub struct DataSummary {
 /// Data and muscle that don't go together, and by what they would.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Mismatch {
-    /// What it is about: `absolute-pressure`, `pressure-unit`, `force-unit`, `force-sign`, `contraction-unit`, `displacement`, `length`, `scale`, `pushes`.
+    /// What it is about: `absolute-pressure`, `pressure-unit`, `force-unit`, `force-sign`, `contraction-unit`, `displacement`, `length`, `time-unit`,
+    /// `scale`, `pushes`.
     pub kind: &'static str,
     /// Whether the readings are those of another unit or sign beyond doubt: no physics can be learnt from them as they stand.
     pub decided: bool,
@@ -261,6 +262,8 @@ pub struct Curve {
 /// One row of a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CurvePoint {
+    /// Gauge pressure as read \[Pa\].
+    pub pressure_pa: f64,
     /// Contraction as read.
     pub contraction: f64,
     /// +1 shortening, -1 lengthening, 0 at rest; at held length that of the pressure.

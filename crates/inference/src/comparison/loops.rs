@@ -19,36 +19,36 @@ pub(crate) fn branches(data: &Data) -> [&'static str; 2] {
     }
 }
 
-/// Sums over one bin: rows, contraction, measured and two models, for shortening and lengthening.
+/// Rows between which a reading is interpolated follow one another, but for some that don't count.
+const APART: usize = 3;
+
+/// Sums over one place: readings, and contraction, measured and two models, for shortening and lengthening.
 #[derive(Debug, Clone, Copy, Default)]
 struct Branches {
     rows: [usize; 2],
     sums: [[f64; 4]; 2],
 }
 
-/// Mean and half-gap at each pressure level and specimen where both branches were measured. The means of a bin are taken at slightly
-/// different contractions on the two branches; the model is taken at the same rows, so that its difference from the measurement is fair.
+/// Mean and half-gap at each pressure level and specimen where both branches were measured.
+///
+/// Both branches are taken at the same place, interpolated between the two rows around it: at the middle of a bin of contraction, and at held length at
+/// the mean of a pressure level. A model without hysteresis has no gap then.
 pub(crate) fn gaps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<LoopGap> {
-    let moments = analysis.record.moments();
-    let measured = analysis.record.force();
     let specimens = analysis.record.specimens();
-    let [low, high] = contractions(analysis);
     let place = |level: usize, specimen: usize, bin: usize| (level * specimens.len() + specimen) * BINS + bin;
     let mut bins = vec![Branches::default(); analysis.levels.len() * specimens.len() * BINS];
-    for row in analysis.with_state(&forces).filter(|row| moments[*row].branch() != 0.0) {
-        let m = &moments[row];
-        let at = place(analysis.levels.of[row], m.specimen as usize, bin(m.contraction, low, high, BINS));
-        let branch = usize::from(m.branch() < 0.0);
-        bins[at].rows[branch] += 1;
-        for (sum, value) in bins[at].sums[branch].iter_mut().zip([
-            m.contraction,
-            measured[row],
-            forces[0][row],
-            forces[1][row],
-        ]) {
-            *sum += value;
-        }
+    let rows: Vec<usize> = analysis.with_state(&forces).collect();
+    for sweep in analysis.data.sweeps() {
+        let [start, end] = [sweep.rows.start, sweep.rows.end].map(|row| rows.partition_point(|r| *r < row));
+        collect(analysis, forces, sweep, &rows[start..end], |level, bin, branch, values| {
+            let found = &mut bins[place(level, sweep.specimen as usize, bin)];
+            found.rows[branch] += 1;
+            found.sums[branch].iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+        });
     }
+    let is_isometric = analysis.data.sweeps().iter().any(|sweep| sweep.kind == SweepKind::Isometric);
+    // Few lengths are held, many are passed.
+    let fewest = if is_isometric { 1 } else { 3 };
     let mut gaps = Vec::new();
     for (level, pressure_pa) in analysis.levels.mean.iter().enumerate() {
         for (specimen, name) in specimens.iter().enumerate() {
@@ -80,12 +80,54 @@ pub(crate) fn gaps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<LoopG
                     gap.half_gap_model_n[model].push(all[1 + model][1]);
                 }
             }
-            if gap.contraction.len() > 2 {
+            if gap.contraction.len() >= fewest {
                 gaps.push(gap);
             }
         }
     }
     gaps
+}
+
+/// Hands over what is read of a sweep at each place that its rows pass: level, bin, branch, and contraction, measured and modelled forces.
+fn collect(
+    analysis: &Analysis<'_>,
+    forces: [&Vec<f64>; 2],
+    sweep: &Sweep,
+    rows: &[usize],
+    mut take: impl FnMut(usize, usize, usize, [f64; 4]),
+) {
+    let (moments, measured) = (analysis.record.moments(), analysis.record.force());
+    let [low, high] = contractions(analysis);
+    let held = rows.iter().map(|row| moments[*row].contraction).sum::<f64>() / rows.len().max(1) as f64;
+    let middle = |bin: usize| low + (bin as f64 + 0.5) * (high - low) / BINS as f64;
+    let is_isometric = sweep.kind == SweepKind::Isometric;
+    for pair in rows.windows(2).filter(|pair| pair[1] - pair[0] <= APART) {
+        let (a, b) = (&moments[pair[0]], &moments[pair[1]]);
+        let branch = usize::from(a.branch() < 0.0);
+        if a.branch() * b.branch() <= 0.0 {
+            continue;
+        }
+        let mut at = |level: usize, bin: usize, [from, to]: [f64; 2], place: f64| {
+            let share = (place - from) / (to - from);
+            let between = |values: [f64; 2]| values[0] + share * (values[1] - values[0]);
+            let force = |force: &[f64]| between([force[pair[0]], force[pair[1]]]);
+            let contraction = between([a.contraction, b.contraction]);
+            take(level, bin, branch, [contraction, force(measured), force(forces[0]), force(forces[1])]);
+        };
+        let passes = |[from, to]: [f64; 2], place: f64| from.min(to) < place && place <= from.max(to);
+        if is_isometric {
+            let way = [a.pressure, b.pressure];
+            for (level, mean) in analysis.levels.mean.iter().enumerate().filter(|(_, p)| passes(way, **p)) {
+                at(level, bin(held, low, high, BINS), way, *mean);
+            }
+        } else if analysis.levels.of[pair[0]] == analysis.levels.of[pair[1]] {
+            let way = [a.contraction, b.contraction];
+            let [first, last] = [way[0].min(way[1]), way[0].max(way[1])].map(|c| bin(c, low, high, BINS));
+            for bin in (first..=last).filter(|bin| passes(way, middle(*bin))) {
+                at(analysis.levels.of[pair[0]], bin, way, middle(bin));
+            }
+        }
+    }
 }
 
 /// RMS error of the half-gap \[N\]; none without loops.

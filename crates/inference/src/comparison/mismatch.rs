@@ -5,6 +5,7 @@ use bulge_model::{Model, Record, Wanted, Warm};
 use bulge_muscles::units::significant;
 use bulge_muscles::{Muscle, Quantity};
 
+use crate::comparison::clock;
 use crate::comparison::document::Mismatch;
 use crate::comparison::rows::{full_scale, lines};
 
@@ -107,8 +108,9 @@ pub(crate) fn questions(
     let trial = Trial { model, record: &thin, used: &counts };
     let Some((before, force)) = trial.error(&|read| read) else { return Vec::new() };
     let full = full_scale(data.force());
+    let mut found: Vec<Mismatch> = clock::question(data, record, before).into_iter().collect();
     if before <= LARGE * full {
-        return Vec::new();
+        return found;
     }
     let read =
         (squares(&thin, &counts) / counts.iter().filter(|counts| **counts).count().max(1) as f64).sqrt();
@@ -124,9 +126,9 @@ pub(crate) fn questions(
     let least = tried.first().map_or(0.0, |(after, meaning)| after / size(meaning));
     tried.retain(|(after, meaning)| *after <= ALIKE * least * size(meaning));
     if !tried.is_empty() {
-        return tried.into_iter().map(|(after, meaning)| asked(before, after, meaning)).collect();
+        found.extend(tried.into_iter().map(|(after, meaning)| asked(before, after, meaning)));
+        return found;
     }
-    let mut found = Vec::new();
     found.extend(scale(&thin, &counts, &force, before));
     found.extend(pushes(data, muscle, &thin, &kept, &counts, &force, [before, full]));
     found

@@ -234,6 +234,7 @@ pub(crate) fn curves(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Cur
             }
             let stride = rows.len().div_ceil(MOST_POINTS).max(1);
             let point = |row: &usize| CurvePoint {
+                pressure_pa: moments[*row].pressure,
                 contraction: moments[*row].contraction,
                 direction: moments[*row].branch(),
                 measured_n: measured[*row],

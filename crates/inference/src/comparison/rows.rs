@@ -19,6 +19,9 @@ pub(crate) struct Used {
     pub(crate) reading: Reading,
 }
 
+/// How the reason begins of a row that was read and can't be used, because its pressure is no gauge pressure above 0: such rows are among those left out.
+pub const UNPRESSURISED: &str = "a gauge pressure of";
+
 impl Used {
     /// Leaves out rows, unless nothing would be left.
     pub(crate) fn leave_out(&mut self, data: &Data, rows: impl IntoIterator<Item = usize>, why: String) {
@@ -40,8 +43,7 @@ impl Used {
             self.mask[*row] = false;
             let (file, line) = data.line(*row);
             let file = data.files().get(file).map_or("", |file| file.name.as_str());
-            let reason =
-                format!("a gauge pressure of {} Pa has no equilibrium", significant(pressure[*row], 3));
+            let reason = format!("{UNPRESSURISED} {} Pa has no equilibrium", significant(pressure[*row], 3));
             self.reading.add(file, line, reason);
         }
         if !rows.is_empty() {

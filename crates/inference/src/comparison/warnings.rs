@@ -3,6 +3,7 @@
 use bulge_muscles::Parameter;
 
 use crate::comparison::analysis::Analysis;
+use crate::comparison::clock::TIME_UNIT;
 use crate::comparison::document::{LeftOut, Rung};
 use crate::comparison::specimens::note;
 
@@ -11,7 +12,8 @@ impl Analysis<'_> {
     pub(crate) fn warnings(&self, ladder: &[Rung]) -> Vec<String> {
         let mut warnings: Vec<String> =
             self.findings.iter().map(ToString::to_string).chain(note(self.data, self.muscle)).collect();
-        let negative = ladder.first().filter(|rung| rung.r_squared < 0.0 && self.findings.is_empty());
+        let is_asked = self.findings.iter().any(|finding| finding.kind != TIME_UNIT);
+        let negative = ladder.first().filter(|rung| rung.r_squared < 0.0 && !is_asked);
         if let Some(rung) = negative {
             warnings.push(format!(
                 "the muscle as stated is farther from these forces ({:.1} N) than their mean is (R^2 below 0): check its length and radius, the zero of the contraction, \

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use std::fmt::Write as _;
 
 /// The rows of the table: time in s, pressure in bar, length in mm, force in N.
-const ROWS: [[&str; 4]; 5] = [
+pub(super) const ROWS: [[&str; 4]; 5] = [
     ["0", "2.5", "300", "812.25"],
     ["0.1", "2.5", "298.5", "790.125"],
     ["0.2", "2.5", "297", "771"],
@@ -19,13 +19,13 @@ const ROWS: [[&str; 4]; 5] = [
     ["0.4", "2.5", "294", "733.75"],
 ];
 
-fn options(columns: &str) -> ReadOptions {
+pub(super) fn options(columns: &str) -> ReadOptions {
     let columns = if columns.is_empty() { ColumnMap::default() } else { columns.parse().unwrap() };
-    ReadOptions { columns, l0_m: Some(0.3) }
+    ReadOptions { columns, l0_m: Some(0.3), pull: Vec::new() }
 }
 
 #[track_caller]
-fn reads(name: &str, bytes: &[u8], columns: &str) -> Data {
+pub(super) fn reads(name: &str, bytes: &[u8], columns: &str) -> Data {
     Data::from_bytes(bytes, "d.csv", &options(columns)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
@@ -36,7 +36,7 @@ fn plain() -> Data {
 
 /// Equal numbers, bit for bit.
 #[track_caller]
-fn equal(name: &str, found: &Data) {
+pub(super) fn equal(name: &str, found: &Data) {
     let expected = plain();
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     let columns = |data: &Data| {
@@ -48,7 +48,7 @@ fn equal(name: &str, found: &Data) {
 }
 
 /// The rows with a separator and a decimal sign.
-fn rows(separator: &str, comma: bool) -> String {
+pub(super) fn rows(separator: &str, comma: bool) -> String {
     let one = |row: &[&str; 4]| {
         let line = row.join(separator);
         if comma { line.replace('.', ",") } else { line }

@@ -1,13 +1,17 @@
 //! What was measured, what was left out, and what the quality gate found.
 
-use bulge_inference::Comparison;
-use bulge_measurements::{Finding, LineRange, Severity};
+use bulge_inference::{Comparison, UNPRESSURISED};
+use bulge_measurements::{ColumnUse, Finding, LineRange, SetApart, Severity};
 use serde::Serialize;
 
 use crate::comparison::number::{and, bar, count, newton, percent};
 
 /// Ranges of lines that are listed before `and so on`.
 const MOST_RANGES: usize = 6;
+/// Columns and rows that are listed, and digits of a reading.
+const MOST_COLUMNS: usize = 40;
+const MOST_ROWS: usize = 12;
+const DIGITS: usize = 6;
 /// Specimens that are named.
 const MOST_NAMES: usize = 12;
 
@@ -69,6 +73,50 @@ pub(super) fn facts(comparison: &Comparison) -> Vec<(&'static str, String)> {
         facts.push(("noise floor", format!("{}: {}", newton(floor.sd_n), floor.says)));
     }
     facts
+}
+
+/// What each column was taken for, where anything about them was guessed: heading, quantity, unit, first values, and what is to be said of it.
+pub(super) fn columns(comparison: &Comparison) -> Vec<[String; 5]> {
+    let reading = &comparison.data.reading;
+    if !reading.is_guessed() {
+        return Vec::new();
+    }
+    let row = |column: &ColumnUse| {
+        let first: Vec<String> = column.first.iter().map(|text| shortened(text)).collect();
+        [
+            column.column.clone(),
+            column.quantity.clone().unwrap_or_else(|| "not read".to_owned()),
+            column.unit.clone().unwrap_or_default(),
+            first.join(" "),
+            column.says.clone().filter(|says| says != "ignored").unwrap_or_default(),
+        ]
+    };
+    reading.columns.iter().take(MOST_COLUMNS).map(row).collect()
+}
+
+/// A number with six digits, as far as it has more; any other text as it is.
+fn shortened(text: &str) -> String {
+    match text.parse::<f64>() {
+        Ok(number) if text.len() > DIGITS + 3 => bulge_muscles::units::rounded(number, DIGITS).to_string(),
+        _ => text.to_owned(),
+    }
+}
+
+/// The first rows that can't be used, but for those that are left out as unpressurised: line and reason.
+pub(super) fn set_apart(comparison: &Comparison) -> Vec<[String; 2]> {
+    let reading = &comparison.data.reading;
+    let several = comparison.data.files.len() > 1;
+    let line =
+        |row: &SetApart| if several { format!("{}:{}", row.file, row.row) } else { row.row.to_string() };
+    let is_unread = |row: &&SetApart| !row.reason.starts_with(UNPRESSURISED);
+    let unread = reading.set_apart.iter().filter(is_unread);
+    let count = unread.clone().count();
+    let mut rows: Vec<[String; 2]> =
+        unread.take(MOST_ROWS).map(|row| [line(row), row.reason.clone()]).collect();
+    if count > rows.len() {
+        rows.push([String::new(), format!("and {} more", count - rows.len())]);
+    }
+    rows
 }
 
 /// What the quality gate found, the worst first.

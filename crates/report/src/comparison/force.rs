@@ -4,6 +4,7 @@ use bulge_inference::{Comparison, Curve, CurvePoint};
 
 use crate::PlotError;
 use crate::axis::Axis;
+use crate::comparison::held_length;
 use crate::comparison::legend::{self, Mark};
 use crate::comparison::levels::{Shown, specimens};
 use crate::comparison::number::{bar, newton};
@@ -25,6 +26,9 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let curves: Vec<&Curve> = comparison.curves.iter().filter(|curve| !curve.points.is_empty()).collect();
     if curves.is_empty() {
         return Ok(None);
+    }
+    if held_length::is_one(comparison) {
+        return held_length::plot(comparison, &curves).map(Some);
     }
     let shown = Shown::new(curves.iter().map(|curve| curve.pressure_pa), LEVELS);
     let all = specimens(curves.iter().map(|curve| &curve.specimen));
@@ -168,6 +172,7 @@ mod tests {
     #[test]
     fn a_line_breaks_between_sweeps_only() {
         let point = |i: i32| CurvePoint {
+            pressure_pa: 2e5,
             contraction: 0.01 * f64::from(i),
             direction: 1.0,
             measured_n: 0.0,

@@ -15,6 +15,8 @@ use crate::palette;
 
 /// Loads that are drawn.
 const LOADS: usize = 6;
+/// Loads that differ by less than this part of the largest are one: friction of the guide, and the cell's zero.
+const SAME: f64 = 0.02;
 const HEIGHT: f64 = 340.0;
 const TITLE: &str = "Contraction under held loads";
 
@@ -29,8 +31,9 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     }
     let mut by_load: Vec<&HeldLoad> = all.iter().collect();
     by_load.sort_by(|a, b| a.load_n.total_cmp(&b.load_n));
-    let shown: Vec<&HeldLoad> = spread(by_load.len(), LOADS).into_iter().map(|i| by_load[i]).collect();
-    let points = || shown.iter().flat_map(|held| &held.points);
+    let loads = loads(&by_load);
+    let shown: Vec<&[&HeldLoad]> = spread(loads.len(), LOADS).into_iter().map(|i| loads[i]).collect();
+    let points = || shown.iter().flat_map(|load| load.iter()).flat_map(|held| &held.points);
     let across = || points().map(|p| p.pressure_pa / 1e5);
     let up = || points().flat_map(|p| [p.contraction, p.first, p.last]).map(|c| 100.0 * c);
     let x = Axis::around(across()).ok_or_else(|| PlotError::span("pressure [bar]", across()))?;
@@ -38,14 +41,16 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
     let mut entries = legend::models(has_effects(comparison));
     let colour = |place: usize| palette::colour(place, shown.len());
     entries
-        .extend(shown.iter().enumerate().rev().map(|(i, held)| (Mark::Box(colour(i)), newton(held.load_n))));
+        .extend(shown.iter().enumerate().rev().map(|(i, load)| (Mark::Box(colour(i)), newton(mean(load)))));
     let top = legend::height(&entries, WIDTH - 20.0) + 16.0;
     let mut svg = Svg::new("isotonic", WIDTH, top + HEIGHT + BELOW);
     legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, &entries);
     let (left, width) = columns(1, WIDTH)[0];
     let panel = Panel { x, y, left, top, width, height: HEIGHT };
     panel.draw(&mut svg, "", "pressure [bar]", "contraction [%]");
-    for (place, held) in shown.iter().enumerate() {
+    let sweeps =
+        shown.iter().enumerate().flat_map(|(place, load)| load.iter().map(move |held| (place, held)));
+    for (place, held) in sweeps {
         let line = |of: fn(&HeldLoadPoint) -> f64| -> Vec<_> {
             held.points.iter().map(|p| panel.at((p.pressure_pa / 1e5, 100.0 * of(p)))).collect()
         };
@@ -55,8 +60,8 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
             svg.polyline(&line(|p| p.last), Stroke::solid(colour(place), 1.6));
         }
     }
-    let left_out = if shown.len() < all.len() {
-        format!(" Shown are {} of {} sweeps.", shown.len(), all.len())
+    let left_out = if shown.len() < loads.len() {
+        format!(" Shown are {} of {} loads.", shown.len(), loads.len())
     } else {
         String::new()
     };
@@ -69,6 +74,17 @@ pub(crate) fn plot(comparison: &Comparison) -> Result<Option<Plot>, PlotError> {
         ),
         svg: svg.finish(TITLE),
     }))
+}
+
+/// Sweeps under one load, of sweeps in the order of their loads.
+fn loads<'a, 'b>(by_load: &'b [&'a HeldLoad]) -> Vec<&'b [&'a HeldLoad]> {
+    let largest = by_load.last().map_or(0.0, |held| held.load_n.abs());
+    by_load.chunk_by(|a, b| b.load_n - a.load_n <= SAME * largest).collect()
+}
+
+/// The load of some sweeps \[N\].
+fn mean(load: &[&HeldLoad]) -> f64 {
+    load.iter().map(|held| held.load_n).sum::<f64>() / load.len().max(1) as f64
 }
 
 /// The sentence above the plot.

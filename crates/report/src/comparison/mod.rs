@@ -15,6 +15,7 @@ mod correlations;
 mod data;
 mod force;
 mod headline;
+mod held_length;
 mod isotonic;
 pub(crate) mod ladder;
 mod ladder_table;

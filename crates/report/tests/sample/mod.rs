@@ -444,6 +444,7 @@ pub(crate) fn rich(recipe: &Recipe) -> Comparison {
     for (s, specimen) in recipe.specimens.iter().enumerate() {
         for p in &recipe.pressures_pa {
             let points = rows.iter().filter(|r| r.specimen == s && r.pressure == *p).map(|r| CurvePoint {
+                pressure_pa: *p,
                 contraction: r.contraction,
                 direction: r.direction,
                 measured_n: r.measured,

@@ -1,0 +1,139 @@
+//! Force against pressure at held lengths: what an isometric test shows.
+
+use bulge_inference::{Comparison, Curve, CurvePoint};
+use bulge_measurements::SweepKind;
+use plotters::style::RGBColor;
+
+use crate::PlotError;
+use crate::axis::Axis;
+use crate::comparison::legend::{self, Mark};
+use crate::comparison::levels::{specimens, spread};
+use crate::comparison::number::percent;
+use crate::comparison::panel::{BELOW, Panel, columns};
+use crate::comparison::svg::{BOLD, Stroke, Svg, name_fitted};
+use crate::comparison::wording::has_effects;
+use crate::comparison::{Plot, WIDTH};
+use crate::palette;
+
+/// Lengths that are drawn, and panels, one for each specimen.
+const LENGTHS: usize = 8;
+const SPECIMENS: usize = 6;
+/// Contractions farther apart than this share of their range are of two lengths.
+const APART: f64 = 0.03;
+/// The least range that is told apart: a length is held within some thousandths.
+const LEAST: f64 = 0.05;
+const TITLE: &str = "Force against pressure";
+
+/// Whether the length was held in all of the test.
+pub(crate) fn is_one(comparison: &Comparison) -> bool {
+    let kinds = &comparison.data.sweep_kinds;
+    !kinds.is_empty() && kinds.iter().all(|kind| *kind == SweepKind::Isometric)
+}
+
+/// The contractions at which the length was held, rising.
+fn lengths(points: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut all: Vec<f64> = points.collect();
+    all.sort_by(f64::total_cmp);
+    let range = all.last().zip(all.first()).map_or(0.0, |(last, first)| last - first);
+    let groups = all.chunk_by(|a, b| b - a <= APART * range.max(LEAST));
+    groups.map(|group| group.iter().sum::<f64>() / group.len() as f64).collect()
+}
+
+/// The length nearest to a contraction.
+fn nearest(lengths: &[f64], contraction: f64) -> usize {
+    let off = |place: &usize| (lengths[*place] - contraction).abs();
+    (0..lengths.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or_default()
+}
+
+/// The plot of some curves, of which there is one at least.
+///
+/// # Errors
+/// If pressures or forces span more than an axis.
+pub(crate) fn plot(comparison: &Comparison, curves: &[&Curve]) -> Result<Plot, PlotError> {
+    let points = || curves.iter().flat_map(|curve| &curve.points);
+    let lengths = lengths(points().map(|point| point.contraction));
+    let shown = spread(lengths.len(), LENGTHS);
+    let all = specimens(curves.iter().map(|curve| &curve.specimen));
+    let names = &all[..all.len().min(SPECIMENS)];
+    let axis = |quantity, values: Vec<f64>| {
+        Axis::around(values.iter().copied()).ok_or_else(|| PlotError::span(quantity, values.iter().copied()))
+    };
+    let x = axis("pressure [bar]", points().map(|p| 1e-5 * p.pressure_pa).chain([0.0]).collect())?;
+    let y =
+        axis("force [N]", points().flat_map(|p| [p.measured_n, p.first_n, p.last_n]).chain([0.0]).collect())?;
+    let colour = |place: usize| palette::colour(shown.len() - 1 - place, shown.len());
+    let mut entries = legend::models(has_effects(comparison));
+    entries.extend(
+        shown.iter().enumerate().map(|(i, length)| (Mark::Box(colour(i)), percent(lengths[*length]))),
+    );
+    let (across, height, head) = if names.len() == 1 { (1, 380.0, 10.0) } else { (2, 250.0, 30.0) };
+    let start = legend::height(&entries, WIDTH - 20.0) + 6.0;
+    let row = head + height + BELOW;
+    let mut svg = Svg::new("force", WIDTH, start + row * names.len().div_ceil(across) as f64);
+    legend::draw(&mut svg, (6.0, 2.0), WIDTH - 20.0, &entries);
+    let columns = columns(across, WIDTH);
+    for (i, name) in names.iter().enumerate() {
+        let (left, width) = columns[i % across];
+        let panel = Panel { x, y, left, top: start + row * (i / across) as f64 + head, width, height };
+        let heading = if names.len() == 1 {
+            String::new()
+        } else {
+            name_fitted(&format!("specimen {name}"), BOLD, width)
+        };
+        panel.draw(&mut svg, &heading, "pressure [bar]", "force [N]");
+        for (place, length) in shown.iter().enumerate() {
+            let here = |point: &&CurvePoint| nearest(&lengths, point.contraction) == *length;
+            let of_specimen = curves.iter().filter(|curve| curve.specimen == *name);
+            let held: Vec<CurvePoint> =
+                of_specimen.flat_map(|curve| &curve.points).filter(here).copied().collect();
+            draw(&mut svg, &panel, &held, colour(place), has_effects(comparison));
+        }
+    }
+    let left_out = if shown.len() < lengths.len() {
+        format!(" Shown are {} of {} lengths.", shown.len(), lengths.len())
+    } else {
+        String::new()
+    };
+    Ok(Plot {
+        name: "force",
+        title: TITLE.to_owned(),
+        caption: format!(
+            "Dots are readings, lines the model at the same readings; colour is the contraction at which the length was held. The closer the {} lines run \
+             through the dots, the better.{left_out}",
+            if has_effects(comparison) { "solid" } else { "dashed" }
+        ),
+        svg: svg.finish("Force against pressure at held lengths, measured and modelled"),
+    })
+}
+
+/// Readings at one length, and the models on each branch in the order of the pressure.
+fn draw(svg: &mut Svg, panel: &Panel, points: &[CurvePoint], colour: RGBColor, has_effects: bool) {
+    let place = |point: &CurvePoint, force_n: f64| panel.at((1e-5 * point.pressure_pa, force_n));
+    let dots: Vec<_> = points.iter().map(|p| place(p, p.measured_n)).collect();
+    let (radius, opacity) = if dots.len() < 60 { (2.8, 0.8) } else { (2.6, 0.3) };
+    svg.dots(&dots, radius, colour, opacity);
+    for sign in [1.0, -1.0] {
+        let mut branch: Vec<&CurvePoint> = points.iter().filter(|p| p.direction * sign > 0.0).collect();
+        branch.sort_by(|a, b| a.pressure_pa.total_cmp(&b.pressure_pa));
+        let line = |of: fn(&CurvePoint) -> f64| branch.iter().map(|p| place(p, of(p))).collect::<Vec<_>>();
+        svg.polyline(&line(|p| p.first_n), Stroke::dashed(colour, 1.0));
+        if has_effects {
+            svg.polyline(&line(|p| p.last_n), Stroke::solid(colour, 1.3));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_told_apart_by_gaps() {
+        let found = lengths([0.0101, 0.1, 0.0099, 0.102, 0.05].into_iter());
+        assert_eq!(found.len(), 3, "{found:?}");
+        assert!((found[0] - 0.01).abs() < 1e-12 && (found[2] - 0.101).abs() < 1e-12);
+        assert_eq!([0.0, 0.04, 0.09].map(|c| nearest(&found, c)), [0, 1, 2]);
+        // One length within its noise is one.
+        assert_eq!(lengths([0.0499, 0.05, 0.0501].into_iter()).len(), 1);
+    }
+}
