@@ -37,6 +37,7 @@ fn compared(mut analysis: Analysis<'_>) -> Result<Comparison, InferenceError> {
     analysis.ask()?;
     let first = analysis.climb(0, None)?;
     let floor = analysis.measure_noise(&first);
+    analysis.bound_tails(&first);
     // Weights follow from the noise: the first rung again if it fits anything.
     let first = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
     let mut rungs = vec![first];
@@ -129,6 +130,7 @@ fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, In
     analysis.ask()?;
     let base = analysis.climb(0, None)?;
     let noise_floor = analysis.measure_noise(&base);
+    analysis.bound_tails(&base);
     let climbed = analysis.climb(options.effects.len(), None)?;
     let rmse_n = residuals::summary(&analysis, &climbed.force).rmse;
     let left = analysis.without_state(&climbed);

@@ -37,7 +37,7 @@ pub(crate) fn gaps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<LoopG
     let mut bins = vec![Branches::default(); analysis.levels.len() * specimens.len() * BINS];
     for row in analysis.with_state(&forces).filter(|row| moments[*row].branch() != 0.0) {
         let m = &moments[row];
-        let at = place(analysis.levels.of[row], m.specimen as usize, bin(m.contraction, low, high, BINS));
+        let at = place(analysis.levels.at(row), m.specimen as usize, bin(m.contraction, low, high, BINS));
         let branch = usize::from(m.branch() < 0.0);
         bins[at].rows[branch] += 1;
         for (sum, value) in bins[at].sums[branch].iter_mut().zip([

@@ -46,7 +46,7 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
     let mut stacks = Vec::new();
     for (level, pressure_pa) in analysis.levels.mean.iter().enumerate() {
         let mut rows_of = vec![Vec::new(); BINS];
-        for row in analysis.with_state(&all).filter(|row| analysis.levels.of[*row] == level) {
+        for row in analysis.with_state(&all).filter(|row| analysis.levels.at(*row) == level) {
             rows_of[bin(contraction[row], low, high, BINS)].push(row);
         }
         let filled: Vec<&Vec<usize>> = rows_of.iter().filter(|rows| !rows.is_empty()).collect();

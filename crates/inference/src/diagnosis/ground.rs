@@ -12,6 +12,7 @@ use crate::diagnosis::noise::Source;
 use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::Search;
 use crate::error::InferenceError;
+use crate::median::median;
 use crate::noise::law::{NoiseLaw, NoiseSource};
 use crate::noise::whitening::Whitening;
 
@@ -82,7 +83,7 @@ impl Ground {
 
     /// Variance of a mean as the law says it \[N^2\].
     fn variance(&self) -> f64 {
-        let inputs = median(self.input_variances.clone());
+        let inputs = median(&mut self.input_variances.clone());
         self.law.as_ref().map_or(f64::INFINITY, |law| {
             law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs
         })
@@ -158,6 +159,7 @@ pub(crate) fn ground(
         slopes: [&at_means.by_contraction, &at_means.by_pressure],
         counts: &counts,
         unequal: &extra,
+        within: &averaged.within_each(&residual),
         pure_error: analysis.data.repeats(analysis.muscle.length().si()).pure_error(),
     };
     let found = source.law(&base.prepared, &base.theta);
@@ -183,7 +185,7 @@ fn unequal(averaged: &Averaged, counts: &[f64], within: f64, stated: Option<&[f6
 
 /// Rows that count as independent: as many single rows as would know a constant as well as the means do.
 pub(crate) fn effective_rows(law: &NoiseLaw, ground: &Ground, sd_n: f64) -> f64 {
-    let inputs = median(ground.input_variances.clone());
+    let inputs = median(&mut ground.input_variances.clone());
     let of_mean = law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs;
     let rows: f64 = ground.averaged.counts().sum();
     if of_mean > 0.0 { (ground.whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
@@ -203,11 +205,7 @@ fn white_of_row(law: &NoiseLaw, ground: &Ground) -> f64 {
 
 /// Median variance of single rows from those of means: that of rows in doubt is not the rule.
 fn variance_of_rows(variances: &[f64], counts: &[f64]) -> f64 {
-    median(variances.iter().zip(counts).map(|(variance, count)| variance * count).collect())
-}
-
-/// The median; 0 of none.
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
+    let mut of_rows: Vec<f64> =
+        variances.iter().zip(counts).map(|(variance, count)| variance * count).collect();
+    median(&mut of_rows)
 }
