@@ -385,3 +385,26 @@ fn end_effects_show_in_several_lengths() {
     println!("the nearest rival of end-taper: {one:.1} sigma away with one length, {three:.1} with three");
     assert!(three > 2.0 * one, "{three} sigma with three lengths, {one} with one");
 }
+
+#[test]
+fn more_rows_do_not_make_the_noise_larger() {
+    // Friction with presliding, viscous damping and an offset; 1.2 N of noise.
+    let effects: [(&str, &[f64]); 3] =
+        [("presliding-hysteresis", &[12.0, 0.01]), ("viscous-damping", &[800.0]), ("force-offset", &[8.0])];
+    for (cycles, rows) in [(1, 25), (5, 50), (40, 25)] {
+        let block = Block {
+            path: Path::Sine,
+            cycles,
+            rows,
+            ..Block::loops(vec![2e5, 3e5, 4e5, 5e5], [0.01, 0.18], 20.0)
+        };
+        let noise = ReadingNoise { force_n: 1.2, ..ReadingNoise::default() };
+        let found = diagnosed(&measured(&effects, &Protocol { noise, ..Protocol::new(vec![block]) }, 7));
+        let ratio = found.noise.sd_n / 1.2;
+        assert!(
+            (ratio - 1.0).abs() < 0.2,
+            "{cycles} cycles of {rows} rows: {ratio}, {}",
+            found.noise.law.says
+        );
+    }
+}

@@ -167,7 +167,7 @@ pub(crate) fn columns(slots: Vec<Slot>) -> Columns {
         match (slot.heading.field, slot.values) {
             (Field::Pressure, Values::Numbers(values)) => found.pressure_pa = fitted(values),
             (Field::Contraction, Values::Numbers(values)) => {
-                found.motion = Trace::Contraction(fitted(values))
+                found.motion = Trace::Contraction(fitted(values));
             }
             (Field::Length | Field::Displacement, Values::Numbers(values)) => {
                 found.motion = Trace::Length(fitted(values));

@@ -24,7 +24,7 @@ use crate::fit::carry_over::carry_over;
 use crate::fit::document::Fit;
 use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::free;
-use crate::fit::search::{Task, fit, fit_and_force};
+use crate::fit::search::{Task, fit, fit_and_force, some_of_long};
 use crate::fit::states::is_of_rows;
 use crate::fit::weights::Noise;
 
@@ -405,6 +405,7 @@ impl<'a> Analysis<'a> {
     pub(crate) fn held_out(&self, climbed: &Climbed) -> Option<f64> {
         let folds = self.folds.as_ref()?;
         let (thin, kept) = self.record.thinned(FEWER_ROWS);
+        let some = some_of_long(&self.record);
         let numbers = free(&climbed.prepared.model).len();
         let of_fold = |fold: usize| -> Result<Option<(f64, usize)>, ModelError> {
             let in_fold = |row: &usize| folds.at(*row) == fold;
@@ -419,15 +420,18 @@ impl<'a> Analysis<'a> {
             } else {
                 climbed.theta.clone()
             };
-            // Predicted are all rows that were held out, with all of their history.
-            let test: Vec<bool> =
-                (0..self.record.len()).map(|row| self.used.mask[row] && in_fold(&row)).collect();
+            // Predicted are all rows that were held out, with all of their history; of a long record those that a fit takes.
+            let test: Vec<bool> = match &some {
+                Some((_, kept)) => kept.iter().map(|row| self.used.mask[*row] && in_fold(row)).collect(),
+                None => (0..self.record.len()).map(|row| self.used.mask[row] && in_fold(&row)).collect(),
+            };
+            let record = some.as_ref().map_or(&*self.record, |(record, _)| record);
             let warm = Warm::of_rows(&test);
             let model = &climbed.prepared.model;
-            let found = model.evaluate_partly(&self.record, &theta, &Wanted::default(), &warm)?;
+            let found = model.evaluate_partly(record, &theta, &Wanted::default(), &warm)?;
             let force = found.prediction.force;
             let rows = (0..test.len()).filter(|row| test[*row] && force[*row].is_finite());
-            let square = rows.clone().map(|row| (self.record.force()[row] - force[row]).powi(2)).sum();
+            let square = rows.clone().map(|row| (record.force()[row] - force[row]).powi(2)).sum();
             Ok(Some((square, rows.count())))
         };
         let found: Vec<_> = (0..folds.count).into_par_iter().map(of_fold).collect();
@@ -437,7 +441,11 @@ impl<'a> Analysis<'a> {
             let (square, count) = fold.ok().flatten()?;
             sums = (sums.0 + square, sums.1 + count);
         }
-        (2 * sums.1 > self.rows().count()).then(|| (sums.0 / sums.1 as f64).sqrt())
+        let counting = match &some {
+            Some((_, kept)) => kept.iter().filter(|row| self.used.mask[**row]).count(),
+            None => self.rows().count(),
+        };
+        (2 * sums.1 > counting).then(|| (sums.0 / sums.1 as f64).sqrt())
     }
 
     pub(crate) fn summary(&self) -> DataSummary {

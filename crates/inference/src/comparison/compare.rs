@@ -50,8 +50,15 @@ fn compared(mut analysis: Analysis<'_>) -> Result<Comparison, InferenceError> {
         .enumerate()
         .map(|(number, climbed)| analysis.rung(number, climbed))
         .collect::<Vec<_>>();
-    let says_something = |climbed: &&Climbed| analysis.with_state(&[&climbed.force]).next().is_some();
-    let last = rungs.iter().rfind(says_something).unwrap_or(&rungs[0]);
+    let says_something = |climbed: &Climbed| analysis.with_state(&[&climbed.force]).next().is_some();
+    let place = rungs.iter().rposition(says_something).unwrap_or(0);
+    for (number, rung) in rungs.iter_mut().enumerate() {
+        if number != 0 && number != place {
+            // Of many rows forces are large, and what these said is in the ladder.
+            rung.force = Vec::new();
+        }
+    }
+    let last = &rungs[place];
     // A surface follows the residuals of a better model better: then less of them is taken for noise.
     let again = analysis.noise_floor(last);
     let floor = match (floor, again) {

@@ -13,6 +13,8 @@ const BOUND: f64 = 4.0;
 const MAD_TO_SD: f64 = 1.4826;
 /// Standard deviations stated for two rows of one mean differ by no more than this factor.
 const ALIKE: f64 = 1.5;
+/// Differences from which the noise is found: its median is then known to a hundredth.
+const MOST_DIFFERENCES: usize = 100_000;
 /// A reading that is moved by less than this part of the noise keeps its weight.
 const MOVED: f64 = 1e-3;
 
@@ -43,6 +45,15 @@ pub(crate) fn ways<'r>(
 /// the transition after a reversal, keeps them always.
 pub(crate) fn bounded(residual: &[f64], stretches: &[Vec<usize>]) -> Vec<f64> {
     let mut bounded = residual.to_vec();
+    for (row, value) in moved(residual, stretches) {
+        bounded[row] = value;
+    }
+    bounded
+}
+
+/// The residuals that [`bounded`] moves, with their rows.
+fn moved(residual: &[f64], stretches: &[Vec<usize>]) -> Vec<(usize, f64)> {
+    let mut found = Vec::new();
     let least = white(residual, stretches);
     for rows in stretches {
         for place in 1..rows.len().saturating_sub(1) {
@@ -59,19 +70,22 @@ pub(crate) fn bounded(residual: &[f64], stretches: &[Vec<usize>]) -> Vec<f64> {
                 *value = (*value - middle).abs();
             }
             let most = BOUND * (MAD_TO_SD * median(&mut values)).max(least);
-            bounded[rows[place]] = value.max(low.min(middle - most)).min(high.max(middle + most));
+            let bounded = value.max(low.min(middle - most)).min(high.max(middle + most));
+            if bounded.total_cmp(&value).is_ne() {
+                found.push((rows[place], bounded));
+            }
         }
     }
-    bounded
+    found
 }
 
-/// Standard deviation of the white part of residuals, from their second differences along the stretches.
+/// Standard deviation of the white part of residuals, from second differences along the stretches.
 fn white(residual: &[f64], stretches: &[Vec<usize>]) -> f64 {
-    let mut differences = Vec::new();
-    for rows in stretches {
-        differences
-            .extend(rows.windows(3).map(|w| (residual[w[0]] - 2.0 * residual[w[1]] + residual[w[2]]).abs()));
-    }
+    let all: usize = stretches.iter().map(Vec::len).sum();
+    let every = all.div_ceil(MOST_DIFFERENCES).max(1);
+    let windows = stretches.iter().flat_map(|rows| rows.windows(3)).step_by(every);
+    let mut differences: Vec<f64> =
+        windows.map(|w| (residual[w[0]] - 2.0 * residual[w[1]] + residual[w[2]]).abs()).collect();
     MAD_TO_SD * median(&mut differences) / 6.0_f64.sqrt()
 }
 
@@ -87,22 +101,20 @@ pub(crate) fn sd_with_tails(
     if !record.is_path() {
         return None;
     }
-    let mut stretches: Vec<Vec<usize>> = Vec::new();
+    let mut far: Vec<(usize, f64)> = Vec::new();
     for sweep in record.sweeps() {
         let rows: Vec<usize> =
             sweep.clone().filter(|row| used[*row] && residuals[*row].is_finite()).collect();
-        stretches.extend(ways(&rows, record, levels).map(<[usize]>::to_vec));
+        let stretches: Vec<Vec<usize>> = ways(&rows, record, levels).map(<[usize]>::to_vec).collect();
+        let by = |(row, bounded): (usize, f64)| (row, (residuals[row] - bounded).abs());
+        far.extend(moved(residuals, &stretches).into_iter().map(by).filter(|(_, by)| *by > MOVED * sd_n));
     }
-    let bounded = bounded(residuals, &stretches);
-    let moved = |row: usize| (residuals[row] - bounded[row]).abs();
-    let is_far = |row: &usize| used[*row] && moved(*row) > MOVED * sd_n;
-    let far: Vec<usize> = (0..record.len()).filter(is_far).collect();
     if far.is_empty() {
         return None;
     }
     let mut sd = record.force_sd().map_or_else(|| vec![sd_n; record.len()], <[f64]>::to_vec);
-    for row in far {
-        sd[row] *= (1.0 + moved(row) / (BOUND * sd_n)).sqrt();
+    for (row, by) in far {
+        sd[row] *= (1.0 + by / (BOUND * sd_n)).sqrt();
     }
     Some(sd)
 }

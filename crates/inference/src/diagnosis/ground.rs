@@ -199,8 +199,12 @@ pub(crate) fn row_sd(law: &NoiseLaw, ground: &Ground) -> f64 {
 /// Variance of a single row without what it shares with its neighbours \[N^2\].
 fn white_of_row(law: &NoiseLaw, ground: &Ground) -> f64 {
     let counts: Vec<f64> = ground.averaged.counts().collect();
-    let own = law.white_n.powi(2) + variance_of_rows(&ground.input_variances, &counts);
-    ground.within.map_or(own, |within| within.max(own))
+    let inputs = variance_of_rows(&ground.input_variances, &counts);
+    let own = law.white_n.powi(2) + inputs;
+    // Rows scatter by no more than their means do: where few rows are a mean, what bends from row to row is in their scatter too.
+    let most = counts.iter().copied().fold(1.0, f64::max);
+    let of_means = law.white_n.powi(2) * most + inputs;
+    ground.within.map_or(own, |within| within.min(of_means).max(own))
 }
 
 /// Median variance of single rows from those of means: that of rows in doubt is not the rule.
