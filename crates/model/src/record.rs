@@ -24,7 +24,7 @@ impl Record {
     /// The rows of a data set for a muscle of unpressurised length `l0` \[m\].
     #[must_use]
     pub fn new(data: &Data, l0: f64) -> Self {
-        let path = Path::of(data, l0);
+        let path = Moved::of(data, l0);
         let sweeps: Vec<Range<usize>> = data.sweeps().iter().map(|sweep| sweep.rows.clone()).collect();
         let contraction = data.contraction(l0);
         let shortness = (0_u32..).zip(data.specimens()).map(|(i, _)| l0 / data.length_of(i, l0)).collect();
@@ -132,7 +132,7 @@ impl Record {
 }
 
 /// What moments need of how the muscle moved; the rest of it is gone before they are made.
-struct Path {
+struct Moved {
     direction: Vec<f64>,
     pressure_direction: Vec<f64>,
     rate: Vec<f64>,
@@ -140,14 +140,14 @@ struct Path {
     is_path: bool,
 }
 
-impl Path {
+impl Moved {
     fn of(data: &Data, l0: f64) -> Self {
         let History { direction, pressure_direction, rate, cycle, is_path, .. } = data.history(l0);
         Self { direction, pressure_direction, rate, cycle, is_path }
     }
 }
 
-fn append(moments: &mut Vec<Moment>, data: &Data, path: &Path, contraction: &[f64], rows: Range<usize>) {
+fn append(moments: &mut Vec<Moment>, data: &Data, path: &Moved, contraction: &[f64], rows: Range<usize>) {
     let time = data.time();
     let start = time.map_or(0.0, |t| t[rows.start]);
     let origin = time.and_then(|t| t.first().copied()).unwrap_or(0.0);

@@ -297,6 +297,9 @@ mod tests {
         }
     }
 
+    /// Pressures \[bar\], and what is added to the residuals.
+    type Case<'c> = (&'c [f64], &'c dyn Fn(&Moment) -> f64);
+
     #[test]
     fn what_changes_along_a_sweep_is_no_shift_nor_what_two_sweeps_may_have() {
         let record = loops(&[1.0, 2.0, 3.0, 4.0, 5.0]);
@@ -315,7 +318,7 @@ mod tests {
         let bent = |m: &Moment| 6.0 * (m.pressure / 1e5 - 3.5).powi(2);
         let second = |m: &Moment| if (m.pressure - 3e5).abs() < 1e4 { 6.0 } else { 0.0 };
         let both = |m: &Moment| if (m.pressure - 3.5e5).abs() < 6e4 { 6.0 } else { 0.0 };
-        let cases: [(&[f64], &dyn Fn(&Moment) -> f64); 3] =
+        let cases: [Case<'_>; 3] =
             [(&[2.0, 3.0, 4.0], &second), (&[2.0, 3.0, 4.0, 5.0], &both), (&[2.0, 3.0, 4.0, 5.0], &bent)];
         for (pressures, own) in cases {
             let record = loops(pressures);

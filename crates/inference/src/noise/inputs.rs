@@ -214,19 +214,20 @@ mod tests {
     #[test]
     fn readings_of_means_say_it_whatever_the_means_are_off() {
         // 300 means of 20 readings, and a misfit of the means that follows the slope.
-        let (n, count) = (300, 20);
+        let (n, readings_of_each) = (300, 20);
+        let count = f64::from(readings_of_each);
         let slope = steep(n);
-        let (flat, counts) = (vec![1.0; n], vec![count as f64; n]);
+        let (flat, counts) = (vec![1.0; n], vec![count; n]);
         for (input, is_found) in [(0.4, true), (0.0, false)] {
             let mut random = Random::new(9, 0);
             let within: Vec<Option<Scatter>> = slope
                 .iter()
                 .map(|s| {
                     let sd = (1.0 + (input * s).powi(2)).sqrt();
-                    let readings: Vec<f64> = (0..count).map(|_| sd * random.normal()).collect();
-                    let mean = readings.iter().sum::<f64>() / count as f64;
+                    let readings: Vec<f64> = (0..readings_of_each).map(|_| sd * random.normal()).collect();
+                    let mean = readings.iter().sum::<f64>() / count;
                     let sum = readings.iter().map(|r| (r - mean).powi(2)).sum();
-                    Some(Scatter { sum, freedom: count as f64 - 1.0 })
+                    Some(Scatter { sum, freedom: count - 1.0 })
                 })
                 .collect();
             let misfit: Vec<f64> = slope.iter().map(|s| 5.0 * s * random.normal()).collect();
@@ -234,7 +235,7 @@ mod tests {
             let found = input_noise(&misfit, &sweeps, &columns(n), [&flat, &slope], &counts, &within);
             assert_eq!(found.is_some(), is_found);
             if let Some(found) = found {
-                let sd = (found[n / 3] * count as f64).sqrt() / slope[n / 3];
+                let sd = (found[n / 3] * count).sqrt() / slope[n / 3];
                 assert!((0.37..0.43).contains(&sd), "{sd}");
             }
         }
