@@ -16,6 +16,8 @@ pub(crate) mod requirements;
 pub(crate) mod residuals;
 pub(crate) mod rivals;
 pub(crate) mod rows;
+mod shifted;
 pub(crate) mod specimens;
 pub(crate) mod stack;
+pub(crate) mod tails;
 pub(crate) mod warnings;

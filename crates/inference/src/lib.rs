@@ -17,6 +17,7 @@ mod diagnosis;
 mod dot;
 mod error;
 mod fit;
+mod median;
 mod noise;
 mod progress;
 mod protocol;

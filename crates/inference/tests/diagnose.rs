@@ -425,3 +425,26 @@ fn slow_noise_of_one_run_is_no_structure_and_structure_no_slow_noise() {
     let found = diagnosed(&ramp_while_moving(2.0, 8.0, 1));
     assert_eq!(found.verdict, Verdict::Unknown, "{}", found.says);
 }
+
+#[test]
+fn more_rows_do_not_make_the_noise_larger() {
+    // Friction with presliding, viscous damping and an offset; 1.2 N of noise.
+    let effects: [(&str, &[f64]); 3] =
+        [("presliding-hysteresis", &[12.0, 0.01]), ("viscous-damping", &[800.0]), ("force-offset", &[8.0])];
+    for (cycles, rows) in [(1, 25), (5, 50), (40, 25)] {
+        let block = Block {
+            path: Path::Sine,
+            cycles,
+            rows,
+            ..Block::loops(vec![2e5, 3e5, 4e5, 5e5], [0.01, 0.18], 20.0)
+        };
+        let noise = ReadingNoise { force_n: 1.2, ..ReadingNoise::default() };
+        let found = diagnosed(&measured(&effects, &Protocol { noise, ..Protocol::new(vec![block]) }, 7));
+        let ratio = found.noise.sd_n / 1.2;
+        assert!(
+            (ratio - 1.0).abs() < 0.2,
+            "{cycles} cycles of {rows} rows: {ratio}, {}",
+            found.noise.law.says
+        );
+    }
+}

@@ -278,3 +278,64 @@ fn under_a_held_load_the_error_is_told_in_contraction() {
     assert!(held.points.iter().all(|p| (p.first - p.contraction - 0.004).abs() < 3e-5));
     assert_eq!(found.data.branches, ["shortening", "lengthening"]);
 }
+
+/// Loops at six pressures with friction of 10 N and noise of 2 N; what `changed` makes of the force of a row, by its sweep and its number.
+fn measured(changed: impl Fn(&str, usize, f64) -> f64) -> Data {
+    let catalogue = Catalogue::builtin();
+    let model = Model::new(&muscle("")).with(catalogue.find("coulomb-friction").unwrap(), None).unwrap();
+    let block = Block { rows: 60, ..Block::loops(vec![1.5e5, 2e5, 3e5, 4e5, 5e5, 6e5], [0.01, 0.18], 40.0) };
+    let noise = ReadingNoise { force_n: 2.0, ..ReadingNoise::default() };
+    let found = simulate(&model, &[10.0], &Protocol { noise, ..Protocol::new(vec![block]) }, 5).unwrap();
+    let mut csv = String::new();
+    for (row, line) in found.csv.lines().enumerate() {
+        let cells: Vec<&str> = line.split(',').collect();
+        let (last, others) = cells.split_last().unwrap();
+        if let (false, Ok(force)) = (line.starts_with('#'), last.parse::<f64>()) {
+            let _ = writeln!(csv, "{},{}", others.join(","), changed(cells[1], row, force));
+        } else {
+            let _ = writeln!(csv, "{line}");
+        }
+    }
+    Data::from_csv(&csv, "loops.csv").unwrap()
+}
+
+#[test]
+fn a_sweep_that_is_off_as_a_whole_is_named_by_comparison_and_diagnosis_and_is_no_physics() {
+    let data = measured(|sweep, _, force| if sweep == "3" { force + 12.0 } else { force });
+    let own = muscle("[instruments]\nforce = { noise = \"2 N\" }");
+    let compared = climbed(&data, &own, &["coulomb-friction"]);
+    let found =
+        diagnose(&data, &own, &DiagnoseOptions::new(Options::new(Catalogue::builtin(), Vec::new()))).unwrap();
+    for left in [&compared.data.left_out, &found.data.left_out] {
+        let says = &left[0];
+        assert!(
+            says.why.contains("sweep `3`") && says.why.contains("shifted") && says.why.contains("N above"),
+            "{says:?}"
+        );
+        assert_eq!((left.len(), says.rows), (1, 60));
+    }
+    let names: Vec<&str> = found.missing.iter().map(|missing| missing.effect.as_str()).collect();
+    assert_eq!(names, ["coulomb-friction"]);
+    assert!(measured(|_, _, force| force).len() == data.len() && compared.ladder[1].rmse_n < 2.2);
+    let clean = climbed(&measured(|_, _, force| force), &own, &[]);
+    assert!(clean.data.left_out.is_empty(), "{:?}", clean.data.left_out);
+}
+
+#[test]
+fn heavy_tails_move_a_fitted_number_by_no_more_than_they_would_at_the_bound() {
+    let force_of = |data: &Data| {
+        let comparison = climbed(data, &muscle(""), &["coulomb-friction"]);
+        comparison.ladder[1].fit.as_ref().unwrap().parameters[0].value
+    };
+    let clean = force_of(&measured(|_, _, force| force));
+    // Two rows in each way of shortening, off to the same side by 4.5 and by 7.5 standard deviations: too little for a spike.
+    let off = |by: f64| {
+        let far = move |_: &str, row: usize, force: f64| {
+            if [9, 21].contains(&(row % 60)) { force - by } else { force }
+        };
+        (force_of(&measured(far)) - clean).abs()
+    };
+    // Least squares would go on in proportion, by two thirds more.
+    let [near, far] = [off(9.0), off(15.0)];
+    assert!(near > 0.1 && far < 1.2 * near, "{near} and {far}");
+}

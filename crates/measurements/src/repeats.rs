@@ -1,5 +1,6 @@
 //! Runs that repeat each other, and the pure error: what readings differ by although nothing was changed.
 
+use crate::columns::Trace;
 use crate::data::Data;
 use crate::resolution::bounds;
 use crate::stretch::Stretch;
@@ -161,12 +162,20 @@ impl Data {
             drift_n: offsets.iter().sum::<f64>() / count,
             offset_rms_n: (offsets.iter().map(|offset| offset * offset).sum::<f64>() / count).sqrt(),
         });
-        let contraction = self.contraction(l0);
         let groups = groups
             .into_iter()
-            .map(|(members, comparisons)| group(&contraction, members, &comparisons, sd))
+            .map(|(members, comparisons)| group(self.range(&s, l0, &members[0]), members, &comparisons, sd))
             .collect();
         Repeats { groups, pure_error }
+    }
+
+    /// Smallest and largest contraction of a run.
+    fn range(&self, s: &[f64], l0: f64, of: &Candidate) -> [f64; 2] {
+        let (low, high) = bounds(&s[of.run.rows.clone()]);
+        [low, high].map(|s| match &self.columns().motion {
+            Trace::Contraction(_) => s,
+            Trace::Length(_) => 1.0 + s / self.length_of(of.specimen, l0),
+        })
     }
 
     /// The runs that repeat each other, in groups of at least two.
@@ -304,9 +313,8 @@ impl Comparison {
     }
 }
 
-fn group(contraction: &[f64], members: Vec<Candidate>, comparisons: &[Comparison], sd: f64) -> RepeatGroup {
+fn group(contraction: [f64; 2], members: Vec<Candidate>, comparisons: &[Comparison], sd: f64) -> RepeatGroup {
     let first = &members[0];
-    let (low, high) = bounds(&contraction[first.run.rows.clone()]);
     let offsets = comparisons.iter().map(|found| Offset {
         mean_n: found.mean,
         sd_n: if found.weight > 0.0 { sd / found.weight.sqrt() } else { 0.0 },
@@ -315,7 +323,7 @@ fn group(contraction: &[f64], members: Vec<Candidate>, comparisons: &[Comparison
     RepeatGroup {
         specimen: first.specimen,
         pressure_pa: first.pressure,
-        contraction: [low, high],
+        contraction,
         directions: first.legs.iter().map(|leg| leg.direction).collect(),
         offsets: offsets.collect(),
         runs: members.into_iter().map(|member| member.run).collect(),
@@ -327,7 +335,7 @@ mod tests {
     #![expect(clippy::float_cmp, reason = "counts are exact")]
 
     use super::*;
-    use crate::columns::{Columns, Labels, Trace};
+    use crate::columns::{Columns, Labels};
     use crate::simulated::{Noise, clean_loops, force};
 
     /// The 99.9 % interval of the estimate of a standard deviation, by Wilson and Hilferty's cube-root transform of chi-square.

@@ -157,24 +157,32 @@ fn in_time(
     Ok(heading.scale.si(number))
 }
 
+/// Values without the room that was left for more.
+fn fitted<T>(mut values: Vec<T>) -> Vec<T> {
+    values.shrink_to_fit();
+    values
+}
+
 /// The columns of a file. The headings have been checked: pressure, force and one motion are among them.
 pub(crate) fn columns(slots: Vec<Slot>) -> Columns {
     let mut found = Columns::new(Vec::new(), Trace::Contraction(Vec::new()), Vec::new());
     for slot in slots {
         match (slot.heading.field, slot.values) {
-            (Field::Pressure, Values::Numbers(values)) => found.pressure_pa = values,
-            (Field::Contraction, Values::Numbers(values)) => found.motion = Trace::Contraction(values),
-            (Field::Length | Field::Displacement, Values::Numbers(values)) => {
-                found.motion = Trace::Length(values);
+            (Field::Pressure, Values::Numbers(values)) => found.pressure_pa = fitted(values),
+            (Field::Contraction, Values::Numbers(values)) => {
+                found.motion = Trace::Contraction(fitted(values));
             }
-            (Field::Force, Values::Numbers(values)) => found.force_n = values,
-            (Field::Time, Values::Numbers(values)) => found.time_s = Some(values),
-            (Field::Temperature, Values::Numbers(values)) => found.temperature_k = Some(values),
-            (Field::Diameter, Values::Numbers(values)) => found.diameter_m = Some(values),
-            (Field::Volume, Values::Numbers(values)) => found.volume_m3 = Some(values),
-            (Field::ForceSd, Values::Numbers(values)) => found.force_sd_n = Some(values),
-            (_, Values::Counts(values)) => found.cycle = Some(values),
-            (_, Values::Directions(values)) => found.direction = Some(values),
+            (Field::Length | Field::Displacement, Values::Numbers(values)) => {
+                found.motion = Trace::Length(fitted(values));
+            }
+            (Field::Force, Values::Numbers(values)) => found.force_n = fitted(values),
+            (Field::Time, Values::Numbers(values)) => found.time_s = Some(fitted(values)),
+            (Field::Temperature, Values::Numbers(values)) => found.temperature_k = Some(fitted(values)),
+            (Field::Diameter, Values::Numbers(values)) => found.diameter_m = Some(fitted(values)),
+            (Field::Volume, Values::Numbers(values)) => found.volume_m3 = Some(fitted(values)),
+            (Field::ForceSd, Values::Numbers(values)) => found.force_sd_n = Some(fitted(values)),
+            (_, Values::Counts(values)) => found.cycle = Some(fitted(values)),
+            (_, Values::Directions(values)) => found.direction = Some(fitted(values)),
             (Field::Sweep, Values::Labels(labels)) => found.sweep = Some(labels),
             (_, Values::Labels(labels)) => found.specimen = Some(labels),
             // Only labels and counts are no numbers: `Slot::new`.

@@ -11,7 +11,7 @@ use crate::answer::SHAPE;
 use crate::base::Equilibrium;
 use crate::error::ModelError;
 use crate::failure::{RowError, failure};
-use crate::lattice::{FEWEST_NODES, Lattice};
+use crate::lattice::{FEWEST_NODES, Lattice, Span};
 use crate::model::{AtRest, Base, Chosen, Model};
 use crate::prediction::{Partly, Prediction};
 use crate::record::Record;
@@ -101,7 +101,7 @@ impl Model {
         if failed.is_empty() { Ok(all) } else { Err(failure(failed)) }
     }
 
-    /// As [`Model::evaluate_warm`], but a row without a state takes nothing from the others: it is listed.
+    /// As [`Model::evaluate_warm`], but a row without a state takes nothing from the others: it is listed. Nothing is remembered of single rows.
     ///
     /// # Errors
     /// If an effect doesn't fit the muscle. That no row has a state is none. See [`Model::explained`] for what to show of [`Partly::error`].
@@ -147,12 +147,14 @@ impl Model {
             run.all_or_none = warm.is_some() && all_or_none;
         }
         let segments = runs.iter().map(|run| run.segments(record)).max_by_key(Vec::len).unwrap_or_default();
-        slots.fit(segments.iter().map(Range::len));
+        let keeps = warm.is_some() && all_or_none;
+        slots.fit(segments.iter().map(|rows| if keeps { rows.len() } else { 1 }));
         let task = Task {
             record,
             passes: Self::passes(theta, wanted, &runs[0].shapes),
             columns: wanted.parameters.len(),
             counts: &counts,
+            keeps,
         };
         let mut all = Prediction::zero(record.len(), wanted);
         let failed: Vec<Vec<(usize, RowError)>> = segments
@@ -304,16 +306,16 @@ impl Run<'_> {
         counts: &dyn Fn(usize) -> bool,
         slots: &mut Slots,
     ) -> Option<Arc<Lattice>> {
-        let rows = self.inputs(record);
         let matters = self.matters(record, counts);
-        let counted = || rows.iter().zip(&matters).filter(|(_, matters)| **matters).map(|(row, _)| row);
+        let counted = matters.iter().filter(|matters| **matters).count();
+        let unsolved = Lattice::unsolved(equilibrium, self.shapes.len(), self.model.refinement);
+        let spans = self.spans(record, &matters, &unsolved);
         // Zero errors move rows a little while a lattice is held: into the next cell at most.
         let margin = i64::from(slots.holds);
-        let lattice =
-            Lattice::around(equilibrium, self.shapes.len(), self.model.refinement, margin, counted());
+        let lattice = unsolved.around(&spans, margin);
         // A node costs what a row costs, in one evaluation; what is held serves many.
         let evaluations = if slots.holds { HELD_FOR } else { 1 };
-        if lattice.needed() >= evaluations * counted().count() {
+        if lattice.needed() >= evaluations * counted {
             return None;
         }
         let asked = || Asked {
@@ -416,8 +418,9 @@ impl Run<'_> {
         input
     }
 
-    /// Pressures and ranges of contraction at which equilibria will be asked for.
-    fn inputs(&self, record: &Record) -> Vec<(f64, [f64; 2])> {
+    /// Nodes of a lattice around the pressures and ranges of contraction at which equilibria will be asked for, by rows that matter; neighbours that ask for the same
+    /// are one.
+    fn spans(&self, record: &Record, matters: &[bool], lattice: &Lattice) -> Vec<Span> {
         let pass = Pass {
             theta: self.theta.iter().map(|v| Jet::from(*v)).collect(),
             pressure_lane: None,
@@ -425,7 +428,7 @@ impl Run<'_> {
             shape_lanes: Vec::new(),
             columns: Vec::new(),
         };
-        let row = |memory: &mut Vec<Vec<Jet>>, moment: &Moment| {
+        let span = |memory: &mut Vec<Vec<Jet>>, moment: &Moment| {
             if moment.begins {
                 *memory = self.memory();
             }
@@ -436,14 +439,21 @@ impl Run<'_> {
             let most = pressure * std::f64::consts::PI * (3.0 * self.setting.radius).powi(2);
             let give = (input.give_force.value() + input.give_tension.value()) * most;
             let spread = NORMAL[1].0 * input.spread.value().abs();
-            (pressure, [e - spread + give.min(0.0), e + spread + give.max(0.0)])
+            lattice.span(pressure, [e - spread + give.min(0.0), e + spread + give.max(0.0)])
         };
         let of_segment = |rows: &Range<usize>| {
             let mut memory = self.memory();
-            record.moments()[rows.clone()].iter().map(|moment| row(&mut memory, moment)).collect::<Vec<_>>()
+            let mut found: Vec<Span> = Vec::new();
+            for (moment, matters) in record.moments()[rows.clone()].iter().zip(&matters[rows.clone()]) {
+                let own = span(&mut memory, moment).filter(|own| *matters && found.last() != Some(own));
+                found.extend(own);
+            }
+            found.sort_unstable();
+            found.dedup();
+            found
         };
         let segments = self.segments(record);
-        segments.par_iter().map(of_segment).collect::<Vec<_>>().into_iter().flatten().collect()
+        segments.par_iter().flat_map_iter(of_segment).collect()
     }
 
     /// Whether rows start from the row before: within a fit where nothing is shot for.

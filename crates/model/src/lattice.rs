@@ -84,16 +84,13 @@ struct Place {
     offset: f64,
 }
 
+/// First and last node that a row needs, along the pressure and along the contraction.
+pub(crate) type Span = [[i64; 2]; 2];
+
 impl Lattice {
-    /// A lattice for rows at these pressures and ranges of contraction, with a margin of so many nodes, not yet solved.
-    pub(crate) fn around<'a>(
-        equilibrium: &Equilibrium,
-        shapes: usize,
-        refinement: f64,
-        margin: i64,
-        rows: impl Iterator<Item = &'a (f64, [f64; 2])>,
-    ) -> Self {
-        let mut lattice = Self {
+    /// A lattice without nodes.
+    pub(crate) fn unsolved(equilibrium: &Equilibrium, shapes: usize, refinement: f64) -> Self {
+        Self {
             singular: equilibrium.is_singular(),
             scale_free: equilibrium.is_scale_free(),
             shapes,
@@ -104,34 +101,36 @@ impl Lattice {
             is_solved: Vec::new(),
             nodes: Vec::new(),
             ends: Vec::new(),
-        };
-        let margins = [if lattice.scale_free { 0 } else { margin }, margin];
-        let wider = |span: [[i64; 2]; 2]| {
-            [0, 1].map(|axis| [span[axis][0] - margins[axis], span[axis][1] + margins[axis]])
-        };
-        let spans: Vec<[[i64; 2]; 2]> = rows.filter_map(|row| lattice.span(row)).map(wider).collect();
-        let Some(first) = spans.first() else { return lattice };
+        }
+    }
+
+    /// The same with the nodes that rows need, and a margin of so many, not yet solved.
+    pub(crate) fn around(mut self, spans: &[Span], margin: i64) -> Self {
+        let margins = [if self.scale_free { 0 } else { margin }, margin];
+        let wider =
+            |span: &Span| [0, 1].map(|axis| [span[axis][0] - margins[axis], span[axis][1] + margins[axis]]);
+        let spans: Vec<Span> = spans.iter().map(wider).collect();
+        let Some(first) = spans.first() else { return self };
         let mut extent = *first;
         for span in &spans {
             for axis in 0..2 {
                 extent[axis] = [extent[axis][0].min(span[axis][0]), extent[axis][1].max(span[axis][1])];
             }
         }
-        lattice.low = [extent[0][0], extent[1][0]];
-        lattice.count =
-            [0, 1].map(|axis| usize::try_from(extent[axis][1] - extent[axis][0] + 1).unwrap_or(0));
-        let mut needed = vec![false; lattice.count[0] * lattice.count[1]];
+        self.low = [extent[0][0], extent[1][0]];
+        self.count = [0, 1].map(|axis| usize::try_from(extent[axis][1] - extent[axis][0] + 1).unwrap_or(0));
+        let mut needed = vec![false; self.count[0] * self.count[1]];
         for span in &spans {
             for i in span[0][0]..=span[0][1] {
                 for j in span[1][0]..=span[1][1] {
-                    if let Some(place) = lattice.index(i, j) {
+                    if let Some(place) = self.index(i, j) {
                         needed[place] = true;
                     }
                 }
             }
         }
-        lattice.needed = needed;
-        lattice
+        self.needed = needed;
+        self
     }
 
     /// How many nodes there are to solve.
@@ -252,8 +251,8 @@ impl Lattice {
         if self.singular { s.exp() } else { BEND * s.sinh() }
     }
 
-    /// First and last nodes that a row needs, by direction; none outside what a lattice can hold.
-    fn span(&self, &(pressure, [low, high]): &(f64, [f64; 2])) -> Option<[[i64; 2]; 2]> {
+    /// First and last nodes that a row needs at a pressure and in a range of contraction, by direction; none outside what a lattice can hold.
+    pub(crate) fn span(&self, pressure: f64, [low, high]: [f64; 2]) -> Option<Span> {
         let p = self.place(0, self.pressure_axis(pressure)?)?;
         let [a, b] = [self.contraction_axis(low)?, self.contraction_axis(high)?];
         let [a, b] = [self.place(1, a)?, self.place(1, b)?];

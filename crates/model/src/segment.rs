@@ -15,6 +15,8 @@ pub(crate) struct Task<'a> {
     pub(crate) passes: Vec<Pass>,
     pub(crate) columns: usize,
     pub(crate) counts: &'a (dyn Fn(usize) -> bool + Sync),
+    /// Whether each row keeps its equilibrium for the next evaluation, in a slot of its own; else a segment has one slot.
+    pub(crate) keeps: bool,
 }
 
 /// Fills the part of one segment; the rows that count and have no force, with the reason.
@@ -42,12 +44,16 @@ pub(crate) fn segment(
             if !(counts || remembers) {
                 continue;
             }
-            if slots[i].is_none() && run.walks() {
-                let same = before.filter(|(_, body)| *body == run.body);
-                slots[i] = same.and_then(|(before, _)| slots[before].clone());
+            let slot = if task.keeps { i } else { 0 };
+            let same = before.filter(|(_, body)| *body == run.body && run.walks());
+            if !task.keeps && same.is_none() {
+                slots[slot] = None;
             }
-            before = Some((i, run.body));
-            match run.row(moment, pass, &mut memory, &mut slots[i]) {
+            if slots[slot].is_none() {
+                slots[slot] = same.and_then(|(before, _)| slots[before].clone());
+            }
+            before = Some((slot, run.body));
+            match run.row(moment, pass, &mut memory, &mut slots[slot]) {
                 Ok(row) if counts => part.fill(i, number, pass, task.columns, row.reading),
                 Err(error) if counts && number == 0 => {
                     failed.push((row, error));

@@ -17,13 +17,14 @@ use crate::comparison::loops::branches;
 use crate::comparison::mismatch::questions;
 use crate::comparison::requirements::{check_needs, check_size};
 use crate::comparison::rows::{Used, full_scale, lines, used};
+use crate::comparison::tails::sd_with_tails;
 use crate::comparison::{loops, residuals};
 use crate::error::InferenceError;
 use crate::fit::carry_over::carry_over;
 use crate::fit::document::Fit;
 use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::free;
-use crate::fit::search::{Task, fit, fit_and_force};
+use crate::fit::search::{Task, fit, fit_and_force, some_of_long};
 use crate::fit::states::is_of_rows;
 use crate::fit::weights::Noise;
 
@@ -88,22 +89,18 @@ pub(crate) struct Analysis<'a> {
     pub(crate) near: Option<(&'a Model, &'a [f64])>,
 }
 
+/// Until the noise is known: a hundredth of full scale.
+fn unknown_noise(muscle: &Muscle, full_scale: f64) -> Noise {
+    Noise::of(muscle, (0.01 * full_scale).max(f64::MIN_POSITIVE))
+}
+
 impl<'a> Analysis<'a> {
     pub(crate) fn new(
         data: &'a Data,
         muscle: &'a Muscle,
         options: &'a Options,
     ) -> Result<Self, InferenceError> {
-        Self::of(data, muscle, options, Arc::new(Record::new(data, muscle.length().si())))
-    }
-
-    /// The same with the record of these data and this muscle.
-    pub(crate) fn of(
-        data: &'a Data,
-        muscle: &'a Muscle,
-        options: &'a Options,
-        record: Arc<Record>,
-    ) -> Result<Self, InferenceError> {
+        let record = Arc::new(Record::new(data, muscle.length().si()));
         let used = used(data);
         if !used.mask.contains(&true) {
             let left_out =
@@ -117,8 +114,7 @@ impl<'a> Analysis<'a> {
         let full_scale = full_scale(data.force());
         let levels = Levels::of(&record, &used.mask);
         let folds = Folds::of(&record, &levels, &used.mask);
-        // Until the noise is known: a hundredth of full scale.
-        let noise = Noise::of(muscle, (0.01 * full_scale).max(f64::MIN_POSITIVE));
+        let noise = unknown_noise(muscle, full_scale);
         let root = match &options.law {
             Some((law, values, free)) => Model::from_law(muscle, law, values, *free),
             None => Model::new(muscle),
@@ -277,12 +273,24 @@ impl<'a> Analysis<'a> {
         options: &'b Options,
         near: (&'b Model, &'b [f64]),
     ) -> Result<Analysis<'b>, InferenceError> {
-        let mut other = Analysis::of(self.data, self.muscle, options, Arc::clone(&self.record))?;
-        (other.near, other.findings, other.root) = (Some(near), self.findings.clone(), self.root.clone());
-        if let Some(slack) = &self.slack {
-            other.leave_out_slack(slack.clone());
+        for effect in &options.effects {
+            check_needs(effect, &self.record)?;
         }
-        Ok(other)
+        Ok(Analysis {
+            data: self.data,
+            muscle: self.muscle,
+            options,
+            record: Arc::clone(&self.record),
+            used: self.used.clone(),
+            levels: self.levels.clone(),
+            folds: self.folds.clone(),
+            noise: unknown_noise(self.muscle, self.full_scale),
+            full_scale: self.full_scale,
+            findings: self.findings.clone(),
+            slack: self.slack.clone(),
+            root: self.root.clone(),
+            near: Some(near),
+        })
     }
 
     /// Asks about units, signs and scales that can't be true, and leaves out rows in which the muscle as stated is slack; once.
@@ -337,11 +345,12 @@ impl<'a> Analysis<'a> {
         let residuals: Vec<f64> =
             self.record.force().iter().zip(&first.force).map(|(measured, model)| measured - model).collect();
         self.used.leave_out_spikes(self.data, &residuals);
+        self.used.leave_out_shifted(self.data, &self.record, &residuals, self.noise.force_n);
         let sd = doubtful_sd(
             &self.record,
             self.data,
             &self.used.mask,
-            &self.levels.of,
+            &self.levels,
             &residuals,
             self.noise.force_n,
         );
@@ -349,6 +358,16 @@ impl<'a> Analysis<'a> {
             self.record = Arc::new(Record::clone(&self.record).with_force_sd(sd));
         }
         floor
+    }
+
+    /// Bounds what a reading in the tails of the noise does to fits from here on, by its weight. Means of rows, on which a diagnosis stands, bound it themselves.
+    pub(crate) fn bound_tails(&mut self, first: &Climbed) {
+        let residuals: Vec<f64> =
+            self.record.force().iter().zip(&first.force).map(|(measured, model)| measured - model).collect();
+        let sd = sd_with_tails(&self.record, &self.levels, &self.used.mask, &residuals, self.noise.force_n);
+        if let Some(sd) = sd {
+            self.record = Arc::new(Record::clone(&self.record).with_force_sd(sd));
+        }
     }
 
     pub(crate) fn rung(&self, number: usize, climbed: &Climbed) -> Rung {
@@ -386,9 +405,10 @@ impl<'a> Analysis<'a> {
     pub(crate) fn held_out(&self, climbed: &Climbed) -> Option<f64> {
         let folds = self.folds.as_ref()?;
         let (thin, kept) = self.record.thinned(FEWER_ROWS);
+        let some = some_of_long(&self.record);
         let numbers = free(&climbed.prepared.model).len();
         let of_fold = |fold: usize| -> Result<Option<(f64, usize)>, ModelError> {
-            let in_fold = |row: &usize| folds.of[*row] == fold;
+            let in_fold = |row: &usize| folds.at(*row) == fold;
             let train: Vec<bool> = kept.iter().map(|row| self.used.mask[*row] && !in_fold(row)).collect();
             if numbers > 0 && train.iter().filter(|t| **t).count() <= numbers {
                 return Ok(None);
@@ -400,15 +420,18 @@ impl<'a> Analysis<'a> {
             } else {
                 climbed.theta.clone()
             };
-            // Predicted are all rows that were held out, with all of their history.
-            let test: Vec<bool> =
-                (0..self.record.len()).map(|row| self.used.mask[row] && in_fold(&row)).collect();
+            // Predicted are all rows that were held out, with all of their history; of a long record those that a fit takes.
+            let test: Vec<bool> = match &some {
+                Some((_, kept)) => kept.iter().map(|row| self.used.mask[*row] && in_fold(row)).collect(),
+                None => (0..self.record.len()).map(|row| self.used.mask[row] && in_fold(&row)).collect(),
+            };
+            let record = some.as_ref().map_or(&*self.record, |(record, _)| record);
             let warm = Warm::of_rows(&test);
             let model = &climbed.prepared.model;
-            let found = model.evaluate_partly(&self.record, &theta, &Wanted::default(), &warm)?;
+            let found = model.evaluate_partly(record, &theta, &Wanted::default(), &warm)?;
             let force = found.prediction.force;
             let rows = (0..test.len()).filter(|row| test[*row] && force[*row].is_finite());
-            let square = rows.clone().map(|row| (self.record.force()[row] - force[row]).powi(2)).sum();
+            let square = rows.clone().map(|row| (record.force()[row] - force[row]).powi(2)).sum();
             Ok(Some((square, rows.count())))
         };
         let found: Vec<_> = (0..folds.count).into_par_iter().map(of_fold).collect();
@@ -418,7 +441,11 @@ impl<'a> Analysis<'a> {
             let (square, count) = fold.ok().flatten()?;
             sums = (sums.0 + square, sums.1 + count);
         }
-        (2 * sums.1 > self.rows().count()).then(|| (sums.0 / sums.1 as f64).sqrt())
+        let counting = match &some {
+            Some((_, kept)) => kept.iter().filter(|row| self.used.mask[**row]).count(),
+            None => self.rows().count(),
+        };
+        (2 * sums.1 > counting).then(|| (sums.0 / sums.1 as f64).sqrt())
     }
 
     pub(crate) fn summary(&self) -> DataSummary {

@@ -37,6 +37,7 @@ fn compared(mut analysis: Analysis<'_>) -> Result<Comparison, InferenceError> {
     analysis.ask()?;
     let first = analysis.climb(0, None)?;
     let floor = analysis.measure_noise(&first);
+    analysis.bound_tails(&first);
     // Weights follow from the noise: the first rung again if it fits anything.
     let first = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
     let mut rungs = vec![first];
@@ -49,8 +50,15 @@ fn compared(mut analysis: Analysis<'_>) -> Result<Comparison, InferenceError> {
         .enumerate()
         .map(|(number, climbed)| analysis.rung(number, climbed))
         .collect::<Vec<_>>();
-    let says_something = |climbed: &&Climbed| analysis.with_state(&[&climbed.force]).next().is_some();
-    let last = rungs.iter().rfind(says_something).unwrap_or(&rungs[0]);
+    let says_something = |climbed: &Climbed| analysis.with_state(&[&climbed.force]).next().is_some();
+    let place = rungs.iter().rposition(says_something).unwrap_or(0);
+    for (number, rung) in rungs.iter_mut().enumerate() {
+        if number != 0 && number != place {
+            // Of many rows forces are large, and what these said is in the ladder.
+            rung.force = Vec::new();
+        }
+    }
+    let last = &rungs[place];
     // A surface follows the residuals of a better model better: then less of them is taken for noise.
     let again = analysis.noise_floor(last);
     let floor = match (floor, again) {
@@ -129,6 +137,7 @@ fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, In
     analysis.ask()?;
     let base = analysis.climb(0, None)?;
     let noise_floor = analysis.measure_noise(&base);
+    analysis.bound_tails(&base);
     let climbed = analysis.climb(options.effects.len(), None)?;
     let rmse_n = residuals::summary(&analysis, &climbed.force).rmse;
     let left = analysis.without_state(&climbed);

@@ -3,6 +3,8 @@
 use bulge_measurements::Data;
 use bulge_model::Record;
 
+use crate::comparison::levels::Levels;
+
 /// Fewer rows of a branch say nothing about its place.
 const FEWEST: usize = 3;
 
@@ -14,7 +16,7 @@ pub(crate) fn doubtful_sd(
     record: &Record,
     data: &Data,
     used: &[bool],
-    levels: &[usize],
+    levels: &Levels,
     residuals: &[f64],
     sd_n: f64,
 ) -> Option<Vec<f64>> {
@@ -26,11 +28,10 @@ pub(crate) fn doubtful_sd(
     for row in &doubtful {
         is_doubtful[*row] = true;
     }
-    let count = levels.iter().copied().max().map_or(0, |last| last + 1);
-    let mut branches = vec![[Vec::new(), Vec::new()]; count];
+    let mut branches = vec![[Vec::new(), Vec::new()]; levels.len()];
     for (row, moment) in record.moments().iter().enumerate() {
         if used[row] && !is_doubtful[row] && moment.branch() != 0.0 && residuals[row].is_finite() {
-            branches[levels[row]][usize::from(moment.branch() < 0.0)].push(residuals[row]);
+            branches[levels.at(row)][usize::from(moment.branch() < 0.0)].push(residuals[row]);
         }
     }
     let gaps: Vec<f64> = branches.into_iter().map(gap).collect();
@@ -41,7 +42,7 @@ pub(crate) fn doubtful_sd(
     let stated = data.force_sd();
     let sd = |row: usize| {
         let own = stated.map_or(sd_n, |sd| sd[row]);
-        if is_doubtful[row] { own.hypot(gaps[levels[row]]) } else { own }
+        if is_doubtful[row] { own.hypot(gaps[levels.at(row)]) } else { own }
     };
     Some((0..record.len()).map(sd).collect())
 }

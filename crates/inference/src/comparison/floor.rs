@@ -16,6 +16,8 @@ use crate::comparison::levels::sweep_of;
 const ENOUGH: f64 = 8.0;
 /// Rows on which the smooth surface is fitted: its scatter is then known to one per cent.
 const MOST_ROWS: usize = 5_000;
+/// Readings that show the step of a sensor and the scatter of neighbours: a median of so many is known to half a per cent.
+const MOST_READINGS: usize = 100_000;
 /// Part of the sum of squares below which what a promised decrease leaves may be rounding.
 const LEFT: f64 = 1e-9;
 
@@ -59,14 +61,20 @@ pub(crate) fn noise_floor(
 
 /// The step in which the force was read: the least difference between readings, where most of them occur several times.
 fn step(force: &[f64]) -> f64 {
-    let mut levels = force.to_vec();
+    let mut levels: Vec<f64> = force.iter().copied().step_by(every(force.len())).collect();
+    let readings = levels.len();
     levels.sort_unstable_by(f64::total_cmp);
     levels.dedup();
-    if 3 * levels.len() > force.len() {
+    if 3 * levels.len() > readings {
         return 0.0;
     }
     // A single level has no step.
     levels.windows(2).map(|pair| pair[1] - pair[0]).reduce(f64::min).unwrap_or(0.0)
+}
+
+/// Every so-manieth reading is enough.
+fn every(readings: usize) -> usize {
+    readings.div_ceil(MOST_READINGS).max(1)
 }
 
 /// Polynomials of Chebyshev in pressure and contraction, even and odd in direction.
@@ -106,9 +114,9 @@ impl Residuals for Surface {
 
 /// Standard deviation about a smooth surface and its number of columns; none if there are too few rows for one.
 fn saturated(record: &Record, used: &[bool], residuals: &[f64]) -> Option<(f64, usize)> {
-    let rows: Vec<usize> = (0..record.len()).filter(|row| used[*row]).collect();
-    let step = rows.len().div_ceil(MOST_ROWS).max(1);
-    let rows: Vec<usize> = rows.into_iter().step_by(step).collect();
+    let counting = || (0..record.len()).filter(|row| used[*row]);
+    let step = counting().count().div_ceil(MOST_ROWS).max(1);
+    let rows: Vec<usize> = counting().step_by(step).collect();
     let moments = record.moments();
     let distinct = |value: &dyn Fn(usize) -> f64| {
         let mut all: Vec<u64> = rows.iter().map(|row| value(*row).to_bits()).collect();
@@ -175,7 +183,7 @@ fn neighbours(record: &Record, used: &[bool], residuals: &[f64]) -> Option<f64> 
     }
     let mut squares: Vec<f64> = Vec::new();
     for sweep in record.sweeps() {
-        for i in sweep.start + 1..sweep.end.saturating_sub(1) {
+        for i in (sweep.start + 1..sweep.end.saturating_sub(1)).step_by(every(record.len())) {
             if used[i - 1] && used[i] && used[i + 1] {
                 let d = residuals[i - 1] - 2.0 * residuals[i] + residuals[i + 1];
                 squares.push(d.abs() / 6.0_f64.sqrt());

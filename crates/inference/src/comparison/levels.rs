@@ -13,8 +13,8 @@ const FOLDS: usize = 6;
 /// Pressure levels of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Levels {
-    /// Level of each row.
-    pub(crate) of: Vec<usize>,
+    /// Level of each row; there are few.
+    of: Vec<u8>,
     /// Mean pressure of each level \[Pa\], rising.
     pub(crate) mean: Vec<f64>,
     is_cut: bool,
@@ -46,7 +46,7 @@ impl Levels {
             }
             let sum: f64 = order[start..end].iter().map(|row| moments[*row].pressure).sum();
             for row in &order[start..end] {
-                levels.of[*row] = levels.mean.len();
+                levels.of[*row] = small(levels.mean.len());
             }
             levels.mean.push(sum / (end - start) as f64);
             start = end;
@@ -60,8 +60,13 @@ impl Levels {
             let p = record.moments()[row].pressure;
             let nearest =
                 |a: &usize, b: &usize| (self.mean[*a] - p).abs().total_cmp(&(self.mean[*b] - p).abs());
-            self.of[row] = (0..self.mean.len()).min_by(nearest).unwrap_or(0);
+            self.of[row] = small((0..self.mean.len()).min_by(nearest).unwrap_or(0));
         }
+    }
+
+    /// Level of a row.
+    pub(crate) fn at(&self, row: usize) -> usize {
+        usize::from(self.of[row])
     }
 
     /// Whether the pressures have no levels of their own, but were cut into some.
@@ -80,8 +85,8 @@ impl Levels {
 pub(crate) struct Folds {
     /// `pressure`, `length`, `load`, `sweep` or `specimen`.
     pub(crate) by: &'static str,
-    /// Fold of each row.
-    pub(crate) of: Vec<usize>,
+    /// Fold of each row; there are few.
+    of: Vec<u8>,
     /// Number of folds.
     pub(crate) count: usize,
 }
@@ -97,10 +102,10 @@ impl Folds {
     pub(crate) fn of(record: &Record, levels: &Levels, used: &[bool]) -> Option<Self> {
         let folded = |by, of: Vec<usize>, groups: usize| {
             let count = groups.min(FOLDS);
-            Some(Self { by, of: of.into_iter().map(|group| group * count / groups).collect(), count })
+            Some(Self { by, of: of.into_iter().map(|group| small(group * count / groups)).collect(), count })
         };
         if levels.len() >= 3 && !levels.is_cut() {
-            return folded("pressure", levels.of.clone(), levels.len());
+            return folded("pressure", (0..record.len()).map(|row| levels.at(row)).collect(), levels.len());
         }
         let moments = record.moments();
         let lengths: Vec<f64> = moments.iter().map(|m| m.contraction).collect();
@@ -110,7 +115,7 @@ impl Folds {
             }
         }
         if levels.len() >= 3 {
-            return folded("pressure", levels.of.clone(), levels.len());
+            return folded("pressure", (0..record.len()).map(|row| levels.at(row)).collect(), levels.len());
         }
         if record.specimens().len() >= 2 {
             let of = moments.iter().map(|m| m.specimen as usize).collect();
@@ -121,6 +126,16 @@ impl Folds {
         }
         None
     }
+
+    /// Fold of a row.
+    pub(crate) fn at(&self, row: usize) -> usize {
+        usize::from(self.of[row])
+    }
+}
+
+/// A number below [`MOST`], as it is kept for each row.
+fn small(number: usize) -> u8 {
+    u8::try_from(number).unwrap_or(u8::MAX)
 }
 
 /// Levels of a quantity that was held, if there are three or more: the level of each row, and their number.

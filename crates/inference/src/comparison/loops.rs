@@ -120,11 +120,11 @@ fn collect(
             for (level, mean) in analysis.levels.mean.iter().enumerate().filter(|(_, p)| passes(way, **p)) {
                 at(level, bin(held, low, high, BINS), way, *mean);
             }
-        } else if analysis.levels.of[pair[0]] == analysis.levels.of[pair[1]] {
+        } else if analysis.levels.at(pair[0]) == analysis.levels.at(pair[1]) {
             let way = [a.contraction, b.contraction];
             let [first, last] = [way[0].min(way[1]), way[0].max(way[1])].map(|c| bin(c, low, high, BINS));
             for bin in (first..=last).filter(|bin| passes(way, middle(*bin))) {
-                at(analysis.levels.of[pair[0]], bin, way, middle(bin));
+                at(analysis.levels.at(pair[0]), bin, way, middle(bin));
             }
         }
     }

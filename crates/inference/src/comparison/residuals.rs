@@ -58,16 +58,18 @@ struct Groups {
 pub(crate) fn breakdowns(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Breakdown> {
     let record = &analysis.record;
     let moments = record.moments();
-    let mut all = Vec::new();
+    let mut found: Vec<Breakdown> = Vec::new();
+    // One after the other: of many rows the groups alone are large.
+    let mut add = |groups: Groups| found.push(broken_down(analysis, forces, groups));
     let levels = &analysis.levels;
-    all.push(Groups {
+    add(Groups {
         variable: "pressure",
         unit: "bar",
-        of: levels.of.clone(),
+        of: (0..record.len()).map(|row| levels.at(row)).collect(),
         labels: levels.mean.iter().map(|p| (format!("{:.2}", p / 1e5), p / 1e5)).collect(),
     });
     let bar_free = |variable, unit, value: &dyn Fn(usize) -> f64| even(analysis, variable, unit, value);
-    all.extend(bar_free("contraction", "%", &|row| 100.0 * moments[row].contraction));
+    bar_free("contraction", "%", &|row| 100.0 * moments[row].contraction).into_iter().for_each(&mut add);
     if record.is_path() {
         let of = moments
             .iter()
@@ -84,28 +86,29 @@ pub(crate) fn breakdowns(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec
         let [there, back] = branches(analysis.data);
         let labels = [(there, 1.0), ("at rest", 0.0), (back, -1.0)];
         let labels = labels.into_iter().map(|(label, at)| (label.to_owned(), at)).collect();
-        all.push(Groups { variable: "direction", unit: "", of, labels });
+        add(Groups { variable: "direction", unit: "", of, labels });
     }
     if record.has_time() {
-        all.extend(bar_free("rate", "%/s", &|row| 100.0 * moments[row].rate));
-        all.extend(bar_free("time", "s", &|row| moments[row].clock));
+        bar_free("rate", "%/s", &|row| 100.0 * moments[row].rate).into_iter().for_each(&mut add);
+        bar_free("time", "s", &|row| moments[row].clock).into_iter().for_each(&mut add);
     }
     if record.sweeps().len() <= MOST_SWEEPS {
         let labels = analysis.data.sweeps().iter().enumerate().map(|(i, s)| (s.name.clone(), (i + 1) as f64));
         let of = sweep_of(record.sweeps(), record.len());
-        all.push(Groups { variable: "sweep", unit: "", of, labels: labels.collect() });
+        add(Groups { variable: "sweep", unit: "", of, labels: labels.collect() });
     }
     let names = record.specimens();
-    all.push(Groups {
+    add(Groups {
         variable: "specimen",
         unit: "",
         of: moments.iter().map(|m| m.specimen as usize).collect(),
         labels: names.iter().enumerate().map(|(i, name)| (name.clone(), (i + 1) as f64)).collect(),
     });
     if moments.iter().any(|m| m.temperature != 0.0) {
-        all.extend(bar_free("temperature", "K", &|row| moments[row].temperature));
+        bar_free("temperature", "K", &|row| moments[row].temperature).into_iter().for_each(&mut add);
     }
-    all.into_iter().map(|groups| broken_down(analysis, forces, groups)).filter(|b| b.bins.len() > 1).collect()
+    found.retain(|breakdown| breakdown.bins.len() > 1);
+    found
 }
 
 /// Bins of equal width; none if the variable doesn't vary.
@@ -179,7 +182,7 @@ pub(crate) fn maps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Resid
         let rows = analysis.with_state(&forces).filter(|row| moments[*row].branch().total_cmp(&sign).is_eq());
         let mut any = 0_usize;
         for row in rows {
-            let cell = analysis.levels.of[row] * COLUMNS + bin(moments[row].contraction, low, high, COLUMNS);
+            let cell = analysis.levels.at(row) * COLUMNS + bin(moments[row].contraction, low, high, COLUMNS);
             sums[cell].0 += 1;
             for (sum, force) in sums[cell].1.iter_mut().zip(forces) {
                 *sum += measured[row] - force[row];
@@ -223,7 +226,7 @@ pub(crate) fn curves(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Cur
     for (level, pressure_pa) in analysis.levels.mean.iter().enumerate() {
         for (specimen, name) in analysis.record.specimens().iter().enumerate() {
             let is_here = |row: &usize| {
-                analysis.levels.of[*row] == level && moments[*row].specimen as usize == specimen
+                analysis.levels.at(*row) == level && moments[*row].specimen as usize == specimen
             };
             let mut rows: Vec<usize> = analysis.with_state(&forces).filter(is_here).collect();
             if rows.is_empty() {

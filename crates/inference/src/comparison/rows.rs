@@ -12,6 +12,7 @@ const MOST_BETWEEN: f64 = 0.2;
 const MOST_IDLE: f64 = 0.8;
 
 /// Rows that count, and those that don't with the reason.
+#[derive(Debug, Clone)]
 pub(crate) struct Used {
     pub(crate) mask: Vec<bool>,
     pub(crate) left_out: Vec<LeftOut>,

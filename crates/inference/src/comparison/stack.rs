@@ -7,6 +7,7 @@ use crate::comparison::document::{Part, Stack};
 use crate::comparison::residuals::{bin, contractions};
 use crate::error::InferenceError;
 use crate::fit::carry_over::carry_over;
+use crate::fit::search::some_of_long;
 
 /// Bins of contraction.
 const BINS: usize = 25;
@@ -17,8 +18,13 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
     if effects.is_empty() {
         return Ok(Vec::new());
     }
-    let record = &analysis.record;
-    let counting = Warm::of_rows(&analysis.used.mask);
+    let whole = &*analysis.record;
+    // Of a long record those rows that a fit takes.
+    let some = some_of_long(whole);
+    let record = some.as_ref().map_or(whole, |(record, _)| record);
+    let row_of = |place: usize| some.as_ref().map_or(place, |(_, kept)| kept[place]);
+    let counts: Vec<bool> = (0..record.len()).map(|place| analysis.used.mask[row_of(place)]).collect();
+    let counting = Warm::of_rows(&counts);
     let mut forces: Vec<Vec<f64>> = Vec::new();
     for count in 0..=effects.len() {
         let prepared = analysis.model(count)?;
@@ -37,17 +43,18 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
     }
     let mut names: Vec<String> = effects.iter().map(|effect| effect.card().name.to_owned()).collect();
     if last.prepared.nuisance.contains(&true) {
-        forces.push(last.force.clone());
+        forces.push((0..record.len()).map(|place| last.force[row_of(place)]).collect());
         names.push("rig within its data sheets".to_owned());
     }
     let [low, high] = contractions(analysis);
     let contraction: Vec<f64> = record.moments().iter().map(|m| m.contraction).collect();
-    let all: Vec<&Vec<f64>> = forces.iter().collect();
+    let has_state = |place: &usize| counts[*place] && forces.iter().all(|force| force[*place].is_finite());
     let mut stacks = Vec::new();
     for (level, pressure_pa) in analysis.levels.mean.iter().enumerate() {
         let mut rows_of = vec![Vec::new(); BINS];
-        for row in analysis.with_state(&all).filter(|row| analysis.levels.of[*row] == level) {
-            rows_of[bin(contraction[row], low, high, BINS)].push(row);
+        let here = (0..record.len()).filter(has_state);
+        for place in here.filter(|place| analysis.levels.at(row_of(*place)) == level) {
+            rows_of[bin(contraction[place], low, high, BINS)].push(place);
         }
         let filled: Vec<&Vec<usize>> = rows_of.iter().filter(|rows| !rows.is_empty()).collect();
         if filled.is_empty() {

@@ -19,7 +19,7 @@ pub(crate) fn as_set(record: &Record) -> Record {
     let levels = Levels::of(record, &vec![true; record.len()]);
     let pressures: Vec<f64> = record.moments().iter().map(|m| m.pressure).collect();
     let pressure = if is_kept(&pressures, &levels) {
-        levels.of.iter().map(|level| levels.mean[*level]).collect()
+        (0..record.len()).map(|row| levels.mean[levels.at(row)]).collect()
     } else {
         by_neighbours(record, &pressures)
     };
@@ -31,8 +31,8 @@ pub(crate) fn as_set(record: &Record) -> Record {
 fn is_kept(pressures: &[f64], levels: &Levels) -> bool {
     let largest = pressures.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; levels.len()];
-    for (pressure, level) in pressures.iter().zip(&levels.of) {
-        let [low, high] = &mut ranges[*level];
+    for (row, pressure) in pressures.iter().enumerate() {
+        let [low, high] = &mut ranges[levels.at(row)];
         (*low, *high) = (low.min(*pressure), high.max(*pressure));
     }
     !levels.is_cut() && ranges.iter().all(|[low, high]| high - low <= KEPT * largest)

@@ -4,6 +4,8 @@ use bulge_model::Record;
 use std::ops::Range;
 
 use crate::comparison::levels::Levels;
+use crate::comparison::tails::{self, ways};
+use crate::noise::inputs::Scatter;
 
 /// Means of each way from one reversal to the next, where there are rows enough: fewer would hide the shape of the loop.
 const PARTS: usize = 16;
@@ -11,8 +13,10 @@ const PARTS: usize = 16;
 const MOST_PARTS: usize = 5_000;
 /// Cycles of each sweep that are kept in any case: the first has no history, and pure error takes two others.
 const FEWEST_CYCLES: f64 = 3.0;
-/// Groups that scatter by this multiple of the usual variance hold something else than noise.
-const ODD: f64 = 9.0;
+/// Rows from which a group has a line of its own.
+const LINE: usize = 4;
+/// Groups that scatter by this multiple of the usual variance, and more than chance does once in 30 000 times (a normal quantile), hold something else than noise.
+const ODD: [f64; 2] = [3.0, 4.0];
 
 /// A record of means, and what belongs to each of them.
 #[derive(Debug, Clone)]
@@ -24,15 +28,6 @@ pub(crate) struct Averaged {
     /// Stretches of the groups over which the muscle moves one way, as ranges of groups; none in a static map.
     stretches: Vec<Range<usize>>,
 }
-
-/// Rows on each side of one that say where it should be,
-const AROUND: usize = 5;
-/// and how many of their standard deviations (by the median deviation) it may be off; a normal number is once in 16 000.
-const BOUND: f64 = 4.0;
-/// Median of |x| over the standard deviation of x, for a normal x, inverted.
-const MAD_TO_SD: f64 = 1.4826;
-/// Standard deviations stated for two rows of one mean differ by no more than this factor.
-const ALIKE: f64 = 1.5;
 
 impl Averaged {
     /// About `most` means of the rows that are used, each within one sweep, one specimen and one direction. With no more rows than that, each is its own mean.
@@ -55,7 +50,7 @@ impl Averaged {
             if size > 1 && !record.is_path() {
                 sort_as_map(&mut rows, record, levels);
             }
-            for run in runs(&rows, record, levels) {
+            for run in ways(&rows, record, levels) {
                 let parts = run.len().div_ceil(size).max(least.min(run.len()));
                 let first = groups.len();
                 groups.extend(
@@ -94,36 +89,67 @@ impl Averaged {
     }
 
     /// Scatter of residuals within the groups: sum of squares about a straight line through each, and its degrees of freedom. What a misfit does within a group is
-    /// nearly straight, and no scatter; a group with a reversal or a spike in it is left out.
+    /// nearly straight, and no scatter; a group with a reversal or a spike in it is left out. Groups of two or three rows have no line of their own: along a path their
+    /// rows are looked at by threes.
     pub(crate) fn within(&self, residual: &[f64]) -> (f64, f64) {
         let bounded = self.bounded(residual);
-        let mut all: Vec<(f64, f64)> =
-            self.groups.iter().filter_map(|group| scatter(group, &bounded)).collect();
-        all.sort_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)));
-        let Some(middle) = all.get(all.len() / 2).map(|(sum, freedom)| {
-            // Median of chi-squared over its degrees of freedom (Wilson and Hilferty 1931).
-            sum / freedom / (1.0 - 2.0 / (9.0 * freedom)).powi(3)
-        }) else {
-            return (0.0, 0.0);
-        };
-        let usual = all.iter().filter(|(sum, freedom)| *sum <= ODD * middle * freedom);
-        usual.fold((0.0, 0.0), |(sum, freedom), one| (sum + one.0, freedom + one.1))
+        let mut all: Vec<Scatter> = self.scatters(&bounded).into_iter().flatten().collect();
+        for stretch in &self.stretches {
+            let groups = &self.groups[stretch.clone()];
+            if groups.iter().all(|group| group.len() < LINE) && groups.iter().any(|group| group.len() > 1) {
+                let rows: Vec<f64> = groups.iter().flatten().map(|row| bounded[*row]).collect();
+                let square =
+                    |w: &[f64]| Scatter { sum: (w[0] - 2.0 * w[1] + w[2]).powi(2) / 6.0, freedom: 1.0 };
+                all.extend(rows.chunks_exact(3).map(square));
+            }
+        }
+        let is_usual = usual(&all);
+        let kept = all.iter().filter(|one| is_usual(one));
+        kept.fold((0.0, 0.0), |(sum, freedom), one| (sum + one.sum, freedom + one.freedom))
+    }
+
+    /// The scatter of each group as [`Averaged::within`] takes it; none of those that are left out there or have no line.
+    pub(crate) fn within_each(&self, residual: &[f64]) -> Vec<Option<Scatter>> {
+        let found = self.scatters(&self.bounded(residual));
+        let is_usual = usual(&found.iter().flatten().copied().collect::<Vec<_>>());
+        found.into_iter().map(|one| one.filter(|one| is_usual(one))).collect()
+    }
+
+    fn scatters(&self, bounded: &[f64]) -> Vec<Option<Scatter>> {
+        let least = if self.stretches.is_empty() { 2 } else { LINE };
+        let of = |group: &Vec<usize>| scatter(group, bounded).filter(|_| group.len() >= least);
+        self.groups.iter().map(of).collect()
     }
 }
 
+/// Whether something scatters as most do, or as chance may make it.
+fn usual(all: &[Scatter]) -> impl Fn(&Scatter) -> bool + use<> {
+    let mut sorted: Vec<&Scatter> = all.iter().collect();
+    sorted.sort_by(|a, b| (a.sum / a.freedom).total_cmp(&(b.sum / b.freedom)));
+    let middle = sorted.get(sorted.len() / 2);
+    let middle = middle.map_or(0.0, |one| one.sum / one.freedom / of_freedom(one.freedom, 0.0));
+    move |one| one.sum <= middle * one.freedom * of_freedom(one.freedom, ODD[1]).max(ODD[0])
+}
+
+/// Quantile of chi-squared over its degrees of freedom, at that of a normal number (Wilson and Hilferty 1931).
+fn of_freedom(freedom: f64, normal: f64) -> f64 {
+    let spread = 2.0 / (9.0 * freedom);
+    (1.0 - spread + normal * spread.sqrt()).powi(3)
+}
+
 /// Sum of squares of a group about its line (of two or three rows about their mean), with its degrees of freedom.
-fn scatter(group: &[usize], residual: &[f64]) -> Option<(f64, f64)> {
+fn scatter(group: &[usize], residual: &[f64]) -> Option<Scatter> {
     let n = group.len() as f64;
     let middle = mean(group, residual);
     let about: f64 = group.iter().map(|row| (residual[*row] - middle).powi(2)).sum();
     match group.len() {
         0 | 1 => None,
-        2 | 3 => Some((about, n - 1.0)),
+        rows if rows < LINE => Some(Scatter { sum: about, freedom: n - 1.0 }),
         _ => {
             let x = |i: usize| i as f64 - 0.5 * (n - 1.0);
             let square = n * (n * n - 1.0) / 12.0;
             let along: f64 = group.iter().enumerate().map(|(i, row)| x(i) * (residual[*row] - middle)).sum();
-            Some(((about - along * along / square).max(0.0), n - 2.0))
+            Some(Scatter { sum: (about - along * along / square).max(0.0), freedom: n - 2.0 })
         }
     }
 }
@@ -136,7 +162,7 @@ fn first_cycles(record: &Record, used: &[bool], levels: &Levels) -> Option<Vec<b
     let of_sweep = |sweep: &Range<usize>| -> Vec<(usize, usize)> {
         let rows: Vec<usize> = sweep.clone().filter(|row| used[*row]).collect();
         // First row of each way, and the rows that it has.
-        runs(&rows, record, levels).map(|run| (run[0], run.len())).collect()
+        ways(&rows, record, levels).map(|run| (run[0], run.len())).collect()
     };
     let ways: Vec<Vec<(usize, usize)>> = record.sweeps().iter().map(of_sweep).collect();
     let cycle =
@@ -168,59 +194,18 @@ fn first_cycles(record: &Record, used: &[bool], levels: &Levels) -> Option<Vec<b
 fn parts_of_ways(record: &Record, used: &[bool], levels: &Levels) -> usize {
     let ways = |sweep: &Range<usize>| {
         let rows: Vec<usize> = sweep.clone().filter(|row| used[*row]).collect();
-        runs(&rows, record, levels).count()
+        ways(&rows, record, levels).count()
     };
     let ways: usize = record.sweeps().iter().map(ways).sum();
     (MOST_PARTS / ways.max(1)).clamp(1, PARTS)
 }
 
 impl Averaged {
-    /// Residuals of which none is far off the path of its neighbours (Huber's pseudo-values about Hampel's running median): a residual beyond both of its
-    /// neighbours is moved to 4 standard deviations from the median of the five on either side, or to the nearer neighbour if that is farther. The standard deviation
-    /// is that of these rows or of all, whichever is larger. Normal noise keeps its values but once in 16 000 rows; what rises or falls steadily, such as
-    /// the transition after a reversal, keeps them always. In a static map rows have no neighbours.
+    /// Residuals of which none is far off the path of its neighbours, see [`tails::bounded`]. In a static map rows have no neighbours.
     fn bounded(&self, residual: &[f64]) -> Vec<f64> {
-        let mut bounded = residual.to_vec();
-        let least = self.white(residual);
-        for stretch in &self.stretches {
-            let rows: Vec<usize> = self.groups[stretch.clone()].iter().flatten().copied().collect();
-            for place in 1..rows.len().saturating_sub(1) {
-                let value = residual[rows[place]];
-                let [before, after] = [residual[rows[place - 1]], residual[rows[place + 1]]];
-                let (low, high) = (before.min(after), before.max(after));
-                if value >= low && value <= high {
-                    continue;
-                }
-                let around = place.saturating_sub(AROUND)..(place + AROUND + 1).min(rows.len());
-                let mut values: Vec<f64> = rows[around].iter().map(|row| residual[*row]).collect();
-                let middle = median(&mut values);
-                for value in &mut values {
-                    *value = (*value - middle).abs();
-                }
-                let most = BOUND * (MAD_TO_SD * median(&mut values)).max(least);
-                bounded[rows[place]] = value.max(low.min(middle - most)).min(high.max(middle + most));
-            }
-        }
-        bounded
+        let rows = |stretch: &Range<usize>| self.groups[stretch.clone()].iter().flatten().copied().collect();
+        tails::bounded(residual, &self.stretches.iter().map(rows).collect::<Vec<_>>())
     }
-
-    /// Standard deviation of the white part of residuals, from their second differences along the stretches.
-    fn white(&self, residual: &[f64]) -> f64 {
-        let mut differences = Vec::new();
-        for stretch in &self.stretches {
-            let rows: Vec<usize> = self.groups[stretch.clone()].iter().flatten().copied().collect();
-            differences.extend(
-                rows.windows(3).map(|w| (residual[w[0]] - 2.0 * residual[w[1]] + residual[w[2]]).abs()),
-            );
-        }
-        MAD_TO_SD * median(&mut differences) / 6.0_f64.sqrt()
-    }
-}
-
-/// The median; reorders the values. 0 of none.
-fn median(values: &mut [f64]) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 fn mean(group: &[usize], values: &[f64]) -> f64 {
@@ -230,26 +215,9 @@ fn mean(group: &[usize], values: &[f64]) -> f64 {
 fn sort_as_map(rows: &mut [usize], record: &Record, levels: &Levels) {
     let moments = record.moments();
     rows.sort_by(|a, b| {
-        let key = |row: usize| (moments[row].specimen, levels.of[row]);
+        let key = |row: usize| (moments[row].specimen, levels.at(row));
         key(*a).cmp(&key(*b)).then(moments[*a].contraction.total_cmp(&moments[*b].contraction)).then(a.cmp(b))
     });
-}
-
-/// Stretches of rows with one direction, specimen and pressure level.
-fn runs<'r>(rows: &'r [usize], record: &'r Record, levels: &'r Levels) -> impl Iterator<Item = &'r [usize]> {
-    let moments = record.moments();
-    // A row in doubt would take its neighbours along.
-    let is_alike = move |a: usize, b: usize| {
-        record.force_sd().is_none_or(|sd| sd[a].max(sd[b]) <= ALIKE * sd[a].min(sd[b]))
-    };
-    rows.chunk_by(move |a, b| {
-        let [first, second] = [a, b].map(|row| &moments[*row]);
-        first.specimen == second.specimen
-            && first.branch().total_cmp(&second.branch()).is_eq()
-            && first.cycle.floor().total_cmp(&second.cycle.floor()).is_eq()
-            && (record.is_path() || levels.of[*a] == levels.of[*b])
-            && is_alike(*a, *b)
-    })
 }
 
 #[cfg(test)]
@@ -356,17 +324,43 @@ mod tests {
         }
     }
 
+    /// Cycles of 200 rows.
+    fn cycles(count: u32) -> Vec<Moment> {
+        let cycle = triangle(200);
+        let moment = |i: u32| {
+            let m = cycle.moments()[(i % 200) as usize];
+            let number = f64::from(i / 200) + f64::from(i % 200) / 200.0;
+            Moment { begins: i == 0, cycle: number, clock: f64::from(i), time: f64::from(i), ..m }
+        };
+        (0..200 * count).map(moment).collect()
+    }
+
+    #[test]
+    fn long_tests_keep_their_first_cycles_whole() {
+        // Two sweeps of 120 cycles: 480 ways of 16 means are more than 5000.
+        let moments: Vec<Moment> = cycles(120).into_iter().chain(cycles(120)).collect();
+        let n = moments.len();
+        let force = moments.iter().map(|m| 1000.0 * m.contraction).collect();
+        let record = Record::from_moments(moments, force, vec![0..n / 2, n / 2..n]).unwrap();
+        let levels = Levels::of(&record, &vec![true; n]);
+        let averaged = Averaged::of(&record, &vec![true; n], &levels, 2500).unwrap();
+        let (means, sweeps) = (averaged.record.moments(), averaged.record.sweeps());
+        assert!(means.len() <= MOST_PARTS && means.len() > MOST_PARTS - 100, "{}", means.len());
+        for (sweep, first) in sweeps.iter().zip([0, n / 2]) {
+            // Row by row from the first on, none left out, none of two ways.
+            let rows: Vec<usize> = averaged.groups[sweep.clone()].iter().flatten().copied().collect();
+            assert!(rows.iter().copied().eq(first..first + rows.len()));
+            assert_eq!((rows.len() % 200, rows.len() / 200 >= 3), (0, true));
+            for (way, means) in averaged.groups[sweep.clone()].chunks(PARTS).enumerate() {
+                assert!(means.iter().flatten().all(|row| (row - first) / 100 == way), "{way}");
+            }
+        }
+    }
+
     #[test]
     fn many_cycles_keep_the_shape_of_each_and_a_misfit_is_no_scatter() {
-        // 100 cycles of 200 rows; a misfit of 100 N over the stroke, friction that jumps at reversals, 1.2 N of noise.
-        let cycle = triangle(200);
-        let moments: Vec<Moment> = (0..20_000)
-            .map(|i: u32| {
-                let m = cycle.moments()[(i % 200) as usize];
-                let number = f64::from(i / 200) + f64::from(i % 200) / 200.0;
-                Moment { begins: i == 0, cycle: number, clock: f64::from(i), time: f64::from(i), ..m }
-            })
-            .collect();
+        // A misfit of 100 N over the stroke, friction that jumps at reversals, 1.2 N of noise.
+        let moments = cycles(100);
         let mut random = bulge_numerics::Random::new(4, 0);
         let misfit = |m: &Moment| 100.0 * (8.0 * m.contraction).exp().recip() - 14.0 * m.direction;
         let force: Vec<f64> = moments.iter().map(|m| misfit(m) + 1.2 * random.normal()).collect();

@@ -89,6 +89,7 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
     let first = analysis.climb(0, None)?;
     analysis.measure_noise(&first);
     let base = analysis.climb(options.base.effects.len(), Some(&first))?;
+    drop(first);
     // Of rows without a state the base says nothing: what the catalogue could say there, nothing could be compared with.
     let mut used = vec![false; analysis.record.len()];
     for row in analysis.with_state(&[&base.force]) {

@@ -13,12 +13,13 @@
 
 use bulge_model::ModelError;
 
-use crate::diagnosis::ground::{Ground, median};
+use crate::diagnosis::ground::Ground;
 use crate::diagnosis::pure_error::BetweenCycles;
 use crate::diagnosis::scene::{Given, Scene};
 use crate::diagnosis::search::Search;
 use crate::diagnosis::tangents::Tangents;
 use crate::dot::dot;
+use crate::median::median;
 use crate::noise::law::{NoiseLaw, NoiseSource};
 use crate::noise::restricted_likelihood::log_likelihood;
 
@@ -45,7 +46,7 @@ pub(crate) fn noise_of_base(
     let found = NoiseLaw::estimate(given.record, &vec![true; n], inputs, &design, &tangents.residual);
     let Ok(law) = found else { return Ok(None) };
     let law = match BetweenCycles::of(given.record, &tangents.residual) {
-        Some(cycles) => cycles.bounds(law, median(inputs.to_vec())),
+        Some(cycles) => cycles.bounds(law, median(&mut inputs.to_vec())),
         None => law,
     };
     let likelihood = |law| log_likelihood(law, given.record, inputs, &design, &tangents.residual);

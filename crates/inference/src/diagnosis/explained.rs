@@ -30,7 +30,7 @@ fn cells(record: &Record, levels: &Levels) -> Vec<Cell> {
         for direction in [1.0, 0.0, -1.0] {
             let mut rows = vec![Vec::new(); BINS];
             for (row, moment) in moments.iter().enumerate() {
-                if levels.of[row] == level && moment.branch().total_cmp(&direction).is_eq() {
+                if levels.at(row) == level && moment.branch().total_cmp(&direction).is_eq() {
                     rows[bin(moment.contraction, low, high, BINS)].push(row);
                 }
             }

@@ -12,6 +12,7 @@ use crate::diagnosis::noise::Source;
 use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::Search;
 use crate::error::InferenceError;
+use crate::median::median;
 use crate::noise::law::{NoiseLaw, NoiseSource};
 use crate::noise::whitening::Whitening;
 
@@ -87,7 +88,7 @@ impl Ground {
 
     /// Variance of a mean as the law says it \[N^2\].
     fn variance(&self) -> f64 {
-        let inputs = median(self.input_variances.clone());
+        let inputs = median(&mut self.input_variances.clone());
         self.law.as_ref().map_or(f64::INFINITY, |law| {
             law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs
         })
@@ -163,6 +164,7 @@ pub(crate) fn ground(
         slopes: [&at_means.by_contraction, &at_means.by_pressure],
         counts: &counts,
         unequal: &extra,
+        within: &averaged.within_each(&residual),
         pure_error: analysis.data.repeats(analysis.muscle.length().si()).pure_error(),
     };
     let found = source.law(&base.prepared, &base.theta);
@@ -189,7 +191,7 @@ fn unequal(averaged: &Averaged, counts: &[f64], within: f64, stated: Option<&[f6
 /// Rows that count as independent: as many single rows as would know a constant as well as the means do.
 pub(crate) fn effective_rows(given: &Given<'_>, ground: &Ground, sd_n: f64) -> f64 {
     let law = given.law;
-    let inputs = median(ground.input_variances.clone());
+    let inputs = median(&mut ground.input_variances.clone());
     let of_mean = law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs;
     let rows: f64 = ground.averaged.counts().sum();
     if of_mean > 0.0 { (given.whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
@@ -203,17 +205,17 @@ pub(crate) fn row_sd(law: &NoiseLaw, ground: &Ground) -> f64 {
 /// Variance of a single row without what it shares with its neighbours \[N^2\].
 fn white_of_row(law: &NoiseLaw, ground: &Ground) -> f64 {
     let counts: Vec<f64> = ground.averaged.counts().collect();
-    let own = law.white_n.powi(2) + variance_of_rows(&ground.input_variances, &counts);
-    ground.within.map_or(own, |within| within.max(own))
+    let inputs = variance_of_rows(&ground.input_variances, &counts);
+    let own = law.white_n.powi(2) + inputs;
+    // Rows scatter by no more than their means do: where few rows are a mean, what bends from row to row is in their scatter too.
+    let most = counts.iter().copied().fold(1.0, f64::max);
+    let of_means = law.white_n.powi(2) * most + inputs;
+    ground.within.map_or(own, |within| within.min(of_means).max(own))
 }
 
 /// Median variance of single rows from those of means: that of rows in doubt is not the rule.
 fn variance_of_rows(variances: &[f64], counts: &[f64]) -> f64 {
-    median(variances.iter().zip(counts).map(|(variance, count)| variance * count).collect())
-}
-
-/// The median; 0 of none.
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
+    let mut of_rows: Vec<f64> =
+        variances.iter().zip(counts).map(|(variance, count)| variance * count).collect();
+    median(&mut of_rows)
 }

@@ -76,7 +76,7 @@ fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], m| [l.min(m.contraction), h.max(m.contraction)]);
     let mut cells = vec![vec![(0.0, 0.0); BINS]; levels.len()];
     for (row, moment) in moments.iter().enumerate() {
-        let cell = &mut cells[levels.of[row]]
+        let cell = &mut cells[levels.at(row)]
             [crate::comparison::residuals::bin(moment.contraction, low, high, BINS)];
         *cell = (cell.0 + misfit[row], cell.1 + 1.0);
     }

@@ -7,14 +7,14 @@ use bulge_muscles::Muscle;
 
 use crate::comparison::levels::Levels;
 use crate::diagnosis::as_set::as_set;
-use crate::diagnosis::ground::median;
 use crate::diagnosis::pure_error::BetweenCycles;
 use crate::diagnosis::showing::Showings;
 use crate::diagnosis::smooth::smooth;
 use crate::diagnosis::space::{Space, norm};
 use crate::diagnosis::tangents::Tangents;
 use crate::fit::nuisance::Prepared;
-use crate::noise::inputs::input_noise;
+use crate::median::median;
+use crate::noise::inputs::{Scatter, input_noise};
 use crate::noise::law::{NoiseLaw, NoiseSource};
 
 /// Independent columns of the saturated model, as a part of the rows: of effects, and of all.
@@ -50,6 +50,8 @@ pub(crate) struct Source<'a> {
     pub(crate) counts: &'a [f64],
     /// Variances by which the means differ for other reasons \[N^2\].
     pub(crate) unequal: &'a [f64],
+    /// Scatter of the readings of each mean.
+    pub(crate) within: &'a [Option<Scatter>],
     pub(crate) pure_error: Option<PureError>,
 }
 
@@ -87,7 +89,7 @@ impl Source<'_> {
                 let shown = if is_stated {
                     None
                 } else {
-                    input_noise(residual, sweeps, &design, self.slopes, self.counts)
+                    input_noise(residual, sweeps, &design, self.slopes, self.counts, self.within)
                 };
                 let mut inputs = shown.unwrap_or_else(|| stated_inputs.clone());
                 for (variance, own) in inputs.iter_mut().zip(self.unequal) {
@@ -99,7 +101,7 @@ impl Source<'_> {
                 let cycles = BetweenCycles::of(self.record, residual);
                 // The median: rows whose direction is in doubt have a variance of their own.
                 let law = match cycles {
-                    Some(cycles) => cycles.bounds(law, median(inputs.clone())),
+                    Some(cycles) => cycles.bounds(law, median(&mut inputs.clone())),
                     None => law,
                 };
                 Some((law, inputs))

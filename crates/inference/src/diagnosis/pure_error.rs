@@ -157,7 +157,7 @@ fn strokes(record: &Record, residual: &[f64]) -> Vec<Vec<Stroke>> {
             points.sort_by(|a, b| a.place.total_cmp(&b.place));
             #[expect(clippy::cast_possible_truncation, reason = "a contraction over 0.2 %")]
             let length = (moment.contraction / HELD).round() as i64;
-            let level = if is_held { length } else { i64::try_from(levels.of[run[0]]).unwrap_or(0) };
+            let level = if is_held { length } else { i64::try_from(levels.at(run[0])).unwrap_or(0) };
             let key = (moment.specimen, is_held, level, up(run[0]));
             alike.entry(key).or_default().push(Stroke { sweep, points });
         }

@@ -4,7 +4,6 @@ use bulge_effects::Catalogue;
 use bulge_model::{ModelError, Record};
 
 use crate::diagnosis::candidates::Candidate;
-use crate::diagnosis::ground::median;
 use crate::diagnosis::null::{Chance, Null, Statistics};
 use crate::diagnosis::showing::Showings;
 use crate::diagnosis::smooth::{Variable, smooth};
@@ -12,6 +11,7 @@ use crate::diagnosis::space::{Space, norm};
 use crate::diagnosis::tangents::Tangents;
 use crate::dot::dot;
 use crate::fit::nuisance::Prepared;
+use crate::median::median;
 use crate::noise::law::NoiseLaw;
 use crate::noise::whitening::Whitening;
 use crate::progress::Progress;
@@ -178,7 +178,7 @@ impl Given<'_> {
     /// Rows that hardly count, because their direction is in doubt: what a function would be there is not known from them.
     fn doubtful(&self) -> Vec<usize> {
         let Some(sd) = self.record.force_sd() else { return Vec::new() };
-        let usual = median(sd.to_vec());
+        let usual = median(&mut sd.to_vec());
         (0..sd.len()).filter(|row| sd[*row] > DOUBTFUL * usual).collect()
     }
 }

@@ -66,8 +66,10 @@ pub(crate) fn fit_and_force(
     start: &[f64],
     task: &Task<'_>,
 ) -> Result<(Fit, Vec<f64>), ModelError> {
-    if task.record.len() > LONG && !task.quick && keeps_cycles(task.record) {
-        return of_long(prepared, start, task);
+    if !task.quick
+        && let Some(some) = some_of_long(task.record)
+    {
+        return of_long(prepared, start, task, &some);
     }
     let model = &prepared.model;
     let mut best = vec![start.to_vec()];
@@ -121,6 +123,11 @@ pub(crate) fn fit_and_force(
     Ok((fit, force))
 }
 
+/// The rows of a long record that a fit takes, and the record that they are; none if it takes all.
+pub(crate) fn some_of_long(record: &Record) -> Option<(Record, Vec<usize>)> {
+    (record.len() > LONG && keeps_cycles(record)).then(|| record.thinned(OF_LONG))
+}
+
 /// Whether some of the rows still show each cycle.
 fn keeps_cycles(record: &Record) -> bool {
     let of_sweep = |sweep: &std::ops::Range<usize>| {
@@ -133,10 +140,14 @@ fn keeps_cycles(record: &Record) -> bool {
 }
 
 /// The fit of some rows of a long record, and the force of all of them.
-fn of_long(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<(Fit, Vec<f64>), ModelError> {
-    let (thin, kept) = task.record.thinned(OF_LONG);
+fn of_long(
+    prepared: &Prepared,
+    start: &[f64],
+    task: &Task<'_>,
+    (thin, kept): &(Record, Vec<usize>),
+) -> Result<(Fit, Vec<f64>), ModelError> {
     let used: Vec<bool> = kept.iter().map(|row| task.used[*row]).collect();
-    let some = Task { record: &thin, used: &used, ..*task };
+    let some = Task { record: thin, used: &used, ..*task };
     let (mut fit, _) = fit_and_force(prepared, start, &some)?;
     let counting = Warm::of_rows(task.used);
     let found = prepared.model.evaluate_partly(task.record, &fit.theta, &Wanted::default(), &counting)?;

@@ -4,7 +4,7 @@
 //! s_i^2 = w (1 + k (dF/dx_i)^2 / mean),    x the contraction or the pressure;   w and k by maximum likelihood on what a saturated model leaves
 //! ```
 //! Along a path the scatter is that of neighbours against each other, (r_i - r_(i-1))^2/2, which slow noise leaves alone. The likelihood ratio against k = 0 is divided by what heavy
-//! tails and shared neighbours add to its scatter, (kurtosis - 1)/2 and 3/2, before it is believed.
+//! tails and shared neighbours add to its scatter, (kurtosis - 1)/2 and 3/2, before it is believed. Of means of many readings the readings themselves say it, without any model.
 
 use std::ops::Range;
 
@@ -18,24 +18,34 @@ const CLEAR: f64 = 10.83;
 const FEWEST: usize = 60;
 /// Squares of neighbouring differences share a row: sums of them scatter more by this factor in variance.
 const SHARED: f64 = 1.5;
-/// Kurtosis of normal numbers.
-const NORMAL: f64 = 3.0;
+
+/// Sum of squares \[N^2\] about what is known of some readings, with its degrees of freedom.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Scatter {
+    pub(crate) sum: f64,
+    pub(crate) freedom: f64,
+}
 
 /// Variance of each row from noise of an input \[N^2\]; none if the scatter is the same everywhere.
 ///
 /// - `residual`: measured less predicted force \[N\], `sweeps` of rows in the order of measurement (none in a static map),
 /// - `design`: orthonormal columns of a saturated model,
 /// - `slopes`: derivative of the force by each of the inputs,
-/// - `counts`: how many readings each row is the mean of.
+/// - `counts`: how many readings each row is the mean of,
+/// - `within`: scatter of the readings of each row about each other, which no misfit is in: taken instead of the residuals where most rows have it.
 pub(crate) fn input_noise(
     residual: &[f64],
     sweeps: &[Range<usize>],
     design: &[Vec<f64>],
     slopes: [&[f64]; 2],
     counts: &[f64],
+    within: &[Option<Scatter>],
 ) -> Option<Vec<f64>> {
     if residual.len() < FEWEST {
         return None;
+    }
+    if 2 * within.iter().flatten().count() > residual.len() {
+        return of_readings(slopes, counts, within);
     }
     let rows = left(residual, design);
     let neighbours = |values: &[f64], of: fn(f64, f64) -> f64| -> Vec<f64> {
@@ -58,10 +68,34 @@ pub(crate) fn input_noise(
             return None;
         }
         let of_squares = if is_path { neighbours(&shape, |a, b| 0.5 * (a + b)) } else { shape.clone() };
-        let (clear, variance) = fitted(&squares, &of_squares)?;
+        let (clear, variance) = fitted(&squares, &of_squares, &vec![1.0; squares.len()])?;
         let clear = if is_path { clear / SHARED } else { clear };
         Some((clear, shape.iter().map(|s| variance * s).collect::<Vec<f64>>()))
     });
+    clearest(fits)
+}
+
+/// The same from how the readings scatter of which each row is the mean.
+fn of_readings(slopes: [&[f64]; 2], counts: &[f64], within: &[Option<Scatter>]) -> Option<Vec<f64>> {
+    let known: Vec<(usize, Scatter)> =
+        within.iter().enumerate().filter_map(|(row, one)| Some((row, (*one)?))).collect();
+    let squares: Vec<f64> = known.iter().map(|(_, one)| one.sum / one.freedom).collect();
+    let freedom: Vec<f64> = known.iter().map(|(_, one)| one.freedom).collect();
+    let fits = slopes.map(|slope| {
+        let mean = slope.iter().map(|s| s * s).sum::<f64>() / slope.len() as f64;
+        let shape: Vec<f64> = known.iter().map(|(row, _)| slope[*row] * slope[*row] / mean).collect();
+        if !shape.iter().all(|s| s.is_finite()) {
+            return None;
+        }
+        let (clear, variance) = fitted(&squares, &shape, &freedom)?;
+        let of_means = slope.iter().zip(counts).map(|(s, count)| variance * s * s / mean / count);
+        Some((clear, of_means.collect::<Vec<f64>>()))
+    });
+    clearest(fits)
+}
+
+/// The input that the scatter shows best, if it does.
+fn clearest(fits: [Option<(f64, Vec<f64>)>; 2]) -> Option<Vec<f64>> {
     let best = fits.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0))?;
     (best.0 > CLEAR).then_some(best.1)
 }
@@ -80,22 +114,23 @@ fn left(residual: &[f64], design: &[Vec<f64>]) -> Vec<f64> {
     left.iter().zip(&free).map(|(value, free)| value / free.max(0.05).sqrt()).collect()
 }
 
-/// Likelihood ratio, and the variance where the shape is 1, at the best ratio.
-fn fitted(squares: &[f64], shape: &[f64]) -> Option<(f64, f64)> {
-    let n = squares.len() as f64;
+/// Likelihood ratio, and the variance where the shape is 1, at the best ratio; mean squares have so many degrees of freedom each.
+fn fitted(squares: &[f64], shape: &[f64], freedom: &[f64]) -> Option<(f64, f64)> {
+    let all: f64 = freedom.iter().sum();
+    let rows = || squares.iter().zip(shape).zip(freedom);
     let of = |ratio: f64| {
-        let scale = squares.iter().zip(shape).map(|(r, s)| r / (1.0 + ratio * s)).sum::<f64>() / n;
-        let logs: f64 = shape.iter().map(|s| (1.0 + ratio * s).ln()).sum();
-        (n * scale.ln() + logs, scale)
+        let scale = rows().map(|((r, s), f)| f * r / (1.0 + ratio * s)).sum::<f64>() / all;
+        let logs: f64 = rows().map(|((_, s), f)| f * (1.0 + ratio * s).ln()).sum();
+        (all * scale.ln() + logs, scale)
     };
     let (low, high, count) = RATIOS;
     let ratios = (0..count).map(|i| low * (high / low).powf(f64::from(i) / f64::from(count - 1)));
     let (ratio, (deviance, scale)) =
         ratios.map(|ratio| (ratio, of(ratio))).min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
-    let fourth = squares.iter().zip(shape).map(|(r, s)| (r / (scale * (1.0 + ratio * s))).powi(2));
-    let kurtosis = (fourth.sum::<f64>() / n).max(NORMAL);
-    let clear = (of(0.0).0 - deviance) * (NORMAL - 1.0) / (kurtosis - 1.0);
-    Some((clear, scale * ratio))
+    // 1 for normal numbers: a mean square has the variance 2/f.
+    let spread = rows().map(|((r, s), f)| 0.5 * f * (r / (scale * (1.0 + ratio * s)) - 1.0).powi(2));
+    let tails = (spread.sum::<f64>() / squares.len() as f64).max(1.0);
+    Some(((of(0.0).0 - deviance) / tails, scale * ratio))
 }
 
 #[cfg(test)]
@@ -135,7 +170,8 @@ mod tests {
         let (slope, flat, fours) = (steep(n), vec![1.0; n], vec![4.0; n]);
         for sweeps in [vec![], vec![0..n / 2, n / 2..n]] {
             let found =
-                input_noise(&scatter(n, 0.4, false), &sweeps, &columns(n), [&flat, &slope], &fours).unwrap();
+                input_noise(&scatter(n, 0.4, false), &sweeps, &columns(n), [&flat, &slope], &fours, &[])
+                    .unwrap();
             let sd = (found[n / 3] / (slope[n / 3] * slope[n / 3])).sqrt();
             assert!((0.37..0.43).contains(&sd), "{sd}");
             assert!((found[0] / found[n / 3] - (slope[0] / slope[n / 3]).powi(2)).abs() < 1e-9);
@@ -148,9 +184,9 @@ mod tests {
         let (slope, flat, ones) = (steep(n), vec![1.0; n], vec![1.0; n]);
         for tails in [false, true] {
             let scatter = scatter(n, 0.0, tails);
-            assert!(input_noise(&scatter, &[], &[], [&slope, &flat], &ones).is_none());
+            assert!(input_noise(&scatter, &[], &[], [&slope, &flat], &ones, &[]).is_none());
         }
-        assert!(input_noise(&[1.0; 20], &[], &[], [&[1.0; 20], &[1.0; 20]], &[1.0; 20]).is_none());
+        assert!(input_noise(&[1.0; 20], &[], &[], [&[1.0; 20], &[1.0; 20]], &[1.0; 20], &[]).is_none());
     }
 
     #[test]
@@ -169,8 +205,39 @@ mod tests {
                 })
                 .collect();
             let sweeps = [0..n / 2, n / 2..n];
-            found += u32::from(input_noise(&noise, &sweeps, &columns(n), [&slope, &flat], &ones).is_some());
+            found +=
+                u32::from(input_noise(&noise, &sweeps, &columns(n), [&slope, &flat], &ones, &[]).is_some());
         }
         assert!(found <= 1, "{found} of 40");
+    }
+
+    #[test]
+    fn readings_of_means_say_it_whatever_the_means_are_off() {
+        // 300 means of 20 readings, and a misfit of the means that follows the slope.
+        let (n, readings_of_each) = (300, 20);
+        let count = f64::from(readings_of_each);
+        let slope = steep(n);
+        let (flat, counts) = (vec![1.0; n], vec![count; n]);
+        for (input, is_found) in [(0.4, true), (0.0, false)] {
+            let mut random = Random::new(9, 0);
+            let within: Vec<Option<Scatter>> = slope
+                .iter()
+                .map(|s| {
+                    let sd = (1.0 + (input * s).powi(2)).sqrt();
+                    let readings: Vec<f64> = (0..readings_of_each).map(|_| sd * random.normal()).collect();
+                    let mean = readings.iter().sum::<f64>() / count;
+                    let sum = readings.iter().map(|r| (r - mean).powi(2)).sum();
+                    Some(Scatter { sum, freedom: count - 1.0 })
+                })
+                .collect();
+            let misfit: Vec<f64> = slope.iter().map(|s| 5.0 * s * random.normal()).collect();
+            let sweeps = [0..n / 2, n / 2..n];
+            let found = input_noise(&misfit, &sweeps, &columns(n), [&flat, &slope], &counts, &within);
+            assert_eq!(found.is_some(), is_found);
+            if let Some(found) = found {
+                let sd = (found[n / 3] * count).sqrt() / slope[n / 3];
+                assert!((0.37..0.43).contains(&sd), "{sd}");
+            }
+        }
     }
 }

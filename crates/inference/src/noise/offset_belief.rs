@@ -24,8 +24,7 @@ pub struct OffsetBelief {
 /// Sizes of the offsets with their probabilities: the restricted likelihood at each, the other components as they are, times what is usual.
 pub(crate) fn offset_beliefs(likelihood: &RestrictedLikelihood, others: &Components) -> Vec<OffsetBelief> {
     let other = others.white + others.correlated;
-    let mean_input = likelihood.mean_input_variance();
-    let scale = other + mean_input;
+    let scale = other + likelihood.usual_input_variance();
     let usual = |part: f64| (part / USUAL.0).min(1.0) * (USUAL.1 / part).powi(4).min(1.0);
     let all: f64 = PARTS.iter().map(|part| usual(*part)).sum();
     let mut found: Vec<(f64, f64)> = Vec::with_capacity(PARTS.len() + 1);

@@ -4,6 +4,7 @@ use bulge_model::Record;
 use nalgebra::{DMatrix, DMatrixView};
 use rayon::prelude::*;
 
+use crate::median::median;
 use crate::noise::law::NoiseLaw;
 use crate::noise::orthonormal::Basis;
 use crate::noise::whitening::{Components, Layout, Whitening};
@@ -72,9 +73,9 @@ impl RestrictedLikelihood {
         self.layout.blocks.iter().map(left).sum()
     }
 
-    /// Mean of what noise of the inputs makes of the force \[N^2\].
-    pub(crate) fn mean_input_variance(&self) -> f64 {
-        self.layout.known.iter().sum::<f64>() / self.layout.known.len().max(1) as f64
+    /// Usual variance that noise of the inputs makes of the force \[N^2\]: rows whose direction is in doubt have a large one of their own, which is none of the rig's.
+    pub(crate) fn usual_input_variance(&self) -> f64 {
+        median(&mut self.layout.known.clone())
     }
 
     /// The likelihood of some of the rows, with the columns that are independent there.

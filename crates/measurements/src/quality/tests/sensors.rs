@@ -273,3 +273,29 @@ fn heavy_tails_are_hardly_spikes() {
     // Student's t with 3 degrees of freedom is beyond 11 in one of 600 rows.
     assert!(called < 60, "{called} of 12000");
 }
+
+#[test]
+fn tips_of_loops_are_no_spikes_and_spikes_beside_them_are() {
+    let mut noise = Noise::new(5);
+    let (mut c, mut f) = (Vec::new(), Vec::new());
+    for row in 0..2000_u32 {
+        // Triangles of 100 rows; where the muscle turns friction lets go, and one row shows it.
+        let way = f64::from(row % 100) / 50.0;
+        let x = if way <= 1.0 { way } else { 2.0 - way };
+        let tip = if row % 50 == 0 && row > 0 { 30.0 } else { 0.0 };
+        c.push(0.02 + 0.2 * x);
+        f.push(300.0 - 400.0 * x + tip + 0.5 * noise.normal());
+    }
+    f[530] += 30.0;
+    f[1275] -= 30.0;
+    let mut columns = Columns::new(vec![2e5; c.len()], Trace::Contraction(c), f);
+    columns.time_s = Some((0..2000).map(|row| 0.01 * f64::from(row)).collect());
+    let data = Data::from_columns(columns).unwrap();
+    assert_eq!(data.spikes(data.force()), [530, 1275]);
+    // A disturbed reading at one turn of many is a spike as elsewhere.
+    let mut once: Vec<f64> = data.force().to_vec();
+    for row in (50..2000).step_by(50).filter(|row| *row != 600) {
+        once[row] -= 30.0;
+    }
+    assert_eq!(data.spikes(&once), [530, 600, 1275]);
+}

@@ -1,0 +1,332 @@
+//! A sweep that lies off as a whole: the load cell was zeroed anew, or something was hung on it. It is no physics, and says nothing of the others.
+//!
+//! ```text
+//! r = S(driven, held, direction) + d 1_s,    gain_s = (a_s . z)^2/(a_s . a_s),    d = (a_s . z)/(a_s . a_s)
+//! ```
+//! r are residuals, S is a surface that all sweeps share: polynomials in what is driven (the contraction, or the pressure at held length), affine in what is held, which is
+//! how the force of nearly every mechanism goes with the pressure. z is what S leaves of r, a_s what it leaves of the sweep's indicator. A sweep is shifted if its offset d is
+//! large against the noise, the same all along the sweep, much larger than that of any other once it is taken off, and if no other sweep's offset would do as well.
+
+use bulge_effects::Moment;
+use bulge_measurements::Data;
+use bulge_model::Record;
+use bulge_muscles::units::significant;
+use std::ops::Range;
+
+use crate::chebyshev::chebyshev;
+use crate::comparison::rows::Used;
+use crate::dot::dot;
+use crate::noise::orthonormal::Basis;
+
+/// Rows on which the surface is fitted.
+const MOST_ROWS: usize = 4_000;
+/// Sweeps from which the others agree on where one should lie, and rows of each.
+const FEWEST: [usize; 2] = [4, 8];
+/// Most sweeps: the test of each takes a column.
+const MOST_SWEEPS: usize = 200;
+/// One sweep in so many may be shifted.
+const ONE_IN: usize = 4;
+/// Part of the range over which a sweep goes if that is what is driven.
+const DRIVEN: f64 = 0.3;
+/// Part of the largest contraction and of the largest pressure within which either is held.
+const HELD: [f64; 2] = [0.01, 0.02];
+/// Degrees over what is driven, of both branches together and of their difference; lower ones where there are few rows.
+const DEGREES: [[usize; 2]; 2] = [[7, 4], [4, 2]];
+/// Rows for each column of the surface.
+const ROWS_PER_COLUMN: usize = 3;
+/// Part of the largest value between what is held in different sweeps.
+const GAP: f64 = 0.03;
+/// An offset of fewer standard deviations of a reading does little,
+const SIZE: f64 = 2.5;
+/// one of fewer standard deviations of its own may be chance,
+const SURE: f64 = 8.0;
+/// and what the surface leaves undetermined isn't known: part of the sweep's rows that it has to leave.
+const LEFT: f64 = 0.1;
+/// Part of the gain that another sweep may reach instead of it,
+const INSTEAD: f64 = 0.85;
+/// that another may reach besides it,
+const BESIDES: f64 = 0.05;
+/// and that a change along the sweep may reach.
+const ALONG: f64 = 0.1;
+/// Gain in variances of a reading that is nothing.
+const CHANCE: f64 = 30.0;
+
+/// A sweep and its offset.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Shift {
+    sweep: usize,
+    offset_n: f64,
+}
+
+impl Used {
+    /// Leaves out sweeps that lie off as a whole, by the residuals \[N\] of a model that needn't be right.
+    pub(crate) fn leave_out_shifted(&mut self, data: &Data, record: &Record, residuals: &[f64], sd_n: f64) {
+        for _ in 0..record.sweeps().len() / ONE_IN {
+            let Some(found) = shifted(record, &self.mask, residuals, sd_n) else { break };
+            let name = data.sweeps().get(found.sweep).map_or("", |sweep| sweep.name.as_str());
+            let why = format!(
+                "shifted: all of sweep `{name}` lies {} N {} where the other sweeps lead ({} times the noise of {} N): was the load cell zeroed anew before it?",
+                significant(found.offset_n.abs(), 3),
+                if found.offset_n > 0.0 { "above" } else { "below" },
+                significant(found.offset_n.abs() / sd_n, 2),
+                significant(sd_n, 2),
+            );
+            self.leave_out(data, record.sweeps()[found.sweep].clone(), why);
+        }
+    }
+}
+
+/// The sweep that lies farthest off, if it is one of a kind.
+fn shifted(record: &Record, used: &[bool], residuals: &[f64], sd_n: f64) -> Option<Shift> {
+    let sweeps = record.sweeps();
+    if !record.is_path() || !(FEWEST[0]..=MOST_SWEEPS).contains(&sweeps.len()) || sd_n <= 0.0 {
+        return None;
+    }
+    let (rows, blocks) = thinned(sweeps, &|row| used[row] && residuals[row].is_finite());
+    let blocks: Vec<(usize, Range<usize>)> =
+        blocks.into_iter().filter(|(_, block)| block.len() >= FEWEST[1]).collect();
+    if blocks.len() < FEWEST[0] {
+        return None;
+    }
+    let basis = surface(record, &rows, &blocks)?;
+    let mut left: Vec<f64> = rows.iter().map(|row| residuals[*row]).collect();
+    basis.remove_from(&mut left);
+    let gain = |column: &[f64], left: &[f64]| dot(column, left).powi(2) / dot(column, column);
+    let columns: Vec<Option<Vec<f64>>> = blocks
+        .iter()
+        .map(|(_, block)| {
+            let mut column = vec![0.0; rows.len()];
+            column[block.clone()].fill(1.0);
+            basis.remove_from(&mut column);
+            (dot(&column, &column) >= LEFT * block.len() as f64).then_some(column)
+        })
+        .collect();
+    let of_sweep = |(place, column): (usize, &Option<Vec<f64>>)| Some((place, gain(column.as_ref()?, &left)));
+    let mut gains: Vec<(usize, f64)> = columns.iter().enumerate().filter_map(of_sweep).collect();
+    gains.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let (place, most) = *gains.first()?;
+    let own = columns[place].as_ref()?;
+    let offset_n = dot(own, &left) / dot(own, own);
+    let variance = sd_n * sd_n;
+    let instead = gains.get(1).map_or(0.0, |other| other.1);
+    if offset_n.abs() < SIZE * sd_n || most < SURE * SURE * variance || instead > INSTEAD * most {
+        return None;
+    }
+    let mut rest = left;
+    take_out(&mut rest, own);
+    let without = |mut column: Vec<f64>| {
+        take_out(&mut column, own);
+        column
+    };
+    let besides = columns.iter().enumerate().filter(|(other, _)| *other != place);
+    let besides = besides.filter_map(|(_, column)| Some(gain(&without(column.clone()?), &rest)));
+    let nothing = CHANCE * variance;
+    let (_, block) = &blocks[place];
+    let along = along(record, &rows, block).into_iter().map(|mut column| {
+        basis.remove_from(&mut column);
+        let column = without(column);
+        if dot(&column, &column) > LEFT { gain(&column, &rest) } else { 0.0 }
+    });
+    let is_alone = besides.fold(0.0, f64::max) <= (BESIDES * most).max(nothing);
+    let is_constant = along.fold(0.0, f64::max) <= (ALONG * most).max(nothing);
+    (is_alone && is_constant).then_some(Shift { sweep: blocks[place].0, offset_n })
+}
+
+fn take_out(vector: &mut [f64], column: &[f64]) {
+    let part = dot(vector, column) / dot(column, column);
+    for (value, c) in vector.iter_mut().zip(column) {
+        *value -= part * c;
+    }
+}
+
+/// Rows that count, every so-manieth of each sweep, and where each sweep is among them.
+fn thinned(
+    sweeps: &[Range<usize>],
+    counts: &dyn Fn(usize) -> bool,
+) -> (Vec<usize>, Vec<(usize, Range<usize>)>) {
+    let all: usize = sweeps.iter().map(|sweep| sweep.clone().filter(|row| counts(*row)).count()).sum();
+    let stride = all.div_ceil(MOST_ROWS).max(1);
+    let (mut rows, mut blocks) = (Vec::new(), Vec::new());
+    for (number, sweep) in sweeps.iter().enumerate() {
+        let start = rows.len();
+        rows.extend(sweep.clone().filter(|row| counts(*row)).step_by(stride));
+        blocks.push((number, start..rows.len()));
+    }
+    (rows, blocks)
+}
+
+/// Range of some values as their middle and half width.
+fn scale(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+    [0.5 * (low + high), (0.5 * (high - low)).max(f64::MIN_POSITIVE)]
+}
+
+/// What all sweeps share, as an orthonormal basis; none if what is driven is neither the length alone nor the pressure alone.
+fn surface(record: &Record, rows: &[usize], blocks: &[(usize, Range<usize>)]) -> Option<Basis> {
+    let moments = record.moments();
+    let read: [fn(&Moment) -> f64; 2] = [|m| m.contraction, |m| m.pressure];
+    let whole = read.map(|of| scale(rows.iter().map(|row| of(&moments[*row]))));
+    let is_driven = [0, 1].map(|axis: usize| {
+        let [middle, half] = whole[axis];
+        let least = (DRIVEN * half).max(HELD[axis] * (middle.abs() + half));
+        let goes = |(_, block): &&(usize, Range<usize>)| {
+            scale(rows[block.clone()].iter().map(|row| read[axis](&moments[*row])))[1] > least
+        };
+        2 * blocks.iter().filter(goes).count() > blocks.len()
+    });
+    let (driven, held) = match is_driven {
+        [true, false] => (0, 1),
+        [false, true] => (1, 0),
+        _ => return None,
+    };
+    let mut means: Vec<f64> = blocks
+        .iter()
+        .map(|(_, block)| {
+            rows[block.clone()].iter().map(|row| read[held](&moments[*row])).sum::<f64>() / block.len() as f64
+        })
+        .collect();
+    means.sort_by(f64::total_cmp);
+    let largest = means.last().map_or(0.0, |mean| mean.abs());
+    let levels = 1 + means.windows(2).filter(|pair| pair[1] - pair[0] > GAP * largest).count();
+    let specimens = record.specimens().len();
+    let affine = (levels - 1).min(1);
+    let columns = |degrees: [usize; 2]| (degrees[0] + degrees[1] + 2) * (affine + 1) + specimens - 1;
+    let degrees = DEGREES.into_iter().find(|degrees| ROWS_PER_COLUMN * columns(*degrees) <= rows.len())?;
+    let mut design = Vec::with_capacity(rows.len() * columns(degrees));
+    for row in rows {
+        let moment = &moments[*row];
+        let at = |axis: usize| (read[axis](moment) - whole[axis][0]) / whole[axis][1];
+        let (x, y) = (at(driven), at(held));
+        for (sign, degree) in [1.0, moment.branch()].into_iter().zip(degrees) {
+            for i in 0..=degree {
+                design.extend((0..=affine).map(|j| sign * chebyshev(i, x) * chebyshev(j, y)));
+            }
+        }
+        design.extend((1..specimens).map(|one| f64::from(u8::from(moment.specimen as usize == one))));
+    }
+    Some(Basis::of(&design, rows.len()))
+}
+
+/// What a sweep's own change along it would look like: with the contraction or the pressure, with the direction, and with both.
+fn along(record: &Record, rows: &[usize], block: &Range<usize>) -> Vec<Vec<f64>> {
+    let moments = record.moments();
+    let own = |of: &dyn Fn(&Moment) -> f64| {
+        let mut column = vec![0.0; rows.len()];
+        for place in block.clone() {
+            column[place] = of(&moments[rows[place]]);
+        }
+        column
+    };
+    let of = |axis: fn(&Moment) -> f64| scale(rows[block.clone()].iter().map(|row| axis(&moments[*row])));
+    let ([e, half_e], [p, half_p]) = (of(|m| m.contraction), of(|m| m.pressure));
+    vec![
+        own(&|m| (m.contraction - e) / half_e),
+        own(&|m| (m.pressure - p) / half_p),
+        own(&Moment::branch),
+        own(&|m| m.branch() * (m.contraction - e) / half_e),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_numerics::Random;
+
+    /// Loops of 60 rows at pressures \[bar\], one sweep each.
+    fn loops(pressures: &[f64]) -> Record {
+        let moments: Vec<Moment> = pressures
+            .iter()
+            .enumerate()
+            .flat_map(|(sweep, bar)| {
+                (0..60).map(move |i| {
+                    let x = f64::from(i) / 60.0;
+                    Moment {
+                        direction: if x < 0.5 { 1.0 } else { -1.0 },
+                        begins: i == 0,
+                        clock: 100.0 * sweep as f64 + f64::from(i),
+                        ..Moment::at_rest(1e5 * bar, 0.01 + 0.19 * (1.0 - (2.0 * x - 1.0).abs()))
+                    }
+                })
+            })
+            .collect();
+        let n = moments.len();
+        Record::from_moments(
+            moments,
+            vec![0.0; n],
+            (0..pressures.len()).map(|s| 60 * s..60 * s + 60).collect(),
+        )
+        .unwrap()
+    }
+
+    /// Rubber, friction that grows with the pressure, a little that does not go straight with it, and noise of 1 N.
+    fn misfit(record: &Record, seed: u64) -> Vec<f64> {
+        let mut random = Random::new(seed, 0);
+        let of = |m: &Moment| {
+            let bar = m.pressure / 1e5;
+            -60.0 * (6.0 * m.contraction).exp() - (4.0 + 3.0 * bar) * m.direction
+                + 10.0 * bar * m.contraction
+                + 0.1 * bar * bar * m.contraction
+        };
+        record.moments().iter().map(|m| of(m) + random.normal()).collect()
+    }
+
+    #[test]
+    fn a_sweep_that_is_off_is_found_with_its_offset_and_no_other() {
+        for (pressures, place) in [
+            (&[1.0, 2.0, 3.0, 4.0, 5.0][..], 2),
+            (&[2.0, 2.0, 2.0, 2.0], 3),
+            (&[1.0, 2.0, 3.0, 1.0, 2.0, 3.0], 0),
+            (&[2.0, 3.0, 4.0, 5.0], 1),
+        ] {
+            let record = loops(pressures);
+            let used = vec![true; record.len()];
+            let mut clean = 0;
+            for seed in 0..20 {
+                let mut residuals = misfit(&record, seed);
+                clean += usize::from(shifted(&record, &used, &residuals, 1.0).is_some());
+                for value in &mut residuals[record.sweeps()[place].clone()] {
+                    *value -= 6.0;
+                }
+                let found = shifted(&record, &used, &residuals, 1.0);
+                assert_eq!(found.map(|found| found.sweep), Some(place), "{pressures:?} {seed}");
+                let found = found.unwrap();
+                // The surface knows of an inner sweep of four what 60 rows and three tenths of them say.
+                assert!((found.offset_n + 6.0).abs() < 1.2, "{pressures:?}: {}", found.offset_n);
+            }
+            assert_eq!(clean, 0, "{pressures:?}");
+        }
+    }
+
+    /// Pressures \[bar\], and what is added to the residuals.
+    type Case<'c> = (&'c [f64], &'c dyn Fn(&Moment) -> f64);
+
+    #[test]
+    fn what_changes_along_a_sweep_is_no_shift_nor_what_two_sweeps_may_have() {
+        let record = loops(&[1.0, 2.0, 3.0, 4.0, 5.0]);
+        let used = vec![true; record.len()];
+        for (name, own) in [
+            ("friction", (|m: &Moment| 9.0 * m.direction) as fn(&Moment) -> f64),
+            ("stiffness", |m| 100.0 * m.contraction),
+        ] {
+            let mut residuals = misfit(&record, 3);
+            for row in record.sweeps()[2].clone() {
+                residuals[row] += own(&record.moments()[row]);
+            }
+            assert_eq!(shifted(&record, &used, &residuals, 1.0), None, "{name}");
+        }
+        // Of three sweeps nobody knows which is off; two that are off are none of a kind; and what bends with the pressure is physics.
+        let bent = |m: &Moment| 6.0 * (m.pressure / 1e5 - 3.5).powi(2);
+        let second = |m: &Moment| if (m.pressure - 3e5).abs() < 1e4 { 6.0 } else { 0.0 };
+        let both = |m: &Moment| if (m.pressure - 3.5e5).abs() < 6e4 { 6.0 } else { 0.0 };
+        let cases: [Case<'_>; 3] =
+            [(&[2.0, 3.0, 4.0], &second), (&[2.0, 3.0, 4.0, 5.0], &both), (&[2.0, 3.0, 4.0, 5.0], &bent)];
+        for (pressures, own) in cases {
+            let record = loops(pressures);
+            let mut residuals = misfit(&record, 3);
+            for (value, moment) in residuals.iter_mut().zip(record.moments()) {
+                *value += own(moment);
+            }
+            assert_eq!(shifted(&record, &vec![true; record.len()], &residuals, 1.0), None, "{pressures:?}");
+        }
+    }
+}
