@@ -1,6 +1,7 @@
 //! Measurements: read from files or from the text of a table, and as columns.
 
-use bulge_measurements::{self as measurements, Motion, QualityOptions};
+use bulge_measurements::{self as measurements, ColumnMap, Motion, QualityOptions, ReadOptions};
+use bulge_model::read_options;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -8,6 +9,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::error::OrRaise;
+use crate::muscle::Muscle;
+
+/// How files are read.
+fn options(columns: Option<&str>, muscle: Option<&Muscle>) -> PyResult<ReadOptions> {
+    let columns = columns.map(str::parse::<ColumnMap>).transpose().or_raise()?;
+    match muscle {
+        Some(muscle) => read_options(&muscle.muscle, columns.as_ref()).or_raise(),
+        None => Ok(ReadOptions { columns: columns.unwrap_or_default(), ..ReadOptions::default() }),
+    }
+}
 
 /// A checked set of measurements.
 #[pyclass(frozen, module = "bulge._bulge")]
@@ -16,16 +27,35 @@ pub(crate) struct Data(pub(crate) Arc<measurements::Data>);
 
 #[pymethods]
 impl Data {
-    /// From files of CSV or Parquet.
+    /// From files; `columns` says which column is which, and the muscle how a displacement counts.
     #[staticmethod]
-    fn read(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<Self> {
-        Ok(Self(Arc::new(py.detach(|| measurements::Data::read(&paths)).or_raise()?)))
+    fn read(
+        py: Python<'_>,
+        paths: Vec<PathBuf>,
+        columns: Option<&str>,
+        muscle: Option<PyRef<'_, Muscle>>,
+    ) -> PyResult<Self> {
+        let options = options(columns, muscle.as_deref())?;
+        Ok(Self(Arc::new(py.detach(|| measurements::Data::read_with(&paths, &options)).or_raise()?)))
     }
 
     /// From the text of a CSV file.
     #[staticmethod]
-    fn from_csv(py: Python<'_>, text: &str, origin: &str) -> PyResult<Self> {
-        Ok(Self(Arc::new(py.detach(|| measurements::Data::from_csv(text, origin)).or_raise()?)))
+    fn from_csv(
+        py: Python<'_>,
+        text: &str,
+        origin: &str,
+        columns: Option<&str>,
+        muscle: Option<PyRef<'_, Muscle>>,
+    ) -> PyResult<Self> {
+        let options = options(columns, muscle.as_deref())?;
+        let read = || measurements::Data::from_bytes(text.as_bytes(), origin, &options);
+        Ok(Self(Arc::new(py.detach(read).or_raise()?)))
+    }
+
+    /// What columns were taken for, which rows were set apart: the JSON document.
+    fn reading(&self) -> PyResult<String> {
+        serde_json::to_string(self.0.reading()).or_raise()
     }
 
     fn __len__(&self) -> usize {

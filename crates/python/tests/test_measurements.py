@@ -117,6 +117,68 @@ def test_the_fingerprint_is_of_the_content(plain, tmp_path):
     assert bulge.read(copied).sha256 == bulge.read(plain).sha256 != bulge.read(changed).sha256
 
 
+def test_columns_that_are_said(tmp_path):
+    path = tmp_path / "rig.csv"
+    path.write_text("t,ch 1,ch 2,\"F, raw\"\n0,2000,0,-900\n1,2000,5,-800\n2,2000,10,-700\n")
+    with pytest.raises(bulge.InputError, match="--columns"):
+        bulge.read(path)
+    hose = bulge.Muscle(kind="braided", length="200 mm", radius="10 mm", braid_angle="25 deg")
+    said = {"pressure": "ch 1 [mbar]", "displacement": "ch 2 [mm]", "force": "-F, raw [N]"}
+    text = 'pressure=ch 1 [mbar], displacement=ch 2 [mm], force=-"F, raw [N]"'
+    for columns in [said, text]:
+        data = bulge.read(path, columns=columns, muscle=hose)
+        np.testing.assert_allclose(data.columns["length_m"], [0.2, 0.195, 0.19], rtol=1e-14)
+        assert data.columns["force_n"].tolist() == [900, 800, 700] and data.columns["pressure_pa"].tolist() == [2e5] * 3
+    # A length of its own needs no muscle; a displacement does.
+    lengths = bulge.read(path, columns="pressure=ch 1 [mbar],length=ch 2 [mm],force=4 [N]")
+    np.testing.assert_allclose(lengths.columns["length_m"], [0, 0.005, 0.01])
+    with pytest.raises(bulge.InputError, match="name the muscle"):
+        bulge.read(path, columns=said)
+    with pytest.raises(bulge.InputError, match="there is no column `F2`"):
+        bulge.read(path, columns={"force": "F2"})
+    assert data.reading["columns"][1]["quantity"] == "pressure" and not data.reading["set_apart"]
+    again = pickle.loads(pickle.dumps(data))
+    same(data, again)
+    frame = pandas.read_csv(path)
+    same(data, bulge.read(frame, columns=said, muscle=hose))
+
+
+def test_units_that_are_not_written_are_known_with_the_muscle(tmp_path):
+    hose = bulge.Muscle(kind="braided", length="200 mm", radius="10 mm", braid_angle="25 deg", ends="cylinder")
+    contraction = np.linspace(0.01, 0.2, 20)
+    a, b = 3 / np.tan(np.radians(25)) ** 2, np.sin(np.radians(25)) ** -2
+    force = np.pi * 0.01**2 * 3e5 * (a * (1 - contraction) ** 2 - b)
+    path = tmp_path / "bare.csv"
+    pandas.DataFrame({"p": 3.0, "x": 200 * contraction, "F": force}).to_csv(path, index=False)
+    with pytest.raises(bulge.InputError, match="(?s)column `p` has no unit.*it may be psi.*bar"):
+        bulge.read(path)
+    data = bulge.read(path, muscle=hose)
+    assert set(data.columns["pressure_pa"]) == {3e5} and data.reading["columns"][0]["guessed"]
+    assert bulge.compare(path, hose).ladder[0]["rmse_n"] < 1e-6 * force.max()
+
+
+def test_specimens_of_one_analysis(tmp_path):
+    numbers = {"kind": "braided", "radius": "10 mm", "braid_angle": "25 deg", "ends": "cylinder"}
+    hose = bulge.Muscle(length="250 mm", specimens={"short": {"length": "60 mm"}}, **numbers)
+    a, b = 3 / np.tan(np.radians(25)) ** 2, np.sin(np.radians(25)) ** -2
+    contraction = np.tile(np.linspace(0.01, 0.2, 20), 4)
+    pressure = np.tile(np.repeat([2.0, 3.0], 20), 2)
+    force = np.pi * 0.01**2 * 1e5 * pressure * (a * (1 - contraction) ** 2 - b)
+    specimen = np.repeat(["short", "long"], 40)
+    length = np.where(specimen == "short", 60, 250) * (1 - contraction)
+    frame = pandas.DataFrame({"pressure [bar]": pressure, "length [mm]": length, "force [N]": force, "specimen": specimen})
+    path = tmp_path / "two.csv"
+    frame.to_csv(path, index=False)
+    for source in [path, frame]:
+        found = bulge.compare(source, hose)
+        assert found.ladder[0]["rmse_n"] < 1e-6 * force.max()
+    # Without what the short one is its rows are none of this muscle's.
+    with pytest.raises(bulge.InputError, match="contraction"):
+        bulge.compare(path, bulge.Muscle(length="250 mm", **numbers))
+    with pytest.raises(bulge.InputError, match="no. 3"):
+        bulge.compare(path, bulge.Muscle(length="250 mm", specimens={"short": {"length": "60 mm"}, "no. 3": {}}, **numbers))
+
+
 def test_quality(plain, rubbed):
     assert bulge.read(plain).quality() == ["there are only 4 rows"]
     frame = rubbed.data.to_pandas()

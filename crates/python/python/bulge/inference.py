@@ -218,7 +218,7 @@ class Simulation(Result):
         """The measurements."""
         from bulge.measurements import _data_of
 
-        return _data_of("csv", (self._csv, "data.csv"))
+        return _data_of("csv", (self._csv, "data.csv"), None, None)
 
     @property
     def muscle(self) -> Muscle:
@@ -256,7 +256,7 @@ def compare(
     ``data`` is what :func:`bulge.read` takes; ``with_`` names effects to fit, in their order; ``own`` are effects of one's own; ``law`` is a force
     law of the papers as the base (``fit_law``: fitted); ``rivals`` fits every law for comparison.
     """
-    return Comparison(_bulge.compare(read(data)._native, muscle._native, _names(with_), own_text(own), law, fit_law, rivals))
+    return Comparison(_bulge.compare(read(data, muscle=muscle)._native, muscle._native, _names(with_), own_text(own), law, fit_law, rivals))
 
 
 def diagnose(
@@ -279,7 +279,7 @@ def diagnose(
         threads = count("threads", threads, 1, 1024)
     allowed = None if tolerance is None else si(tolerance, "N", "tolerance")
     with callback(progress, "diagnose") as told:
-        return Diagnosis(_bulge.diagnose(read(data)._native, muscle._native, _names(with_), own_text(own), allowed, count("seed", seed, 0), threads, told))
+        return Diagnosis(_bulge.diagnose(read(data, muscle=muscle)._native, muscle._native, _names(with_), own_text(own), allowed, count("seed", seed, 0), threads, told))
 
 
 def fit(data: DataLike, muscle: Muscle, with_: Iterable[str] | str, *, own: OwnEffects = None) -> Fit:
@@ -288,7 +288,7 @@ def fit(data: DataLike, muscle: Muscle, with_: Iterable[str] | str, *, own: OwnE
     if not names:
         raise _bulge.InputError("with_: name the effects to fit, such as [\"end-taper\", \"bladder-elasticity\"]")
     text = own_text(own)
-    document = json.loads(_bulge.fit(read(data)._native, muscle._native, names, text))
+    document = json.loads(_bulge.fit(read(data, muscle=muscle)._native, muscle._native, names, text))
     return Fit(document, joined(muscle._native.own, text))
 
 
@@ -319,7 +319,7 @@ def next_experiment(
     ]
     with callback(progress, "next experiment") as told:
         document = _bulge.next_experiment(
-            read(data)._native, muscle._native, _names(with_), own_text(own), limits[0], limits[1], count("seed", seed, 0), told
+            read(data, muscle=muscle)._native, muscle._native, _names(with_), own_text(own), limits[0], limits[1], count("seed", seed, 0), told
         )
     return NextExperiment(json.loads(document))
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,14 +13,17 @@ from bulge import _bulge
 from bulge.optional import need
 from bulge.units import FloatArray, Quantity, si
 
+if TYPE_CHECKING:
+    from bulge.muscle import Muscle
+
 
 class Data:
     """A checked set of measurements; :func:`bulge.read` makes one. ``len(data)`` is the number of rows."""
 
     __slots__ = ("_native", "_source")
 
-    def __init__(self, native: _bulge.Data, source: tuple[str, Any]) -> None:
-        #: Where it comes from: ("files", paths) or ("csv", (text, origin)).
+    def __init__(self, native: _bulge.Data, source: tuple[str, Any, str | None, Muscle | None]) -> None:
+        #: Where it comes from: ("files", paths, columns, muscle) or ("csv", (text, origin), columns, muscle).
         self._native, self._source = native, source
 
     @property
@@ -41,6 +45,12 @@ class Data:
     def sha256(self) -> str:
         """Fingerprint of the files."""
         return self._native.sha256
+
+    @property
+    def reading(self) -> dict[str, Any]:
+        """How the files were read: what each of the ``columns`` was taken for (and whether this was guessed), which rows were ``set_apart``, ``notes``."""
+        found: dict[str, Any] = json.loads(self._native.reading())
+        return found
 
     @property
     def columns(self) -> dict[str, Any]:
@@ -83,32 +93,52 @@ class Data:
         return (_data_again, (*self._source, self.sha256))
 
 
-def _data_of(kind: str, source: Any) -> Data:
+def _data_of(kind: str, source: Any, columns: str | None, muscle: Muscle | None) -> Data:
+    native = None if muscle is None else muscle._native
     if kind == "files":
-        return Data(_bulge.Data.read(source), (kind, [os.path.abspath(name) for name in source]))
-    return Data(_bulge.Data.from_csv(*source), (kind, source))
+        paths = [os.path.abspath(name) for name in source]
+        return Data(_bulge.Data.read(source, columns, native), (kind, paths, columns, muscle))
+    text, origin = source
+    return Data(_bulge.Data.from_csv(text, origin, columns, native), (kind, source, columns, muscle))
 
 
-def _data_again(kind: str, source: Any, sha256: str) -> Data:
+def _data_again(kind: str, source: Any, columns: str | None, muscle: Muscle | None, sha256: str) -> Data:
     """Unpickled: files are read again, and must be what they were."""
-    data = _data_of(kind, source)
+    data = _data_of(kind, source, columns, muscle)
     if data.sha256 != sha256:
         raise _bulge.InputError(f"{', '.join(data.files)} changed while these measurements travelled: read them again")
     return data
 
 
-def read(source: Any, *more: Any) -> Data:
-    """Measurements from a CSV or Parquet file, several of them (one analysis), or a pandas DataFrame.
+def _mapping(columns: str | Mapping[str, str] | None) -> str | None:
+    """What is said of columns as one text."""
+    if columns is None or isinstance(columns, str):
+        return columns
+    if not columns:
+        return None
+
+    def entry(quantity: str, column: str) -> str:
+        name = column.strip()
+        return f'{quantity}=-"{name[1:].strip()}"' if name.startswith("-") else f'{quantity}="{name}"'
+
+    return ",".join(entry(quantity, column) for quantity, column in columns.items())
+
+
+def read(source: Any, *more: Any, columns: str | Mapping[str, str] | None = None, muscle: Muscle | None = None) -> Data:
+    """Measurements from a file of text, Excel, MATLAB or Parquet, several of them (one analysis), or a pandas DataFrame.
 
     Columns are named with their unit: ``pressure [bar]``, ``contraction [%]`` or ``length [mm]``, ``force [N]``, ``time [s]`` and so on, as in a
-    file; a frame may also have the SI names of :attr:`Data.columns`. Raises :class:`bulge.InputError` with the line and the cure.
+    file; a frame may also have the SI names of :attr:`Data.columns`. Other names are guessed (:attr:`Data.reading` says what was), unless
+    ``columns`` settles them: ``"force=Force_N [N], displacement=-Weg"``, or a mapping of the same. A displacement, and a pressure or length without
+    any unit, are only understood with the ``muscle``. Raises :class:`bulge.InputError` with the line and the cure.
     """
     if isinstance(source, Data):
         return source
+    mapping = _mapping(columns)
     if hasattr(source, "to_csv") and hasattr(source, "columns"):
         if more:
             raise _bulge.InputError("one data frame at a time: join them first, with a column `sweep` or `specimen`")
-        return _data_of("csv", (_text(source), "the data frame"))
+        return _data_of("csv", (_text(source), "the data frame"), mapping, muscle)
     if isinstance(source, Mapping):
         raise _bulge.InputError("a mapping is no table of measurements: make it a frame, pandas.DataFrame(...)")
     try:
@@ -118,7 +148,7 @@ def read(source: Any, *more: Any) -> Data:
         raise _bulge.InputError(f"{source!r} is neither the name of a file, nor a list of such names, nor a data frame") from None
     if not names:
         raise _bulge.InputError("no file is named: give the name of a CSV file")
-    return _data_of("files", names)
+    return _data_of("files", names, mapping, muscle)
 
 
 #: SI names of :attr:`Data.columns` as headings of a file.
