@@ -15,9 +15,9 @@ pub(crate) fn braid(radius: f64, c10: f64) -> (Muscle, Equilibrium) {
 
 /// Nodes for rows about a pressure, from 1 % to a contraction.
 pub(crate) fn lattice(equilibrium: &Equilibrium, pressure: f64, most: f64) -> Lattice {
-    let rows: Vec<(f64, [f64; 2])> =
-        [0.9, 1.0, 1.1].iter().map(|part| (part * pressure, [0.01, most])).collect();
-    Lattice::around(equilibrium, 0, 1.0, 0, rows.iter())
+    let empty = Lattice::unsolved(equilibrium, 0, 1.0);
+    let spans = [0.9, 1.0, 1.1].map(|part| empty.span(part * pressure, [0.01, most]).unwrap());
+    empty.around(&spans, 0)
 }
 
 fn force(lattice: &Lattice, contraction: f64) -> Option<f64> {
