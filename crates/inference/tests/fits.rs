@@ -226,8 +226,8 @@ fn the_extended_muscle_predicts_what_was_fitted() {
         let known = known(&back, &Catalogue::builtin()).unwrap();
         let next = compare(&data, &back, &Options { known, ..options(&[]) }).unwrap();
         let (fitted, start) = (found.rmse_n, next.ladder[0].rmse_n);
-        // Numbers are rounded to a thousandth of their standard deviation, and beside another base a single reading more may count as a spike.
-        assert!((start / fitted - 1.0).abs() < 3e-4, "{names:?}: {start} after {fitted}");
+        // Numbers are rounded to a thousandth of their standard deviation, and beside another base one reading of four deviations more or less may count as a spike.
+        assert!((start / fitted - 1.0).abs() < 3e-3, "{names:?}: {start} after {fitted}");
         assert_eq!(extension.written, names);
     }
 }

@@ -82,7 +82,8 @@ fn loops_of_a_fluidic_muscle_show_hysteresis_and_bladder() {
     assert!(has(&["bladder-elasticity"]), "{families:?}");
     assert!(has(&["coulomb-friction", "presliding-hysteresis", "pressure-friction"]), "{families:?}");
     // Three effects are not all: the rest is said to remain.
-    assert!(found.verdict == Verdict::Unknown && found.remaining.structured, "{}", found.says);
+    assert!(found.verdict != Verdict::Adequate && found.remaining.structured, "{}", found.says);
+    assert!(found.remaining.misfit_interval_n[0] > 10.0, "{}", found.says);
     let errors: Vec<f64> = found.ladder.iter().map(|step| step.rmse_n).collect();
     assert!(errors[errors.len() - 1] < 0.32 * errors[0], "{errors:?}");
 }

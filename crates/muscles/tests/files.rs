@@ -624,7 +624,9 @@ fn some_muscle(random: &mut Lcg) -> Muscle {
         Construction::Braided(if random.next(2) == 0 { braid.with_ends(Ends::Cylinder) } else { braid })
     };
     if let (Construction::Braided(braid), 0) = (construction, random.next(2)) {
-        construction = Construction::Braided(braid.with_wall(Length::m(random.fraction() * 0.01)).unwrap());
+        construction = Construction::Braided(
+            braid.with_wall(Length::m(bulge_muscles::Quantity::si(radius) * random.fraction())).unwrap(),
+        );
     }
     let names =
         ["plain", "with \"quotes\" and \\", "two\nlines", "''' \"\"\" '", "µ \u{7f} \u{1b} \t", "= # ["];

@@ -11,7 +11,7 @@ BAR = 1e5
 KEYS = {
     "schema", "muscle", "pressure_pa", "force_n", "length_m", "contraction", "volume_m3", "volume_polygon_m3", "max_radius_m", "mid_radius_m",
     "fibre_tension_n", "fibre_strain", "stiffness_n_per_m", "stiffness_isothermal_n_per_m", "stiffness_adiabatic_n_per_m", "volume_slope_m2",
-    "end_slope_rad", "contraction_limit", "method", "convergence", "meridian",
+    "end_slope_rad", "contraction_limit", "ends_slack", "method", "convergence", "meridian",
 }  # fmt: skip
 CLOSED = {"m", "phi_r", "force_f", "volume_v"}
 

@@ -474,28 +474,4 @@ impl<'a> Analysis<'a> {
             full_scale_n: self.full_scale,
         }
     }
-
-    pub(crate) fn nothing_fitted(&self, theta: Vec<f64>, force: &Vec<f64>) -> Fit {
-        let error = residuals::summary(self, force);
-        Fit {
-            parameters: Vec::new(),
-            theta,
-            rmse_n: error.rmse,
-            cost: 0.0,
-            sd_n: self.noise.force_n,
-            effective_rows: self.rows().count() as f64,
-            correlations: Vec::new(),
-            convergence: crate::fit::document::Convergence {
-                converged: true,
-                reason: "there was nothing to fit".to_owned(),
-                gradient_cosine: 0.0,
-                iterations: 0,
-                starts: 0,
-                agreeing: 0,
-                minima: 0,
-                rank: 0,
-            },
-            warnings: Vec::new(),
-        }
-    }
 }

@@ -11,7 +11,7 @@ use crate::comparison::specimens::{note, of_specimens};
 use crate::comparison::warnings::without_state;
 use crate::comparison::{isotonic, loops, residuals, rivals, stack};
 use crate::error::InferenceError;
-use crate::fit::document::Fit;
+use crate::fit::document::{Convergence, Fit};
 
 /// Compares.
 ///
@@ -142,7 +142,7 @@ fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, In
     let rmse_n = residuals::summary(&analysis, &climbed.force).rmse;
     let left = analysis.without_state(&climbed);
     let Climbed { prepared, theta, fit, force, failed } = climbed;
-    let mut fit = fit.unwrap_or_else(|| analysis.nothing_fitted(theta, &force));
+    let mut fit = fit.unwrap_or_else(|| nothing_fitted(&analysis, theta, &force));
     fit.warnings.extend(failed.map(|error| not_fitted("the fit", &error)));
     fit.warnings.extend(left.map(|left| without_state("the fit", &left)));
     fit.warnings.extend(note(data, muscle));
@@ -155,4 +155,29 @@ fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, In
         rmse_n,
         noise_floor,
     })
+}
+
+/// The fit of a model without free numbers.
+fn nothing_fitted(analysis: &Analysis<'_>, theta: Vec<f64>, force: &Vec<f64>) -> Fit {
+    let error = residuals::summary(analysis, force);
+    Fit {
+        parameters: Vec::new(),
+        theta,
+        rmse_n: error.rmse,
+        cost: 0.0,
+        sd_n: analysis.noise.force_n,
+        effective_rows: analysis.rows().count() as f64,
+        correlations: Vec::new(),
+        convergence: Convergence {
+            converged: true,
+            reason: "there was nothing to fit".to_owned(),
+            gradient_cosine: 0.0,
+            iterations: 0,
+            starts: 0,
+            agreeing: 0,
+            minima: 0,
+            rank: 0,
+        },
+        warnings: Vec::new(),
+    }
 }
