@@ -643,7 +643,10 @@ fn some_muscle(random: &mut Lcg) -> Muscle {
     }
     if !is_pleated && random.next(2) == 0 {
         let c01 = if random.next(2) == 0 { 0.0 } else { random.fraction() * 1e5 };
-        let wall = muscle.wall().filter(|_| random.next(2) == 0).unwrap_or(Length::m(bulge_muscles::Quantity::si(radius) * random.fraction()));
+        let wall = muscle
+            .wall()
+            .filter(|_| random.next(2) == 0)
+            .unwrap_or(Length::m(bulge_muscles::Quantity::si(radius) * random.fraction()));
         let bladder = Bladder::new(Pressure::pa(random.fraction() * 1e6), Pressure::pa(c01), wall).unwrap();
         muscle = muscle.with_bladder(bladder).unwrap();
     }

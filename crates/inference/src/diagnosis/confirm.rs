@@ -65,7 +65,7 @@ impl Confirmed {
                 roles[i].filter(|_| effects.iter().any(is_of)).map(|size| (i, size))
             })
             .peekable();
-        sizes.peek().is_some() && sizes.all(|(i, size)| self.theta[i] == size.off)
+        sizes.peek().is_some() && sizes.all(|(i, size)| (self.theta[i] - size.off).abs() <= 0.0)
     }
 
     /// The sum of squares of whitened residuals and priors.
@@ -222,7 +222,7 @@ impl Given<'_> {
         let log_evidence = log_evidence(&prepared, &theta, &minimum);
         // At a kink as at a stationary point: lower by what counts it doesn't get.
         let converged = minimum.certificate.converged || minimum.certificate.reason == Reason::Kink;
-        Ok(Confirmed { converged, prepared, theta, minimum, log_evidence })
+        Ok(Confirmed { prepared, theta, minimum, log_evidence, converged })
     }
 }
 

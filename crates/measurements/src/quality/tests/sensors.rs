@@ -214,7 +214,7 @@ fn spikes_of_what_a_model_leaves_are_found_where_paths_are_cut() {
     let forces = (0..rows).map(|i| force(pressure[i], length[i], 0.0) + 0.5 * noise.normal()).collect();
     let mut columns = Columns::new(pressure, Trace::Contraction(length), forces);
     columns.time_s = Some((0..rows).map(|i| 0.2 * i as f64).collect());
-    columns.sweep = Some(crate::Labels::from_iter((0..rows).map(|i| (i / 40).to_string())));
+    columns.sweep = Some((0..rows).map(|i| (i / 40).to_string()).collect());
     let data = Data::from_columns(columns).unwrap();
     assert!(data.sweeps().len() > 1);
     let start = data.sweeps()[1].rows.start;
