@@ -3,14 +3,12 @@
 use bulge_model::Record;
 
 use crate::comparison::levels::Levels;
-use crate::median::median;
+use crate::median::{MAD_TO_SD, median};
 
 /// Rows on each side of one that say where it should be,
 const AROUND: usize = 5;
 /// and how many of their standard deviations (by the median deviation) it may be off; a normal number is once in 16 000.
 const BOUND: f64 = 4.0;
-/// Median of |x| over the standard deviation of x, for a normal x, inverted.
-const MAD_TO_SD: f64 = 1.4826;
 /// Standard deviations stated for two rows of one mean differ by no more than this factor.
 const ALIKE: f64 = 1.5;
 /// Differences from which the noise is found: its median is then known to a hundredth.

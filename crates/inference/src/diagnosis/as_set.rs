@@ -6,6 +6,7 @@
 use bulge_model::Record;
 
 use crate::comparison::levels::Levels;
+use crate::median::{MAD_TO_SD, median};
 
 /// Widest range of a level that is kept, as a part of the largest pressure.
 const KEPT: f64 = 0.04;
@@ -67,11 +68,7 @@ fn by_neighbours(record: &Record, values: &[f64]) -> Vec<f64> {
 /// Standard deviation of what a smooth path doesn't explain, from second differences; reversals and steps don't count.
 fn scatter(values: &[f64]) -> f64 {
     let mut bends: Vec<f64> = values.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).collect();
-    if bends.is_empty() {
-        return 0.0;
-    }
-    bends.sort_by(f64::total_cmp);
-    bends[bends.len() / 2] / (0.674_489_75 * 6.0_f64.sqrt())
+    MAD_TO_SD * median(&mut bends) / 6.0_f64.sqrt()
 }
 
 /// Value at 0 of the parabola of least squares; none from fewer than five points.

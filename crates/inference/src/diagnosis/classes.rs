@@ -242,3 +242,66 @@ pub(crate) fn separation(scene: &Scene, effect: usize, signal: &[f64]) -> f64 {
         .fold(0.0, f64::max);
     (whole - most).max(0.0).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::law::{NoiseLaw, NoiseSource};
+    use crate::noise::whitening::Whitening;
+    use bulge_effects::{Catalogue, Moment};
+    use bulge_model::Record;
+    use bulge_muscles::preset;
+    use bulge_numerics::Random;
+
+    #[test]
+    fn an_effect_that_is_worth_nothing_is_dropped_and_lower_minima_are_taken() {
+        let catalogue = Catalogue::builtin();
+        let base = Model::new(&preset("ppam-2-r16").unwrap());
+        let at = |i: u32| {
+            let (up, place) = (i % 40 < 20, if i % 40 < 20 { i % 40 } else { 39 - i % 40 });
+            let direction = if up { 1.0 } else { -1.0 };
+            Moment {
+                direction,
+                ..Moment::at_rest(2e5 + 1e5 * f64::from(i / 80), 0.05 + 0.01 * f64::from(place))
+            }
+        };
+        let moments: Vec<Moment> = (0..160).map(at).collect();
+        let record = Record::from_moments(moments, vec![0.0; 160], vec![0..80, 80..160]).unwrap();
+        let exact = base.evaluate(&record, &[], &Wanted::default()).unwrap().force;
+        let mut random = Random::new(6, 0);
+        let measured = exact.iter().zip(record.moments());
+        let measured =
+            measured.map(|(f, m)| f - (10.0 - 2e-5 * m.pressure) * m.direction + random.normal()).collect();
+        let record = record.with_force(measured);
+        let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
+        let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
+        let given = Given::plain(&catalogue, &record, &whitening, &law);
+        let [friction, offset] =
+            ["coulomb-friction", "force-offset"].map(|n| Arc::clone(catalogue.find(n).unwrap()));
+        let both = vec![friction, offset];
+        let confirmed = given.confirm(&base, &both, None, &[]).unwrap();
+        let stage = given.stage(both, confirmed).unwrap();
+        let dropped = |place: usize| {
+            let (class, _) = given.class(&base, &stage, place, None).unwrap();
+            given.dropped(&base, &stage, place, &class).map(|stage| stage.added[0].card().name.to_owned())
+        };
+        assert_eq!([dropped(0), dropped(1)], [None, Some("coulomb-friction".to_owned())]);
+        // The same model at another minimum of 40 more: what a fit with something idle found is taken.
+        let one = vec![Arc::clone(&stage.added[0])];
+        let right = given.confirm(&base, &one, None, &[]).unwrap();
+        let mut worse = given.stage(one, right.clone()).unwrap();
+        let other = Arc::clone(catalogue.find("pressure-friction").unwrap());
+        let idle =
+            given.confirm(&base, &[Arc::clone(&worse.added[0]), Arc::clone(&other)], None, &[]).unwrap();
+        assert!(given.lower(&base, &worse).is_none());
+        worse.confirmed.minimum.cost += 40.0;
+        let place =
+            worse.scene.showings.effects.iter().position(|s| s.effect.card().name == other.card().name);
+        let hypothesis =
+            Hypothesis { effects: vec![place.unwrap()], log_evidence: 0.0, gain: 0.0, starts: Vec::new() };
+        assert!(idle.is_idle(&[other]), "friction that falls with the pressure leaves it off");
+        worse.tried = vec![Tried { hypothesis, confirmed: Some(idle), log_evidence: 0.0 }];
+        let found = given.lower(&base, &worse).unwrap();
+        assert!((found.confirmed.cost() - right.cost()).abs() < 1e-6);
+    }
+}

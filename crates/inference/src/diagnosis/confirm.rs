@@ -371,7 +371,6 @@ mod tests {
     use super::*;
     use crate::noise::law::{NoiseLaw, NoiseSource};
     use crate::noise::whitening::Whitening;
-    use crate::progress::NOBODY;
     use bulge_effects::{Catalogue, Moment};
     use bulge_model::{Record, Wanted};
     use bulge_muscles::preset;
@@ -397,17 +396,7 @@ mod tests {
         let record = record(&base);
         let law = NoiseLaw::white(NOISE, NoiseSource::Saturated, 1e6, String::new());
         let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
-        let given = Given {
-            catalogue: &catalogue,
-            record: &record,
-            whitening: &whitening,
-            law: &law,
-            row_n: NOISE,
-            seed: 1,
-            tolerance_n: None,
-            only: None,
-            progress: &NOBODY,
-        };
+        let given = Given::plain(&catalogue, &record, &whitening, &law);
         let offset = catalogue.find("force-offset").unwrap();
         let without = given.confirm(&base, &[], None, &[]).unwrap();
         let with = given.confirm(&base, &[Arc::clone(offset)], None, &[]).unwrap();
@@ -448,17 +437,7 @@ mod tests {
             let record = record.clone().with_force(force);
             let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
             let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
-            let given = Given {
-                catalogue: &catalogue,
-                record: &record,
-                whitening: &whitening,
-                law: &law,
-                row_n: 1.0,
-                seed: 1,
-                tolerance_n: None,
-                only: None,
-                progress: &NOBODY,
-            };
+            let given = Given::plain(&catalogue, &record, &whitening, &law);
             let found = given.confirm(&base, &friction, None, &[vec![2.0], vec![2.0]]).unwrap();
             assert_eq!(found.is_idle(&friction), idle, "{:?}", found.theta);
             let one = given.confirm(&base, &friction, None, &[vec![2.0]]).unwrap();

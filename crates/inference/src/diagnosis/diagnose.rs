@@ -13,7 +13,7 @@ use crate::comparison::specimens::of_specimens;
 use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
 use crate::diagnosis::document::Diagnosis;
-use crate::diagnosis::either::{is_chance, noise_of_base};
+use crate::diagnosis::either::quieter;
 use crate::diagnosis::ground::{Ground, Stop, effective_rows, ground, ground_again, row_sd};
 use crate::diagnosis::next::{Judged, Limits, NextLimits, next_experiment};
 use crate::diagnosis::scene::Given;
@@ -21,7 +21,7 @@ use crate::diagnosis::search::{Search, Stage};
 use crate::diagnosis::unanswered::{cannot_tell, unanswered};
 use crate::diagnosis::write::{Findings, document};
 use crate::error::InferenceError;
-use crate::noise::whitening::Whitening;
+use crate::noise::law::NoiseLaw;
 use crate::progress::Progress;
 
 /// Times that rows without a state are left out.
@@ -138,49 +138,31 @@ fn on_rows(
         let says = format!("{rows} rows are too few to know their noise");
         return Ok(cannot_tell(analysis.data, analysis.muscle, &says));
     };
-    let given = ground.given(law, options);
     progress.at(0.25, "the catalogue");
     let near = (&base.prepared.model, &base.theta[..]);
-    let search = given.search(&model, near);
-    let search = search.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))?;
+    let searched = |ground: &Ground, law: &NoiseLaw| {
+        let search = ground.given(law, options).search(&model, near);
+        search.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))
+    };
+    let mut search = searched(&ground, law)?;
     // The misfit of the base is in the first law as far as no smooth function follows it: about a better model the noise is better known.
-    if let Some(again) = ground_again(analysis, &search, &ground, used, options)
-        && let Some(law) = &again.law
-    {
-        let given = again.given(law, options);
-        let search = given.search(&model, near);
-        let search = search.map_err(|error| Stop::at_means(error, &again.averaged, analysis))?;
-        return weighed(analysis, (&given, &again), &model, search, options);
-    }
-    weighed(analysis, (&given, &ground), &model, search, options)
-}
-
-/// What a search has found, unless noise alone explains the readings no worse.
-fn weighed(
-    analysis: &Analysis<'_>,
-    (given, ground): (&Given<'_>, &Ground),
-    model: &Model,
-    mut search: Search,
-    options: &DiagnoseOptions,
-) -> Result<Diagnosis, Stop> {
-    if is_chance(&search) {
-        search.stages[0].adequate = true;
-        return concluded(analysis, (given, ground), model, search, options);
-    }
-    let at_means = |error| Stop::at_means(error, &ground.averaged, analysis);
-    if let Some(law) = noise_of_base(given, ground, &search).map_err(at_means)? {
-        let all = vec![true; given.record.len()];
-        let whitening = Whitening::new(&law, given.record, &all, ground.input_variances())?;
-        let noisy = Given { whitening: &whitening, law: &law, ..*given };
-        let base = search.stages[0].confirmed.numbers();
-        let confirmed = noisy.confirm(model, &[], Some(base), &[]).map_err(at_means)?;
-        let stage = noisy.stage(Vec::new(), confirmed).map_err(at_means)?;
-        if stage.adequate {
-            let search = Search { stages: vec![stage] };
-            return concluded(analysis, (&noisy, ground), model, search, options);
+    let again = ground_again(analysis, &search, &ground, used, options);
+    let (ground, law) = match again.as_ref().and_then(|again| Some((again, again.law.as_ref()?))) {
+        Some((again, law)) => {
+            search = searched(again, law)?;
+            (again, law)
         }
+        None => (&ground, law),
+    };
+    let given = ground.given(law, options);
+    let quieter = quieter(&given, ground, &model, &mut search);
+    let quieter = quieter.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))?;
+    match &quieter {
+        Some((law, whitening)) => {
+            concluded(analysis, (&Given { law, whitening, ..given }, ground), &model, search, options)
+        }
+        None => concluded(analysis, (&given, ground), &model, search, options),
     }
-    concluded(analysis, (given, ground), model, search, options)
 }
 
 /// Classes, confidence and the ladder of what a search has found.

@@ -11,7 +11,7 @@
 //! with z_j the coordinate of the misfit along the j-th smooth function, f_j the RMS of that function at one standard deviation, F the largest force. What repeats from cycle to cycle is
 //! no noise: K_0 is bounded by it, as K is.
 
-use bulge_model::ModelError;
+use bulge_model::{Model, ModelError};
 
 use crate::diagnosis::ground::Ground;
 use crate::diagnosis::pure_error::BetweenCycles;
@@ -22,14 +22,43 @@ use crate::dot::dot;
 use crate::median::median;
 use crate::noise::law::{NoiseLaw, NoiseSource};
 use crate::noise::restricted_likelihood::log_likelihood;
+use crate::noise::whitening::Whitening;
 
 /// Sizes of a smooth misfit as parts of the largest force.
 const SIZES: [f64; 6] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 /// Numbers of functions over which it fades.
 const FADES: [f64; 3] = [4.0, 12.0, 36.0];
 
+/// Where a search took for structure what is chance, or as likely noise of the base, it becomes the search that found nothing: by the law and the whitening that are given back, if
+/// the noise is another.
+pub(crate) fn quieter(
+    given: &Given<'_>,
+    ground: &Ground,
+    model: &Model,
+    search: &mut Search,
+) -> Result<Option<(NoiseLaw, Whitening)>, ModelError> {
+    if is_chance(search) {
+        search.stages[0].adequate = true;
+        return Ok(None);
+    }
+    let Some(law) = noise_of_base(given, ground, search)? else { return Ok(None) };
+    let all = vec![true; given.record.len()];
+    // Both were made of this record: there is nothing to go wrong.
+    let Ok(whitening) = Whitening::new(&law, given.record, &all, ground.input_variances()) else {
+        return Ok(None);
+    };
+    let noisy = Given { whitening: &whitening, law: &law, ..*given };
+    let confirmed = noisy.confirm(model, &[], Some(search.stages[0].confirmed.numbers()), &[])?;
+    let stage = noisy.stage(Vec::new(), confirmed)?;
+    if !stage.adequate {
+        return Ok(None);
+    }
+    search.stages = vec![stage];
+    Ok(Some((law, whitening)))
+}
+
 /// The law of the noise under which the base explains the readings, where that is as likely as a structure; none where it isn't.
-pub(crate) fn noise_of_base(
+fn noise_of_base(
     given: &Given<'_>,
     ground: &Ground,
     search: &Search,
@@ -57,7 +86,7 @@ pub(crate) fn noise_of_base(
 }
 
 /// Whether a smooth misfit that nobody thought of is less likely than none, though a test is surprised by it.
-pub(crate) fn is_chance(search: &Search) -> bool {
+fn is_chance(search: &Search) -> bool {
     let [only] = &search.stages[..] else { return false };
     !only.adequate && !only.scene.smooth.is_empty() && smooth_evidence(&only.scene) <= 0.0
 }

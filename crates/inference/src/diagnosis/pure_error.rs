@@ -286,9 +286,7 @@ mod tests {
         let record = Record::from_moments(moments, vec![0.0; 600], sweeps).unwrap();
         let mut random = Random::new(9, 1);
         let residual: Vec<f64> = (0..600).map(|_| random.normal()).collect();
-        if let Some(found) = BetweenCycles::of(&record, &residual) {
-            assert!((found.variance - 1.0).abs() < 0.2, "{}", found.variance);
-        }
+        assert_eq!(BetweenCycles::of(&record, &residual), None);
     }
 
     #[test]

@@ -70,6 +70,21 @@ pub(crate) struct Scene {
     pub(crate) force: Vec<f64>,
 }
 
+#[cfg(test)]
+impl<'a> Given<'a> {
+    /// White noise of a size that the law says, seed 1, the whole catalogue.
+    pub(crate) fn plain(
+        catalogue: &'a Catalogue,
+        record: &'a Record,
+        whitening: &'a Whitening,
+        law: &'a NoiseLaw,
+    ) -> Self {
+        let progress = &crate::progress::NOBODY;
+        let row_n = law.white_n;
+        Self { catalogue, record, whitening, law, row_n, seed: 1, tolerance_n: None, only: None, progress }
+    }
+}
+
 impl Given<'_> {
     /// The scene of a model with the numbers `theta`.
     pub(crate) fn scene(&self, prepared: &Prepared, theta: &[f64]) -> Result<Scene, ModelError> {

@@ -201,7 +201,7 @@ impl Given<'_> {
     }
 
     /// The stage at a lower minimum of its model, where a fit with further effects came to one and left them off.
-    fn lower(&self, base: &Model, stage: &Stage) -> Option<Stage> {
+    pub(crate) fn lower(&self, base: &Model, stage: &Stage) -> Option<Stage> {
         let effects = &stage.scene.showings.effects;
         let is_idle = |tried: &&Tried| {
             let new: Vec<_> =

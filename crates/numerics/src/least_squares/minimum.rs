@@ -16,9 +16,7 @@ pub enum Reason {
     Orthogonal,
     /// The step to the linearised minimum changes the residuals by less than rounding the parameters does: residuals near zero.
     StepBelowRounding,
-    /// The linearised minimum is lower by less than the rounding of the sum of squares, and no step lowers the latter.
-    DecreaseBelowRounding,
-    /// The linearised minimum is lower by less than [`super::Options::least_decrease`], and the step to it was rejected.
+    /// The linearised minimum is lower by less than the rounding of the sum of squares or [`super::Options::least_decrease`], and the step to it was rejected.
     DecreaseTooSmall,
     /// All residuals are zero.
     ExactFit,

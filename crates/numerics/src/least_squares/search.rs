@@ -239,10 +239,9 @@ impl<'a, P: Residuals> Search<'a, P> {
             match self.advance(&newton) {
                 Progress::Moved => self.iterations += 1,
                 Progress::Budget => return Reason::Budget,
-                Progress::Stuck if newton.predicted <= self.rounding() => {
-                    return Reason::DecreaseBelowRounding;
-                }
-                Progress::Kink if newton.predicted <= self.options.least_decrease => {
+                Progress::Stuck | Progress::Kink
+                    if newton.predicted <= self.rounding().max(self.options.least_decrease) =>
+                {
                     return Reason::DecreaseTooSmall;
                 }
                 Progress::Stuck => return Reason::Stagnated,
