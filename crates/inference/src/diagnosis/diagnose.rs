@@ -159,7 +159,7 @@ fn on_rows(
     let quieter = quieter.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))?;
     match &quieter {
         Some((law, whitening)) => {
-            concluded(analysis, (&Given { law, whitening, ..given }, ground), &model, search, options)
+            concluded(analysis, (&Given { whitening, law, ..given }, ground), &model, search, options)
         }
         None => concluded(analysis, (&given, ground), &model, search, options),
     }
