@@ -1,7 +1,7 @@
 //! A fast linearised answer for fits: force, meridional force, radius and volume with exact derivatives by the variables that are asked for.
 //!
 //! The equilibrium is found with two derivatives, those by the unknowns; only the last integration carries more, as few as the question needs.
-//! Fibres that don't stretch are taken by quadrature, ten times faster than by the ODE. A start, from the answer at a neighbouring contraction,
+//! Meridians are taken by quadrature where they can be, ten times faster than by the ODE. A start, from the answer at a neighbouring contraction,
 //! pressure or parameter, is moved along its own derivatives, so that most of the search is saved as well.
 
 use bulge_muscles::Parameter;

@@ -236,6 +236,15 @@ impl<D: Real> Net<D> {
         Local { sigma, force, hoop, hoop_r, tension_r, force_t, hoop_t }
     }
 
+    /// The constant of the motion conjugate to S: H = sigma N - w, the same all along a meridian. Its derivative by the tension at fixed r is sigma dN/dT.
+    pub(crate) fn hamiltonian(&self, r: D, tension: D) -> D {
+        let sigma = self.sigma(r, tension);
+        let strain = self.compliance * tension;
+        let wall = self.wall(sigma, r);
+        let of_fibres = tension * (sigma * sigma / (strain + 1.0) - strain * 0.5);
+        of_fibres + sigma * wall.w_1 - wall.w
+    }
+
     /// The tension of inextensible fibres from the meridional force N = T sigma + w_1.
     pub(crate) fn tension_of(&self, r: D, sigma: D, force: D) -> D {
         (force - self.wall(sigma, r).w_1) / sigma
@@ -361,15 +370,6 @@ impl<D: Real> Cloth<D> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-
-    impl<D: Real> Net<D> {
-        /// The constant of the motion conjugate to S: H = sigma N - w, the same all along a meridian.
-        fn hamiltonian(&self, r: D, tension: D) -> D {
-            let local = self.local(r, tension);
-            let stored = self.compliance * tension.squared() * 0.5 + self.wall(local.sigma, r).w;
-            local.sigma * local.force - stored
-        }
-    }
 
     /// An elastic net with bladder and cloth, every term alive.
     pub(crate) fn rich<D: Real>() -> Net<D> {

@@ -1,4 +1,4 @@
-//! The meridian of inextensible fibres by quadrature: two first integrals instead of the equilibrium ODE.
+//! The meridian by quadrature: two first integrals instead of the equilibrium ODE. Fibres that stretch: see [`elastic`].
 //!
 //! Fibres that don't stretch have sigma^2 = 1 - q^2 r^2, so that the stored energy w is a function W of the radius alone. Besides
 //! N cos(chi) = F + A(r) a second number is then the same all along the meridian, H = sigma N - W (the energy conjugate to S), and with
@@ -24,8 +24,11 @@
 
 use arrayvec::ArrayVec;
 use bulge_numerics::Real;
-
 use std::f64::consts::PI;
+
+mod elastic;
+
+use elastic::{Elastic, Tensions};
 
 use crate::meridian::{Middle, NoTrajectory, State, Trajectory};
 use crate::net::{Cloth, Net};
@@ -57,21 +60,81 @@ const LEAST_RATIO: f64 = 0.1;
 /// Largest 1 - cos(chi), as in the integration of the ODE.
 const MOST_TURNED: f64 = 1.999;
 
-/// Whether the meridians of a net are quadratures: fibres that don't stretch, and no lobes.
+/// Whether the meridians of a net are quadratures: without lobes, and without cloth around fibres that stretch.
 pub(crate) fn suits<D: Real>(net: &Net<D>) -> bool {
-    net.compliance.value() == 0.0 && net.lobes.is_none()
+    net.lobes.is_none() && (net.cloth.is_none() || net.compliance.value() == 0.0)
 }
 
-/// All that the integrands need. The index m means mid-length.
-struct Law<D> {
+/// What the integrands need of both ends. The index m means mid-length.
+struct Ends<D> {
     /// +1: bulge, -1: waist.
     side: f64,
     /// r_mid - r at the fitting, and its size.
     bulge: D,
     size: D,
     r_m: D,
-    sigma_m: D,
     q2: D,
+    depth: D,
+    cos_rest: D,
+    sin2_rest: D,
+}
+
+impl<D: Real> Ends<D> {
+    fn of(net: &Net<D>, middle: &Middle<D>) -> Self {
+        let side = middle.bulge.value().signum();
+        Self {
+            side,
+            bulge: middle.bulge,
+            size: middle.bulge * side,
+            r_m: net.end_radius + middle.bulge,
+            q2: net.turn * net.turn,
+            depth: net.depth,
+            cos_rest: net.cos_rest,
+            sin2_rest: net.sin2_rest,
+        }
+    }
+}
+
+/// A meridian as a function of its radius.
+trait Meridian<D: Real> {
+    fn ends(&self) -> &Ends<D>;
+
+    /// g_2 over g_1 at mid-length, times z at the fitting there.
+    fn ratio(&self) -> f64;
+
+    /// rho over its value at the fitting where the cloth comes taut, if that is on the way.
+    fn kink(&self) -> Option<f64>;
+
+    fn at(&self, point: &Point) -> Local<D>;
+
+    /// Tension at the fitting, where the net is `net`.
+    fn end_tension(&self, net: &Net<D>, end: &Local<D>) -> D;
+
+    /// dS, dd and dV over `d(rho)/(2 sqrt(rho size))`; none where the fibres can't be.
+    #[inline]
+    fn rates(&self, point: &Point) -> Option<[D; 3]> {
+        let at = self.at(point);
+        let ends = self.ends();
+        let turned = at.turned.value();
+        // A comparison with NaN is false.
+        let exists = at.g.value() > 0.0 && at.whole.value() > 0.0 && turned < MOST_TURNED;
+        if !exists || turned.is_nan() {
+            return None;
+        }
+        let square = ends.size * at.whole / (at.g * (-at.turned + 2.0) * (at.r + ends.r_m));
+        let fibre = square.sqrt() * 2.0 / at.sigma;
+        let longer = ends.q2 * at.y - ends.sin2_rest - at.strain * (at.strain + 2.0);
+        let shortening = longer / (ends.cos_rest + at.sigma) + at.sigma * at.turned;
+        let section = (at.r + ends.depth).squared() * at.sigma * (-at.turned + 1.0) * PI;
+        Some([fibre, fibre * shortening, fibre * section])
+    }
+}
+
+/// Fibres that don't stretch.
+struct Inextensible<D> {
+    ends: Ends<D>,
+    end_radius: D,
+    sigma_m: D,
     /// F + A - u at mid-length, with u the cloth's energy.
     pull: D,
     /// g_1.
@@ -83,9 +146,6 @@ struct Law<D> {
     /// 1/(2 r_m), 1/(2 sigma_m).
     halves: [D; 2],
     cloth: Option<Cloth<D>>,
-    depth: D,
-    cos_rest: D,
-    sin2_rest: D,
 }
 
 /// The meridian at one radius.
@@ -93,10 +153,10 @@ struct Local<D> {
     y: D,
     r: D,
     sigma: D,
-    /// g_1 + g_2 z = G/z.
+    /// Of the fibres.
+    strain: D,
+    /// sigma (N - F - A)/z.
     g: D,
-    /// g_2.
-    curve: D,
     /// sigma N.
     whole: D,
     /// 1 - cos(chi).
@@ -111,14 +171,13 @@ struct Point {
     slack: bool,
 }
 
-impl<D: Real> Law<D> {
+impl<D: Real> Inextensible<D> {
     fn of(net: &Net<D>, middle: &Middle<D>) -> Self {
         let one = D::from(1.0);
-        let r_m = net.end_radius + middle.bulge;
+        let ends = Ends::of(net, middle);
+        let Ends { r_m, q2, .. } = ends;
         let net = net.acting_at(r_m.value());
-        let side = middle.bulge.value().signum();
         let y_m = r_m * r_m;
-        let q2 = net.turn * net.turn;
         let v_m = -(q2 * y_m) + 1.0;
         let sigma_m = v_m.sqrt();
         let force = net.local(r_m, middle.tension).force;
@@ -144,40 +203,36 @@ impl<D: Real> Law<D> {
             ];
         }
         Self {
-            side,
-            bulge: middle.bulge,
-            size: middle.bulge * side,
-            r_m,
             sigma_m,
-            q2,
             pull,
-            slope: sigma_m * middle.curvature * force * halves[0] * side,
+            slope: sigma_m * middle.curvature * force * halves[0] * ends.side,
             wall,
             area,
             halves,
             cloth: net.cloth,
-            depth: net.depth,
-            cos_rest: net.cos_rest,
-            sin2_rest: net.sin2_rest,
+            end_radius: net.end_radius,
+            ends,
         }
     }
 
+    /// G/z and the rest, with g_2.
     #[inline]
-    fn at(&self, part: f64, slack: bool) -> Local<D> {
-        let r = self.r_m - self.bulge * part;
-        let sum = r + self.r_m;
-        let z = self.size * sum * part;
+    fn with_curve(&self, part: f64, slack: bool) -> (Local<D>, D) {
+        let Ends { r_m, q2, .. } = self.ends;
+        let r = r_m - self.ends.bulge * part;
+        let sum = r + r_m;
+        let z = self.ends.size * sum * part;
         let y = r * r;
-        let v = -(self.q2 * y) + 1.0;
+        let v = -(q2 * y) + 1.0;
         let sigma = v.sqrt();
         // First divided differences of r, sigma and A - u, and the second ones.
         let r_1 = D::from(1.0) / sum;
-        let sigma_1 = -(self.q2 / (sigma + self.sigma_m));
+        let sigma_1 = -(q2 / (sigma + self.sigma_m));
         let area_1 = self.area[0] + self.area[1] * r_1;
         let area_2 = -(self.area[1] * r_1 * r_1 * self.halves[0]);
         let sigma_2 = -(sigma_1 * sigma_1 * self.halves[1]);
-        let mut pull = self.pull - area_1 * z * self.side;
-        let product = self.sigma_m * area_2 - self.q2 * self.halves[1] * area_1 + sigma_2 * pull;
+        let mut pull = self.pull - area_1 * z * self.ends.side;
+        let product = self.sigma_m * area_2 - q2 * self.halves[1] * area_1 + sigma_2 * pull;
         let curve = self.wall[0] + self.wall[1] / y + self.wall[2] / v - product;
         let mut g = self.slope + curve * z;
         if let Some(cloth) = &self.cloth {
@@ -189,25 +244,32 @@ impl<D: Real> Law<D> {
         }
         let rise = g * z;
         let whole = rise + sigma * pull;
-        Local { y, r, sigma, g, curve, whole, turned: rise / whole }
+        (Local { y, r, sigma, strain: D::from(0.0), g, whole, turned: rise / whole }, curve)
+    }
+}
+
+impl<D: Real> Meridian<D> for Inextensible<D> {
+    fn ends(&self) -> &Ends<D> {
+        &self.ends
     }
 
-    /// dS, dd and dV over `d(rho)/(2 sqrt(rho size))`; none where the fibres can't be.
+    fn ratio(&self) -> f64 {
+        let (_, curve) = self.with_curve(0.0, false);
+        2.0 * (self.ends.r_m * self.ends.size * curve / self.slope).value()
+    }
+
+    fn kink(&self) -> Option<f64> {
+        let cloth = self.cloth.filter(|cloth| cloth.radius.value() > self.end_radius.value())?;
+        Some(((self.ends.r_m - cloth.radius) / self.ends.size).value())
+    }
+
     #[inline]
-    fn rates(&self, point: &Point) -> Option<[D; 3]> {
-        let at = self.at(point.part, point.slack);
-        let turned = at.turned.value();
-        // A comparison with NaN is false.
-        let exists = at.g.value() > 0.0 && at.whole.value() > 0.0 && turned < MOST_TURNED;
-        if !exists || turned.is_nan() {
-            return None;
-        }
-        let square = self.size * at.whole / (at.g * (-at.turned + 2.0) * (at.r + self.r_m));
-        let fibre = square.sqrt() * 2.0 / at.sigma;
-        let angle = self.q2 * at.y - self.sin2_rest;
-        let shortening = angle / (self.cos_rest + at.sigma) + at.sigma * at.turned;
-        let section = (at.r + self.depth).squared() * at.sigma * (-at.turned + 1.0) * PI;
-        Some([fibre, fibre * shortening, fibre * section])
+    fn at(&self, point: &Point) -> Local<D> {
+        self.with_curve(point.part, point.slack).0
+    }
+
+    fn end_tension(&self, net: &Net<D>, end: &Local<D>) -> D {
+        net.tension_of(end.r, end.sigma, end.whole / end.sigma)
     }
 }
 
@@ -219,18 +281,14 @@ struct Plan {
 
 impl Plan {
     /// Not as a value: moving it would cost as much as making it.
-    fn fill(&mut self, law: &Law<f64>, end_radius: f64) -> Result<(), NoTrajectory> {
-        let start = law.at(0.0, false);
-        let ratio = (2.0 * law.r_m * law.size * start.curve / law.slope).max(LEAST_RATIO);
+    fn fill(&mut self, meridian: &impl Meridian<f64>) -> Result<(), NoTrajectory> {
+        let ratio = meridian.ratio().max(LEAST_RATIO);
         let end = ratio.sqrt().asinh();
         if !(end.is_finite() && end > 0.0) {
             return Err(NoTrajectory { evaluations: 1 });
         }
         // Between two pieces the cloth comes taut.
-        let kink = law.cloth.filter(|cloth| cloth.radius > end_radius).map(|cloth| {
-            let part = (law.r_m - cloth.radius) / law.size;
-            (ratio * part).sqrt().asinh().min(end)
-        });
+        let kink = meridian.kink().map(|part| (ratio * part).sqrt().asinh().min(end));
         // On the stack: a solve allocates nothing.
         let mut pieces: ArrayVec<(f64, f64, bool), MOST_PIECES> = ArrayVec::new();
         for (low, high, slack) in [(0.0, kink.unwrap_or(end), false), (kink.unwrap_or(end), end, true)] {
@@ -245,7 +303,7 @@ impl Plan {
         while let Some((low, high, slack)) = pieces.pop() {
             let points = points(low, high, slack, ratio);
             self.evaluations += 21;
-            let agree = agree(law, &points).ok_or(NoTrajectory { evaluations: self.evaluations })?;
+            let agree = agree(meridian, &points).ok_or(NoTrajectory { evaluations: self.evaluations })?;
             if agree {
                 self.points.extend(points);
             } else if count >= MOST_PIECES {
@@ -278,11 +336,11 @@ fn points(low: f64, high: f64, slack: bool, ratio: f64) -> [Point; 21] {
 }
 
 /// Whether both rules agree on fibre length and shortening; none where the fibres can't be.
-fn agree(law: &Law<f64>, points: &[Point; 21]) -> Option<bool> {
+fn agree(meridian: &impl Meridian<f64>, points: &[Point; 21]) -> Option<bool> {
     let (mut difference, mut size) = ([0.0; 2], [0.0; 2]);
     for (i, point) in points.iter().enumerate() {
         let (_, kronrod, gauss) = PAIR[i.div_ceil(2)];
-        let rates = law.rates(point)?;
+        let rates = meridian.rates(point)?;
         for k in 0..2 {
             let term = rates[k] * point.weight;
             difference[k] += term * (1.0 - gauss / kronrod);
@@ -290,7 +348,8 @@ fn agree(law: &Law<f64>, points: &[Point; 21]) -> Option<bool> {
         }
     }
     // An angle shortens or lengthens by itself: near the straight meridian the sum is a difference with rounding.
-    if law.q2 > 0.0 {
+    let ends = meridian.ends();
+    if ends.q2 > 0.0 {
         size[1] += ANGLE * size[0];
     }
     Some((0..2).all(|k| difference[k].abs() <= DIFFERENCE * size[k]))
@@ -298,7 +357,6 @@ fn agree(law: &Law<f64>, points: &[Point; 21]) -> Option<bool> {
 
 /// The meridian from the middle to the fitting.
 pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Trajectory<D>, NoTrajectory> {
-    let law = Law::of(net, &middle);
     let values = Middle {
         bulge: middle.bulge.value(),
         curvature: middle.curvature.value(),
@@ -307,12 +365,28 @@ pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Tra
     };
     let plain = net.constant();
     let mut plan = Plan { points: ArrayVec::new(), evaluations: 0 };
-    plan.fill(&Law::of(&plain, &values), plain.end_radius)?;
+    if plain.compliance == 0.0 {
+        plan.fill(&Inextensible::of(&plain, &values))?;
+        return along(net, &middle, &Inextensible::of(net, &middle), &plan);
+    }
+    let tensions = Tensions::of(&plain, &values, &mut plan.evaluations);
+    let tensions = tensions.ok_or(NoTrajectory { evaluations: plan.evaluations })?;
+    plan.fill(&Elastic::of(&plain, &values, &tensions))?;
+    along(net, &middle, &Elastic::of(net, &middle, &tensions), &plan)
+}
+
+/// The integrals along a meridian, at the points that its values ask for.
+fn along<D: Real>(
+    net: &Net<D>,
+    middle: &Middle<D>,
+    meridian: &impl Meridian<D>,
+    plan: &Plan,
+) -> Result<Trajectory<D>, NoTrajectory> {
     let evaluations = plan.evaluations;
     let none = NoTrajectory { evaluations };
     let mut sums = [D::from(0.0); 3];
     for point in &plan.points {
-        let rates = law.rates(point).ok_or(none)?;
+        let rates = meridian.rates(point).ok_or(none)?;
         for (sum, rate) in sums.iter_mut().zip(rates) {
             *sum = rate.scale_add(point.weight, *sum);
         }
@@ -321,7 +395,7 @@ pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Tra
     let at_middle = net.acting_at(mid_radius.value());
     let mid_force = at_middle.local(mid_radius, middle.tension).force;
     let force = mid_force - at_middle.area(mid_radius);
-    let end = end(net, &law, middle.bulge, sums);
+    let end = end(net, meridian, sums);
     let departure = (end.force * end.state[crate::meridian::COS] - net.area(net.end_radius) - force).value();
     let sizes = [mid_force, end.force, net.area(net.end_radius)].map(|size| size.value().abs());
     let first_integral = departure.abs() / sizes.into_iter().fold(0.0, f64::max);
@@ -345,16 +419,17 @@ struct End<D> {
     force: D,
 }
 
-fn end<D: Real>(net: &Net<D>, law: &Law<D>, bulge: D, sums: [D; 3]) -> End<D> {
-    let radius = net.end_radius;
+fn end<D: Real>(net: &Net<D>, meridian: &impl Meridian<D>, sums: [D; 3]) -> End<D> {
+    let (radius, ends) = (net.end_radius, meridian.ends());
+    let at = meridian.at(&Point { part: 1.0, weight: 0.0, slack: meridian.kink().is_some() });
     let net = net.acting_at(radius.value());
-    let at = law.at(1.0, law.cloth.is_some() && net.cloth.is_none());
     let cos = -at.turned + 1.0;
-    let sin = (at.turned * (-at.turned + 2.0)).sqrt() * law.side;
-    let force = at.whole / at.sigma;
-    let tension = net.tension_of(radius, at.sigma, force);
-    let curvature = (net.area_r(radius) - net.local(radius, tension).hoop * cos) / force;
-    End { state: [bulge, sums[1], sin, cos, curvature, tension, sums[2]], force }
+    let sin = (at.turned * (-at.turned + 2.0)).sqrt() * ends.side;
+    let tension = meridian.end_tension(&net, &at);
+    let local = net.local(radius, tension);
+    let force = local.force;
+    let curvature = (net.area_r(radius) - local.hoop * cos) / force;
+    End { state: [ends.bulge, sums[1], sin, cos, curvature, tension, sums[2]], force }
 }
 
 #[cfg(test)]
@@ -380,6 +455,10 @@ mod tests {
             ("straight", Net { half_fibre: 3.0, area_factor: 0.98, depth: 0.1, ..Net::plain() }),
             ("cloth", Net { half_fibre: 3.0, cloth, ..Net::plain() }),
             ("all", Net { bladder, cloth, depth: 0.1, half_fibre: 5.0, ..braid() }),
+            ("elastic", Net { compliance: 4e-3, ..braid() }),
+            ("elastic bladder", Net { compliance: 1e-3, bladder, depth: -0.1, ..braid() }),
+            ("hardly elastic", Net { compliance: 1e-7, bladder, end_radius: 0.8, ..braid() }),
+            ("elastic, straight", Net { compliance: 1e-2, half_fibre: 3.0, depth: 0.1, ..Net::plain() }),
         ]
     }
 
@@ -403,11 +482,16 @@ mod tests {
         for (name, net) in nets() {
             for (side, ln_bulge) in [(1.0, -0.7), (1.0, -4.0), (-1.0, -2.0), (-1.0, -5.0)] {
                 for second in [-30.0, -8.0, -1.5, -0.5] {
-                    let lifted = net.map(Dual::<5>::from);
+                    let lifted = net.map(Dual::<6>::from);
                     let seeded = Net {
                         turn: lifted.turn + Dual::variable(0.0, 2),
                         end_radius: lifted.end_radius + Dual::variable(0.0, 3),
                         bladder: lifted.bladder.map(|b| Bladder { c10: b.c10 + Dual::variable(0.0, 4), ..b }),
+                        compliance: if net.compliance > 0.0 {
+                            Dual::variable(net.compliance, 5)
+                        } else {
+                            lifted.compliance
+                        },
                         ..lifted
                     };
                     let at = Unknowns { side, logs: [ln_bulge, second] };

@@ -13,7 +13,7 @@
 //! asinh(push/(2 B)) with a bladder, which pushes outwards itself where it is narrower than at rest.
 //!
 //! Newton's method takes exact derivatives from the integration of dual numbers, loosely at first; or from the quadrature of the same meridian
-//! (see `quadrature`), which costs a tenth, where the fibres don't stretch.
+//! (see `quadrature`), which costs a tenth, where there is one.
 
 use bulge_numerics::{Dual, Real};
 
