@@ -1,4 +1,4 @@
-//! The meridian by quadrature: two first integrals instead of the equilibrium ODE. Fibres that stretch: see [`elastic`].
+//! The meridian by quadrature: two first integrals instead of the equilibrium ODE. Fibres that stretch: see `elastic`.
 //!
 //! Fibres that don't stretch have sigma^2 = 1 - q^2 r^2, so that the stored energy w is a function W of the radius alone. Besides
 //! N cos(chi) = F + A(r) a second number is then the same all along the meridian, H = sigma N - W (the energy conjugate to S), and with
