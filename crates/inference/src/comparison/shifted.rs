@@ -3,8 +3,8 @@
 //! ```text
 //! r = S(driven, held, direction) + d 1_s,    gain_s = (a_s . z)^2/(a_s . a_s),    d = (a_s . z)/(a_s . a_s)
 //! ```
-//! r are residuals, S is a surface that all sweeps share: polynomials in what is driven (the contraction, or the pressure at held length), affine in what is held, which is
-//! how the force of nearly every mechanism goes with the pressure. z is what S leaves of r, a_s what it leaves of the sweep's indicator. A sweep is shifted if its offset d is
+//! r are residuals, S is a surface that all sweeps share: polynomials in what is driven (the contraction, or the pressure at held length) and in what is held: affine in
+//! the pressure, as the force of nearly every mechanism goes with it, of the third degree in the length, with which rubber, angle and friction go as they like. z is what S leaves of r, a_s what it leaves of the sweep's indicator. A sweep is shifted if its offset d is
 //! large against the noise, the same all along the sweep, much larger than that of any other once it is taken off, and if no other sweep's offset would do as well.
 
 use bulge_effects::Moment;
@@ -32,6 +32,8 @@ const DRIVEN: f64 = 0.3;
 const HELD: [f64; 2] = [0.01, 0.02];
 /// Degrees over what is driven, of both branches together and of their difference; lower ones where there are few rows.
 const DEGREES: [[usize; 2]; 2] = [[7, 4], [4, 2]];
+/// Degree over what is held, a pressure or a length, at most one less than there are levels.
+const HELD_DEGREE: [usize; 2] = [1, 3];
 /// Rows for each column of the surface.
 const ROWS_PER_COLUMN: usize = 3;
 /// Part of the largest value between what is held in different sweeps.
@@ -189,8 +191,8 @@ fn surface(record: &Record, rows: &[usize], blocks: &[(usize, Range<usize>)]) ->
     let largest = means.last().map_or(0.0, |mean| mean.abs());
     let levels = 1 + means.windows(2).filter(|pair| pair[1] - pair[0] > GAP * largest).count();
     let specimens = record.specimens().len();
-    let affine = (levels - 1).min(1);
-    let columns = |degrees: [usize; 2]| (degrees[0] + degrees[1] + 2) * (affine + 1) + specimens - 1;
+    let held_degree = (levels - 1).min(HELD_DEGREE[driven]);
+    let columns = |degrees: [usize; 2]| (degrees[0] + degrees[1] + 2) * (held_degree + 1) + specimens - 1;
     let degrees = DEGREES.into_iter().find(|degrees| ROWS_PER_COLUMN * columns(*degrees) <= rows.len())?;
     let mut design = Vec::with_capacity(rows.len() * columns(degrees));
     for row in rows {
@@ -199,7 +201,7 @@ fn surface(record: &Record, rows: &[usize], blocks: &[(usize, Range<usize>)]) ->
         let (x, y) = (at(driven), at(held));
         for (sign, degree) in [1.0, moment.branch()].into_iter().zip(degrees) {
             for i in 0..=degree {
-                design.extend((0..=affine).map(|j| sign * chebyshev(i, x) * chebyshev(j, y)));
+                design.extend((0..=held_degree).map(|j| sign * chebyshev(i, x) * chebyshev(j, y)));
             }
         }
         design.extend((1..specimens).map(|one| f64::from(u8::from(moment.specimen as usize == one))));
@@ -234,28 +236,57 @@ mod tests {
 
     /// Loops of 60 rows at pressures \[bar\], one sweep each.
     fn loops(pressures: &[f64]) -> Record {
-        let moments: Vec<Moment> = pressures
-            .iter()
-            .enumerate()
-            .flat_map(|(sweep, bar)| {
-                (0..60).map(move |i| {
-                    let x = f64::from(i) / 60.0;
-                    Moment {
-                        direction: if x < 0.5 { 1.0 } else { -1.0 },
-                        begins: i == 0,
-                        clock: 100.0 * sweep as f64 + f64::from(i),
-                        ..Moment::at_rest(1e5 * bar, 0.01 + 0.19 * (1.0 - (2.0 * x - 1.0).abs()))
-                    }
-                })
-            })
+        there_and_back(pressures, |bar, part, way| Moment {
+            direction: way,
+            ..Moment::at_rest(1e5 * bar, 0.01 + 0.19 * part)
+        })
+    }
+
+    /// Filled and vented in 60 rows at contractions, one sweep each.
+    fn fillings(contractions: &[f64]) -> Record {
+        there_and_back(contractions, |contraction, part, way| Moment {
+            pressure_direction: way,
+            ..Moment::at_rest(1e5 * (0.5 + 4.5 * part), contraction)
+        })
+    }
+
+    fn there_and_back(held: &[f64], moment: impl Fn(f64, f64, f64) -> Moment) -> Record {
+        let row = |sweep: usize, i: usize| {
+            let x = i as f64 / 60.0;
+            let way = if x < 0.5 { 1.0 } else { -1.0 };
+            let moment = moment(held[sweep], 1.0 - (2.0 * x - 1.0).abs(), way);
+            Moment { begins: i == 0, clock: (100 * sweep + i) as f64, ..moment }
+        };
+        let moments: Vec<Moment> = (0..held.len())
+            .flat_map(|sweep| (0..60).map(move |i| (sweep, i)))
+            .map(|(s, i)| row(s, i))
             .collect();
         let n = moments.len();
-        Record::from_moments(
-            moments,
-            vec![0.0; n],
-            (0..pressures.len()).map(|s| 60 * s..60 * s + 60).collect(),
-        )
-        .unwrap()
+        Record::from_moments(moments, vec![0.0; n], (0..held.len()).map(|s| 60 * s..60 * s + 60).collect())
+            .unwrap()
+    }
+
+    /// Rubber that the model lacks bends with the length: of four lengths none is off, and of two at one length nobody knows which; of seven lengths, or of
+    /// three at one length, one is.
+    #[test]
+    fn at_held_lengths_what_goes_with_the_length_is_no_shift() {
+        for (lengths, finds) in [
+            (&[0.02, 0.06, 0.10, 0.14][..], false),
+            (&[0.0, 0.02, 0.05, 0.08, 0.11, 0.13, 0.15], true),
+            (&[0.02, 0.14, 0.02, 0.14, 0.02, 0.14], true),
+            (&[0.02, 0.08, 0.14, 0.02, 0.08, 0.14], false),
+        ] {
+            let record = fillings(lengths);
+            let used = vec![true; record.len()];
+            let mut random = Random::new(4, 0);
+            let rubber = |m: &Moment| -60.0 * (6.0 * m.contraction).exp() * (1.0 + 0.1 * m.pressure / 1e5);
+            let mut residuals: Vec<f64> =
+                record.moments().iter().map(|m| rubber(m) + random.normal()).collect();
+            assert_eq!(shifted(&record, &used, &residuals, 1.0), None, "{lengths:?}");
+            residuals[120..180].iter_mut().for_each(|value| *value += 8.0);
+            let found = shifted(&record, &used, &residuals, 1.0);
+            assert_eq!(found.map(|found| found.sweep), finds.then_some(2), "{lengths:?}");
+        }
     }
 
     /// Rubber, friction that grows with the pressure, a little that does not go straight with it, and noise of 1 N.
