@@ -24,7 +24,7 @@ mod protocol;
 
 pub use bulge_numerics::Random;
 pub use comparison::analysis::Options;
-pub use comparison::compare::{Fitting, compare, fit_effects};
+pub use comparison::compare::{Comparing, Fitting, compare, fit_effects};
 pub use comparison::document::{
     Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, HeldLoad, HeldLoadPoint, LeftOut, LoopGap,
     Mismatch, NoiseFloor, Part, ResidualMap, Rival, Rung, Stack,

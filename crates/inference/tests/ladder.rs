@@ -4,7 +4,8 @@
 
 use bulge_effects::{Catalogue, Moment};
 use bulge_inference::{
-    Block, Comparison, DiagnoseOptions, Noise, Options, Protocol, ReadingNoise, compare, diagnose, simulate,
+    Block, Comparing, Comparison, DiagnoseOptions, Noise, Options, Protocol, ReadingNoise, compare, diagnose,
+    simulate,
 };
 use bulge_measurements::Data;
 use bulge_model::{Model, Prediction, Record, Wanted};
@@ -37,6 +38,29 @@ fn climbed(data: &Data, muscle: &Muscle, with: &[&str]) -> Comparison {
     let catalogue = Catalogue::builtin();
     let effects = with.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect();
     compare(data, muscle, &Options::new(catalogue, effects)).unwrap()
+}
+
+/// Whatever was asked before, the answer is that of a comparison with these effects.
+#[test]
+fn asked_again_with_other_effects_the_answer_is_the_same() {
+    let data = loops(|row, direction| 5.0 - 7.0 * direction + alternating(row));
+    let muscle = muscle("[instruments]\nforce = { noise = \"2 N\", zero = \"1 N\" }");
+    let catalogue = Catalogue::builtin();
+    let options = Options::new(catalogue.clone(), Vec::new());
+    let comparing = Comparing::new(&data, &muscle, &options).unwrap();
+    let json = |comparison: &Comparison| serde_json::to_string(comparison).unwrap();
+    for with in [
+        &["coulomb-friction"][..],
+        &[],
+        &["end-taper", "coulomb-friction"],
+        &["coulomb-friction", "end-taper"],
+        &["coulomb-friction"],
+    ] {
+        let effects: Vec<_> = with.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect();
+        let found = comparing.with(&effects).unwrap();
+        assert_eq!(found.ladder.len(), 1 + with.len());
+        assert_eq!(json(&found), json(&climbed(&data, &muscle, with)), "{with:?}");
+    }
 }
 
 /// 2 N or -2 N, neighbours unlike, the same number of both in either direction.

@@ -6,6 +6,7 @@ use bulge_measurements::Data;
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
 use bulge_muscles::{Muscle, Quantity};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::comparison::buckled::buckled;
@@ -17,6 +18,7 @@ use crate::comparison::loops::branches;
 use crate::comparison::mismatch::questions;
 use crate::comparison::requirements::{check_needs, check_size};
 use crate::comparison::rows::{Used, full_scale, lines, used};
+use crate::comparison::specimens::of_specimens;
 use crate::comparison::tails::sd_with_tails;
 use crate::comparison::{loops, residuals};
 use crate::error::InferenceError;
@@ -69,9 +71,9 @@ pub(crate) struct Climbed {
 
 /// A comparison under way.
 pub(crate) struct Analysis<'a> {
-    pub(crate) data: &'a Data,
+    pub(crate) data: Cow<'a, Data>,
     pub(crate) muscle: &'a Muscle,
-    pub(crate) options: &'a Options,
+    pub(crate) options: Cow<'a, Options>,
     /// Shared by the comparisons of one diagnosis: of many rows it is the largest thing there is.
     pub(crate) record: Arc<Record>,
     pub(crate) used: Used,
@@ -100,8 +102,10 @@ impl<'a> Analysis<'a> {
         muscle: &'a Muscle,
         options: &'a Options,
     ) -> Result<Self, InferenceError> {
-        let record = Arc::new(Record::new(data, muscle.length().si()));
-        let used = used(data);
+        let data = of_specimens(data, muscle)?;
+        let options = Cow::Borrowed(options);
+        let record = Arc::new(Record::new(&data, muscle.length().si()));
+        let used = used(&data);
         if !used.mask.contains(&true) {
             let left_out =
                 if data.is_empty() { "the file has none" } else { "all are slack or without pressure" };
@@ -110,7 +114,7 @@ impl<'a> Analysis<'a> {
         for effect in &options.effects {
             check_needs(effect, &record)?;
         }
-        check_size(data, muscle, &record, &used.mask)?;
+        check_size(&data, muscle, &record, &used.mask)?;
         let full_scale = full_scale(data.force());
         let levels = Levels::of(&record, &used.mask);
         let folds = Folds::of(&record, &levels, &used.mask);
@@ -251,7 +255,7 @@ impl<'a> Analysis<'a> {
             || "no state within the fit".to_owned(),
             |error| model.explained(&self.record, &climbed.theta, error).to_string(),
         );
-        Some(LeftOut { why, lines: lines(self.data, &rows), rows: rows.len() })
+        Some(LeftOut { why, lines: lines(&self.data, &rows), rows: rows.len() })
     }
 
     /// A model error with the lines of the file.
@@ -260,7 +264,7 @@ impl<'a> Analysis<'a> {
             ModelError::NoEquilibrium { rows, .. } | ModelError::NotFinite { rows, .. }
                 if !rows.is_empty() =>
             {
-                format!("line {}: ", lines(self.data, rows))
+                format!("line {}: ", lines(&self.data, rows))
             }
             _ => String::new(),
         };
@@ -276,21 +280,38 @@ impl<'a> Analysis<'a> {
         for effect in &options.effects {
             check_needs(effect, &self.record)?;
         }
-        Ok(Analysis {
-            data: self.data,
+        let noise = unknown_noise(self.muscle, self.full_scale);
+        Ok(Analysis { noise, near: Some(near), ..self.sharing(Cow::Borrowed(options)) })
+    }
+
+    /// The same with other effects: noise, weights and rows stay.
+    pub(crate) fn with_effects<'b>(
+        &'b self,
+        effects: &[Arc<dyn Effect>],
+    ) -> Result<Analysis<'b>, InferenceError> {
+        for effect in effects {
+            check_needs(effect, &self.record)?;
+        }
+        Ok(self.sharing(Cow::Owned(Options { effects: effects.to_vec(), ..Options::clone(&self.options) })))
+    }
+
+    /// The same with other options: data, record and solved equilibria are shared.
+    fn sharing<'b>(&'b self, options: Cow<'b, Options>) -> Analysis<'b> {
+        Analysis {
+            data: Cow::Borrowed(&self.data),
             muscle: self.muscle,
             options,
             record: Arc::clone(&self.record),
             used: self.used.clone(),
             levels: self.levels.clone(),
             folds: self.folds.clone(),
-            noise: unknown_noise(self.muscle, self.full_scale),
+            noise: self.noise,
             full_scale: self.full_scale,
             findings: self.findings.clone(),
             slack: self.slack.clone(),
             root: self.root.clone(),
-            near: Some(near),
-        })
+            near: self.near,
+        }
     }
 
     /// Asks about units, signs and scales that can't be true, and leaves out rows in which the muscle as stated is slack; once.
@@ -299,7 +320,7 @@ impl<'a> Analysis<'a> {
             return Ok(());
         }
         let prepared = self.model(0)?;
-        self.findings = questions(self.data, self.muscle, &prepared.model, &self.record, &self.used.mask);
+        self.findings = questions(&self.data, self.muscle, &prepared.model, &self.record, &self.used.mask);
         let is_law = self.options.law.is_some();
         let slack = if is_law { Vec::new() } else { buckled(&prepared.model, &self.record, &self.used.mask) };
         self.leave_out_slack(slack);
@@ -309,7 +330,7 @@ impl<'a> Analysis<'a> {
     fn leave_out_slack(&mut self, rows: Vec<usize>) {
         let why =
             "slack: the pressure is too low for the rubber of the muscle as stated, and it hardly pulled";
-        self.used.leave_out(self.data, rows.iter().copied(), why.to_owned());
+        self.used.leave_out(&self.data, rows.iter().copied(), why.to_owned());
         self.slack = Some(rows);
     }
 
@@ -344,11 +365,11 @@ impl<'a> Analysis<'a> {
         }
         let residuals: Vec<f64> =
             self.record.force().iter().zip(&first.force).map(|(measured, model)| measured - model).collect();
-        self.used.leave_out_spikes(self.data, &residuals);
-        self.used.leave_out_shifted(self.data, &self.record, &residuals, self.noise.force_n);
+        self.used.leave_out_spikes(&self.data, &residuals);
+        self.used.leave_out_shifted(&self.data, &self.record, &residuals, self.noise.force_n);
         let sd = doubtful_sd(
             &self.record,
-            self.data,
+            &self.data,
             &self.used.mask,
             &self.levels,
             &residuals,
@@ -465,7 +486,7 @@ impl<'a> Analysis<'a> {
             files: self.data.files().iter().map(|file| file.name.clone()).collect(),
             sweeps: self.record.sweeps().len(),
             sweep_kinds: self.data.sweeps().iter().map(|sweep| sweep.kind).collect(),
-            branches: branches(self.data),
+            branches: branches(&self.data),
             specimens: self.record.specimens().to_vec(),
             is_path: self.record.is_path(),
             pressure_pa: range(&|row| moments[row].pressure),

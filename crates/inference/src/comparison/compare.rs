@@ -1,13 +1,15 @@
 //! Model against measurement: the ladder of errors, rung by rung, and where the error lies.
 
+use bulge_effects::Effect;
 use bulge_measurements::{Data, QualityOptions};
 use bulge_model::{Model, ModelError};
 use bulge_muscles::{Muscle, Quantity};
-use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::comparison::analysis::{Analysis, Climbed, Options};
-use crate::comparison::document::{Comparison, DataSummary, NoiseFloor};
-use crate::comparison::specimens::{note, of_specimens};
+use crate::comparison::document::{Comparison, DataSummary, NoiseFloor, Rung};
+use crate::comparison::specimens::note;
 use crate::comparison::warnings::without_state;
 use crate::comparison::{isotonic, loops, residuals, rivals, stack};
 use crate::error::InferenceError;
@@ -19,8 +21,7 @@ use crate::fit::document::{Convergence, Fit};
 /// See [`InferenceError`]: too few rows, a muscle that doesn't match, an effect that doesn't fit the muscle or the data.
 pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Comparison, InferenceError> {
     // On a thread of the pool: small evaluations aren't handed over to it one by one.
-    let data = of_specimens(data, muscle)?;
-    rayon::scope(|_| compared(Analysis::new(&data, muscle, options)?))
+    rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, options)?)?.asked())
 }
 
 /// The same with the numbers of the last rung about known, of a model with the same effects, and the record that another analysis has.
@@ -29,77 +30,146 @@ pub(crate) fn compare_near(
     options: &Options,
     near: (&Model, &[f64]),
 ) -> Result<Comparison, InferenceError> {
-    compared(other.with_options(options, near)?)
+    Comparing::of(other.with_options(options, near)?)?.asked()
 }
 
-fn compared(mut analysis: Analysis<'_>) -> Result<Comparison, InferenceError> {
-    let Analysis { data, muscle, options, .. } = analysis;
-    analysis.ask()?;
-    let first = analysis.climb(0, None)?;
-    let floor = analysis.measure_noise(&first);
-    analysis.bound_tails(&first);
-    // Weights follow from the noise: the first rung again if it fits anything.
-    let first = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
-    let mut rungs = vec![first];
-    for count in 1..=options.effects.len() {
-        let next = analysis.climb(count, rungs.last())?;
-        rungs.push(next);
+/// A comparison that is asked again with other effects: what the base says is computed once, and each rung of the ladder once.
+///
+/// An answer is the one of [`compare`] with these effects: it doesn't depend on what was asked before.
+pub struct Comparing<'a> {
+    analysis: Analysis<'a>,
+    floor: Option<NoiseFloor>,
+    base: Arc<Step>,
+    /// By the effects up to each, in their order.
+    steps: Mutex<HashMap<Vec<String>, Arc<Step>>>,
+}
+
+/// A rung with what it predicts.
+struct Step {
+    climbed: Climbed,
+    rung: Rung,
+}
+
+impl Step {
+    /// Whether any row has a state.
+    fn says_something(&self, analysis: &Analysis<'_>) -> bool {
+        !self.climbed.force.is_empty() && analysis.with_state(&[&self.climbed.force]).next().is_some()
     }
-    let ladder = rungs
-        .par_iter()
-        .enumerate()
-        .map(|(number, climbed)| analysis.rung(number, climbed))
-        .collect::<Vec<_>>();
-    let says_something = |climbed: &Climbed| analysis.with_state(&[&climbed.force]).next().is_some();
-    let place = rungs.iter().rposition(says_something).unwrap_or(0);
-    for (number, rung) in rungs.iter_mut().enumerate() {
-        if number != 0 && number != place {
-            // Of many rows forces are large, and what these said is in the ladder.
-            rung.force = Vec::new();
+}
+
+impl<'a> Comparing<'a> {
+    /// Compares with the base alone; the effects of `options` aren't asked for yet.
+    ///
+    /// # Errors
+    /// As [`compare`].
+    pub fn new(data: &'a Data, muscle: &'a Muscle, options: &'a Options) -> Result<Self, InferenceError> {
+        rayon::scope(|_| Self::of(Analysis::new(data, muscle, options)?))
+    }
+
+    fn of(mut analysis: Analysis<'a>) -> Result<Self, InferenceError> {
+        analysis.ask()?;
+        let first = analysis.climb(0, None)?;
+        let floor = analysis.measure_noise(&first);
+        analysis.bound_tails(&first);
+        // Weights follow from the noise: the first rung again if it fits anything.
+        let climbed = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
+        let base = Arc::new(Step { rung: analysis.rung(0, &climbed), climbed });
+        Ok(Self { analysis, floor, base, steps: Mutex::default() })
+    }
+
+    /// Compares with these effects, in this order, instead of those of the options.
+    ///
+    /// # Errors
+    /// As [`compare`].
+    pub fn with(&self, effects: &[Arc<dyn Effect>]) -> Result<Comparison, InferenceError> {
+        rayon::scope(|_| self.compared(&self.analysis.with_effects(effects)?, true))
+    }
+
+    /// With the effects of the options, once.
+    fn asked(self) -> Result<Comparison, InferenceError> {
+        self.compared(&self.analysis, false)
+    }
+
+    /// The rungs from the base to the last effect; they are kept if others will be asked for.
+    fn ladder(&self, analysis: &Analysis<'_>, again: bool) -> Result<Vec<Arc<Step>>, InferenceError> {
+        let mut ladder = vec![Arc::clone(&self.base)];
+        let mut names = Vec::new();
+        for (place, effect) in analysis.options.effects.iter().enumerate() {
+            names.push(effect.card().name.to_owned());
+            let known = self.lock().get(&names).map(Arc::clone);
+            let step = match known {
+                Some(known) => known,
+                None => {
+                    let climbed = analysis.climb(place + 1, Some(&ladder[place].climbed))?;
+                    let step = Arc::new(Step { rung: analysis.rung(place + 1, &climbed), climbed });
+                    if again {
+                        self.lock().insert(names.clone(), Arc::clone(&step));
+                    } else if step.says_something(analysis) {
+                        // Of many rows forces are large, and what the rungs between said is in the ladder.
+                        let between = ladder[1..].iter_mut().filter_map(Arc::get_mut);
+                        between.for_each(|step| step.climbed.force = Vec::new());
+                    }
+                    step
+                }
+            };
+            ladder.push(step);
         }
+        Ok(ladder)
     }
-    let last = &rungs[place];
-    // A surface follows the residuals of a better model better: then less of them is taken for noise.
-    let again = analysis.noise_floor(last);
-    let floor = match (floor, again) {
-        (Some(first), Some(again)) if again.sd_n < first.sd_n => Some(again),
-        (first, _) => first,
-    };
-    let forces = [&rungs[0].force, &last.force];
-    let mut warnings = analysis.warnings(&ladder);
-    for (rung, climbed) in ladder.iter().zip(&rungs) {
-        let name = rung.added.as_deref().unwrap_or("base");
-        warnings.extend(climbed.failed.as_ref().map(|error| not_fitted(name, error)));
+
+    fn lock(&self) -> MutexGuard<'_, HashMap<Vec<String>, Arc<Step>>> {
+        // A thread that panicked leaves whole entries.
+        self.steps.lock().unwrap_or_else(PoisonError::into_inner)
     }
-    // With the last fit's numbers the muscle may not even pull before all effects are in.
-    let contributions = stack::contributions(&analysis, last).unwrap_or_else(|error| {
-        warnings.push(format!("what each effect contributes can't be shown one by one: {error}"));
-        Vec::new()
-    });
-    if contributions.is_empty() && !options.effects.is_empty() && warnings.is_empty() {
-        let why = "with the numbers of the last fit the muscle has no state before all effects are in";
-        warnings.push(format!("what each effect contributes can't be shown one by one: {why}"));
+
+    fn compared(&self, analysis: &Analysis<'_>, again: bool) -> Result<Comparison, InferenceError> {
+        let ladder = self.ladder(analysis, again)?;
+        let last =
+            &ladder[ladder.iter().rposition(|step| step.says_something(analysis)).unwrap_or(0)].climbed;
+        // A surface follows the residuals of a better model better: then less of them is taken for noise.
+        let again = analysis.noise_floor(last);
+        let floor = match (&self.floor, again) {
+            (Some(first), Some(again)) if again.sd_n < first.sd_n => Some(again),
+            (first, _) => first.clone(),
+        };
+        let forces = [&ladder[0].climbed.force, &last.force];
+        let rungs: Vec<Rung> = ladder.iter().map(|step| step.rung.clone()).collect();
+        let mut warnings = analysis.warnings(&rungs);
+        for step in &ladder {
+            let name = step.rung.added.as_deref().unwrap_or("base");
+            warnings.extend(step.climbed.failed.as_ref().map(|error| not_fitted(name, error)));
+        }
+        // With the last fit's numbers the muscle may not even pull before all effects are in.
+        let contributions = stack::contributions(analysis, last).unwrap_or_else(|error| {
+            warnings.push(format!("what each effect contributes can't be shown one by one: {error}"));
+            Vec::new()
+        });
+        if contributions.is_empty() && !analysis.options.effects.is_empty() && warnings.is_empty() {
+            let why = "with the numbers of the last fit the muscle has no state before all effects are in";
+            warnings.push(format!("what each effect contributes can't be shown one by one: {why}"));
+        }
+        let Analysis { data, muscle, options, .. } = analysis;
+        Ok(Comparison {
+            schema: "bulge.comparison/1",
+            muscle: muscle.name().to_owned(),
+            base: options.law.as_ref().map_or("equilibrium", |(law, _, _)| law.name).to_owned(),
+            data: analysis.summary(),
+            quality: data
+                .quality(&QualityOptions { l0_m: Some(muscle.length().si()), ..QualityOptions::default() })
+                .findings,
+            noise_floor: floor,
+            by: residuals::breakdowns(analysis, forces),
+            loops: loops::gaps(analysis, forces),
+            isotonic: isotonic::held_loads(analysis, [&ladder[0].climbed, last]),
+            maps: residuals::maps(analysis, forces),
+            curves: residuals::curves(analysis, forces),
+            contributions,
+            scatter: residuals::scatter(analysis, forces),
+            rivals: if options.rivals { rivals::laws(analysis) } else { Vec::new() },
+            warnings,
+            ladder: rungs,
+        })
     }
-    Ok(Comparison {
-        schema: "bulge.comparison/1",
-        muscle: muscle.name().to_owned(),
-        base: options.law.as_ref().map_or("equilibrium", |(law, _, _)| law.name).to_owned(),
-        data: analysis.summary(),
-        quality: data
-            .quality(&QualityOptions { l0_m: Some(muscle.length().si()), ..QualityOptions::default() })
-            .findings,
-        noise_floor: floor,
-        by: residuals::breakdowns(&analysis, forces),
-        loops: loops::gaps(&analysis, forces),
-        isotonic: isotonic::held_loads(&analysis, [&rungs[0], last]),
-        maps: residuals::maps(&analysis, forces),
-        curves: residuals::curves(&analysis, forces),
-        contributions,
-        scatter: residuals::scatter(&analysis, forces),
-        rivals: if options.rivals { rivals::laws(&analysis) } else { Vec::new() },
-        warnings,
-        ladder,
-    })
 }
 
 fn not_fitted(name: &str, error: &ModelError) -> String {
@@ -128,8 +198,7 @@ pub struct Fitting {
 /// # Errors
 /// As [`compare`].
 pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
-    let data = of_specimens(data, muscle)?;
-    rayon::scope(|_| fitted(&data, muscle, options))
+    rayon::scope(|_| fitted(data, muscle, options))
 }
 
 fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
@@ -145,7 +214,7 @@ fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, In
     let mut fit = fit.unwrap_or_else(|| nothing_fitted(&analysis, theta, &force));
     fit.warnings.extend(failed.map(|error| not_fitted("the fit", &error)));
     fit.warnings.extend(left.map(|left| without_state("the fit", &left)));
-    fit.warnings.extend(note(data, muscle));
+    fit.warnings.extend(note(&analysis.data, muscle));
     fit.warnings.splice(0..0, analysis.findings.iter().map(ToString::to_string));
     Ok(Fitting {
         model: prepared.model,

@@ -83,7 +83,7 @@ pub(crate) fn breakdowns(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec
                 }
             })
             .collect();
-        let [there, back] = branches(analysis.data);
+        let [there, back] = branches(&analysis.data);
         let labels = [(there, 1.0), ("at rest", 0.0), (back, -1.0)];
         let labels = labels.into_iter().map(|(label, at)| (label.to_owned(), at)).collect();
         add(Groups { variable: "direction", unit: "", of, labels });
@@ -176,7 +176,7 @@ pub(crate) fn maps(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec<Resid
     let [low, high] = contractions(analysis);
     let levels = analysis.levels.len();
     let mut maps = Vec::new();
-    let [there, back] = branches(analysis.data);
+    let [there, back] = branches(&analysis.data);
     for (direction, sign) in [(there, 1.0), ("at rest", 0.0), (back, -1.0)] {
         let mut sums = vec![(0_usize, [0.0; 2]); levels * COLUMNS];
         let rows = analysis.with_state(&forces).filter(|row| moments[*row].branch().total_cmp(&sign).is_eq());

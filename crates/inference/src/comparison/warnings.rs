@@ -11,7 +11,7 @@ impl Analysis<'_> {
     /// The warnings, the most important first.
     pub(crate) fn warnings(&self, ladder: &[Rung]) -> Vec<String> {
         let mut warnings: Vec<String> =
-            self.findings.iter().map(ToString::to_string).chain(note(self.data, self.muscle)).collect();
+            self.findings.iter().map(ToString::to_string).chain(note(&self.data, self.muscle)).collect();
         let is_asked = self.findings.iter().any(|finding| finding.kind != TIME_UNIT);
         let negative = ladder.first().filter(|rung| rung.r_squared < 0.0 && !is_asked);
         if let Some(rung) = negative {

@@ -71,10 +71,9 @@ pub fn diagnose(
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis, InferenceError> {
     // On a thread of the pool: small evaluations aren't handed over to it one by one.
-    let data = of_specimens(data, muscle)?;
-    rayon::scope(|_| match diagnosed(&data, muscle, options) {
+    rayon::scope(|_| match diagnosed(data, muscle, options) {
         Err(error @ (InferenceError::TooFewRows { .. } | InferenceError::Identical { .. })) => {
-            Ok(cannot_tell(&data, muscle, &error.to_string()))
+            Ok(cannot_tell(&*of_specimens(data, muscle)?, muscle, &error.to_string()))
         }
         found => found,
     })
@@ -84,7 +83,7 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
     let mut analysis = Analysis::new(data, muscle, &options.base)?;
     analysis.ask()?;
     if analysis.findings.iter().any(|finding| finding.decided) {
-        return Ok(unanswered(data, muscle, compared_as_stated(data, muscle, options)?));
+        return Ok(unanswered(&analysis.data, muscle, compared_as_stated(data, muscle, options)?));
     }
     let first = analysis.climb(0, None)?;
     analysis.measure_noise(&first);
@@ -114,7 +113,7 @@ impl Diagnosis {
             self.warnings.push(format!(
                 "{} rows took no part in the diagnosis, because the base has no state there (line {})",
                 rows.len(),
-                lines(analysis.data, &rows)
+                lines(&analysis.data, &rows)
             ));
             self.data.used = self.data.used.saturating_sub(rows.len());
         }
@@ -136,7 +135,7 @@ fn on_rows(
     let Some(law) = &ground.law else {
         let rows = ground.record.len();
         let says = format!("{rows} rows are too few to know their noise");
-        return Ok(cannot_tell(analysis.data, analysis.muscle, &says));
+        return Ok(cannot_tell(&analysis.data, analysis.muscle, &says));
     };
     progress.at(0.25, "the catalogue");
     let near = (&base.prepared.model, &base.theta[..]);
