@@ -28,8 +28,10 @@ fn median(mut run: impl FnMut() -> Result<(), Failure>) -> Result<f64, Failure> 
 fn main() -> Result<(), Failure> {
     let catalogue = Catalogue::builtin();
     let muscle = preset("dmsp-20-250")?;
-    let isobaric = Block { cycles: 3, rows: 100, ..Block::loops(vec![2e5, 3e5, 4e5, 5e5], [0.01, 0.2], 50.0) };
-    let isometric = Block { cycles: 3, rows: 100, ..Block::isometric([0.8e5, 6e5], vec![0.02, 0.06, 0.1, 0.14], 20.0) };
+    let isobaric =
+        Block { cycles: 3, rows: 100, ..Block::loops(vec![2e5, 3e5, 4e5, 5e5], [0.01, 0.2], 50.0) };
+    let isometric =
+        Block { cycles: 3, rows: 100, ..Block::isometric([0.8e5, 6e5], vec![0.02, 0.06, 0.1, 0.14], 20.0) };
     let noise = ReadingNoise { force_n: 1.2, ..ReadingNoise::default() };
     for (name, block, friction) in
         [("isobaric", isobaric, "coulomb-friction"), ("isometric", isometric, "pressure-presliding")]

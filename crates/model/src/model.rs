@@ -11,6 +11,9 @@ use crate::error::ModelError;
 use crate::parameter::ModelParameter;
 use crate::solved::Solved;
 
+/// Coarsest lattice that follows the force at all.
+const COARSEST: f64 = 0.25;
+
 /// Part of a parameter's usual size at which a number exists that doesn't at 0; derivatives change by about as much on the way.
 const BESIDE: f64 = 1e-7;
 /// The same for differences: the third power of it is left.
@@ -215,10 +218,10 @@ impl Model {
         &self.specimens
     }
 
-    /// The same on a finer lattice: its steps are divided by `refinement` >= 1.
+    /// The same on a finer lattice, its steps divided by `refinement`, or on a coarser one: at 0.5 forces are right to about 1e-4.
     #[must_use]
     pub fn refined(mut self, refinement: f64) -> Self {
-        self.refinement = refinement.max(1.0);
+        self.refinement = refinement.max(COARSEST);
         self
     }
 

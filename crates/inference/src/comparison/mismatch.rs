@@ -17,9 +17,12 @@ const LEFT: f64 = 0.35;
 const USUAL: (f64, f64) = (0.55, 1.8);
 /// Two meanings with errors that differ by less than this factor are both named.
 const ALIKE: f64 = 1.3;
-/// Rows on which meanings are tried, and those that have to have an answer.
+/// Rows on which meanings are tried, and those on which most of them are seen to make it worse.
 const ROWS: usize = 300;
+const FEW_ROWS: usize = 20;
+/// Part of them that has to have an answer.
 const ANSWERED: f64 = 0.9;
+const ANSWERED_OF_FEW: f64 = 0.7;
 /// The standard atmosphere \[Pa\].
 const ATMOSPHERE: f64 = 101_325.0;
 /// Weather and height leave the pressure of the air above this \[Pa\]: a reading below is no absolute pressure.
@@ -63,6 +66,8 @@ struct Trial<'a> {
     model: &'a Model,
     record: &'a Record,
     used: &'a [bool],
+    /// Part of them that has to have an answer.
+    answered: f64,
 }
 
 impl Trial<'_> {
@@ -76,7 +81,7 @@ impl Trial<'_> {
             .collect();
         let used: Vec<bool> = (0..meant.len()).map(|row| self.used[row] && meant[row][0] > 0.0).collect();
         let count = |mask: &[bool]| mask.iter().filter(|counts| **counts).count() as f64;
-        if count(&used) < ANSWERED * count(self.used) || count(&used) < 5.0 {
+        if count(&used) < self.answered * count(self.used) || count(&used) < 5.0 {
             return None;
         }
         let [pressure, contraction] = [0, 1].map(|i| meant.iter().map(|m| m[i]).collect::<Vec<f64>>());
@@ -91,7 +96,7 @@ impl Trial<'_> {
             .filter(|square| square.is_finite())
             .collect();
         let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
-        (squares.len() as f64 >= ANSWERED * count(&used)).then(|| (mean.sqrt(), force))
+        (squares.len() as f64 >= self.answered * count(&used)).then(|| (mean.sqrt(), force))
     }
 }
 
@@ -105,8 +110,12 @@ pub(crate) fn questions(
 ) -> Vec<Mismatch> {
     let (thin, kept) = record.thinned(ROWS);
     let counts: Vec<bool> = kept.iter().map(|row| used[*row]).collect();
-    let trial = Trial { model, record: &thin, used: &counts };
+    let trial = Trial { model, record: &thin, used: &counts, answered: ANSWERED };
+    let (few, those) = thin.thinned(FEW_ROWS);
+    let counting: Vec<bool> = those.iter().map(|row| counts[*row]).collect();
+    let first = Trial { model, record: &few, used: &counting, answered: ANSWERED_OF_FEW };
     let Some((before, force)) = trial.error(&|read| read) else { return Vec::new() };
+    let may_help = |meaning: &Meaning| first.error(&*meaning.of).is_some_and(|(after, _)| after <= before);
     let full = full_scale(data.force());
     let mut found: Vec<Mismatch> = clock::question(data, record, before).into_iter().collect();
     if before <= LARGE * full {
@@ -118,6 +127,7 @@ pub(crate) fn questions(
     let size = |meaning: &Meaning| scale_of(meaning) * read;
     let mut tried: Vec<(f64, Meaning)> = meanings(data, muscle)
         .into_iter()
+        .filter(may_help)
         .filter_map(|meaning| Some((trial.error(&*meaning.of)?.0, meaning)))
         .filter(|(after, meaning)| *after <= LEFT * before.min(size(meaning)))
         .filter(|(after, meaning)| is_best(&trial, *after, meaning))

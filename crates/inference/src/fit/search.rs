@@ -18,6 +18,8 @@ use bulge_muscles::units::significant;
 
 /// Rows on which starts are tried.
 const FEW_ROWS: usize = 400;
+/// Refinement of the lattice on which they are: their minima are followed on the usual one.
+const COARSE: f64 = 0.5;
 /// Starting points.
 const STARTS: usize = 8;
 /// Standard deviations of a data sheet within which a rig error is its noise.
@@ -181,7 +183,7 @@ struct Searched {
 
 /// Starts all over the plausible box, each followed to its minimum on few rows.
 fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searched, ModelError> {
-    let model = &prepared.model;
+    let model = &prepared.model.clone().refined(COARSE);
     let (thin, kept) = task.record.thinned(FEW_ROWS);
     let used: Vec<bool> = kept.iter().map(|row| task.used[*row]).collect();
     let few = Task { record: &thin, used: &used, ..*task };

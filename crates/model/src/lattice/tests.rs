@@ -64,6 +64,24 @@ fn rows_beyond_the_end_change_nothing_before_it() {
     assert!(ended.is_some());
 }
 
+/// Largest error over the force at 2 %, away from where equilibria end: 1e-6 of it, 1e-4 on the coarser lattice of a search, and the sixth order between them.
+#[test]
+fn errors_fall_with_the_sixth_power_of_the_step() {
+    let equilibrium = braid(10.0, 1e5).1;
+    let exact = |p: f64, contraction: f64| equilibrium.answer(p, contraction, None).unwrap().0.force.value;
+    let error = |refinement: f64| {
+        let empty = Lattice::unsolved(&equilibrium, 0, refinement);
+        let spans = [1.5e5, 2e5, 3e5].map(|p| empty.span(p, [0.01, 0.15]).unwrap());
+        let lattice = empty.around(&spans, 6).solved(&equilibrium, &Starts::default()).0;
+        let rows = (0..40).map(|i| (1.5e5 + 3.7e3 * f64::from(i), 0.01 + 0.0035 * f64::from((7 * i) % 40)));
+        rows.map(|(p, e)| (lattice.answer(p, e).unwrap().force.value - exact(p, e)).abs() / exact(p, 0.02))
+            .fold(0.0, f64::max)
+    };
+    let [coarse, usual] = [0.5, 1.0].map(error);
+    assert!(usual < 1e-6 && coarse < 1e-4, "{usual:e} {coarse:e}");
+    assert!((16.0..256.0).contains(&(coarse / usual)), "{usual:e} {coarse:e}");
+}
+
 #[test]
 fn weights_are_exact_for_degree_five() {
     for t in [2.0, 2.3, 2.9, 3.0] {
