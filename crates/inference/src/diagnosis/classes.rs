@@ -123,8 +123,8 @@ impl Given<'_> {
                 let (linear, gain_of) = (hypothesis.log_evidence, hypothesis.gain);
                 let place = hypothesis.effects[0];
                 let known = without.tried.iter().find(|tried| tried.hypothesis.effects == [place]);
-                let tried =
-                    near.then(|| known.cloned().unwrap_or_else(|| self.fitted(base, without, hypothesis)));
+                let tried = near
+                    .then(|| known.cloned().unwrap_or_else(|| self.fitted(base, without, hypothesis, None)));
                 Self::rival(
                     without,
                     place,

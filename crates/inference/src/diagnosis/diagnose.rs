@@ -139,16 +139,16 @@ fn on_rows(
     };
     progress.at(0.25, "the catalogue");
     let near = (&base.prepared.model, &base.theta[..]);
-    let searched = |ground: &Ground, law: &NoiseLaw| {
-        let search = ground.given(law, options).search(&model, near);
+    let searched = |ground: &Ground, law: &NoiseLaw, before: Option<&Search>| {
+        let search = ground.given(law, options).search(&model, near, before);
         search.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))
     };
-    let mut search = searched(&ground, law)?;
+    let mut search = searched(&ground, law, None)?;
     // The misfit of the base is in the first law as far as no smooth function follows it: about a better model the noise is better known.
     let again = ground_again(analysis, &search, &ground, used, options);
     let (ground, law) = match again.as_ref().and_then(|again| Some((again, again.law.as_ref()?))) {
         Some((again, law)) => {
-            search = searched(again, law)?;
+            search = searched(again, law, Some(&search))?;
             (again, law)
         }
         None => (&ground, law),

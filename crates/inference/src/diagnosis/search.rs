@@ -124,15 +124,32 @@ pub(crate) struct Search {
     pub(crate) stages: Vec<Stage>,
 }
 
+/// Names of effects, sorted.
+fn names<'e>(effects: impl Iterator<Item = &'e Arc<dyn Effect>>) -> Vec<String> {
+    let mut names: Vec<String> = effects.map(|effect| effect.card().name.to_owned()).collect();
+    names.sort_unstable();
+    names
+}
+
 impl Search {
     /// The stage of these effects, in any order.
     pub(crate) fn of_effects(&self, effects: &[Arc<dyn Effect>]) -> Option<&Stage> {
-        let names = |list: &[Arc<dyn Effect>]| {
-            let mut names: Vec<String> = list.iter().map(|effect| effect.card().name.to_owned()).collect();
-            names.sort_unstable();
-            names
+        let asked = names(effects.iter());
+        self.stages.iter().find(|stage| names(stage.added.iter()) == asked)
+    }
+
+    /// The fit of these effects, in any order, where one was made.
+    fn fit_of(&self, effects: &[Arc<dyn Effect>]) -> Option<&Confirmed> {
+        let asked = names(effects.iter());
+        let is_it = |(stage, tried): &(&Stage, &Tried)| {
+            let all = &stage.scene.showings.effects;
+            let new = tried.hypothesis.effects.iter().map(|place| &all[*place].effect);
+            names(stage.added.iter().chain(new)) == asked
         };
-        self.stages.iter().find(|stage| names(&stage.added) == names(effects))
+        let mut tried = self.stages.iter().flat_map(|stage| stage.tried.iter().map(move |one| (stage, one)));
+        self.of_effects(effects)
+            .map(|stage| &stage.confirmed)
+            .or_else(|| tried.find(is_it).and_then(|(_, tried)| tried.confirmed.as_ref()))
     }
 
     /// Another model instead of the last one, and of those on the way to it that aren't on the way to this one.
@@ -164,8 +181,13 @@ impl Given<'_> {
 
     /// From the base model to the set of effects that explains the data, or to where nothing more helps.
     ///
-    /// `near` are numbers that the base is known to have about.
-    pub(crate) fn search(&self, base: &Model, near: (&Model, &[f64])) -> Result<Search, ModelError> {
+    /// `near` are numbers that the base is known to have about; `before` is a search of the same readings with another noise: where its fits ended, fits begin.
+    pub(crate) fn search(
+        &self,
+        base: &Model,
+        near: (&Model, &[f64]),
+        before: Option<&Search>,
+    ) -> Result<Search, ModelError> {
         let confirmed = self.confirm(base, &[], Some(near), &[])?;
         let mut stages = vec![self.stage(Vec::new(), confirmed)?];
         let mut again = false;
@@ -177,7 +199,7 @@ impl Given<'_> {
             if room == 0 {
                 break;
             }
-            stage.tried = self.tried(base, stage);
+            stage.tried = self.tried(base, stage, before);
             if !again && let Some(lower) = self.lower(base, stage) {
                 (*stage, again) = (lower, true);
                 continue;
@@ -238,22 +260,32 @@ impl Given<'_> {
     }
 
     /// The best hypotheses of a stage, each fitted.
-    pub(crate) fn tried(&self, base: &Model, stage: &Stage) -> Vec<Tried> {
+    fn tried(&self, base: &Model, stage: &Stage, before: Option<&Search>) -> Vec<Tried> {
         let hypotheses = hypotheses(&stage.scene, &stage.confirmed.prepared.model);
-        hypotheses.into_par_iter().map(|hypothesis| self.fitted(base, stage, hypothesis)).collect()
+        hypotheses.into_par_iter().map(|hypothesis| self.fitted(base, stage, hypothesis, before)).collect()
     }
 
     /// A hypothesis fitted on top of a stage.
-    pub(crate) fn fitted(&self, base: &Model, stage: &Stage, hypothesis: Hypothesis) -> Tried {
+    pub(crate) fn fitted(
+        &self,
+        base: &Model,
+        stage: &Stage,
+        hypothesis: Hypothesis,
+        search: Option<&Search>,
+    ) -> Tried {
         let effects: Vec<Arc<dyn Effect>> =
             hypothesis.effects.iter().map(|i| Arc::clone(&stage.scene.showings.effects[*i].effect)).collect();
         let all: Vec<Arc<dyn Effect>> = stage.added.iter().chain(&effects).cloned().collect();
         let before = Self::numbers_of(base, stage);
         let starts: Vec<Vec<f64>> =
             hypothesis.starts.iter().map(|start| before.iter().chain(start).copied().collect()).collect();
-        let mut confirmed = self.confirm(base, &all, Some(stage.confirmed.numbers()), &starts).ok();
         let holds =
             |confirmed: &Confirmed| stage.confirmed.cost() - confirmed.cost() >= PROMISED * hypothesis.gain;
+        let known = search.and_then(|search| search.fit_of(&all));
+        let again = known.and_then(|known| self.confirm(base, &all, Some(known.numbers()), &[]).ok());
+        let mut confirmed = again
+            .filter(holds)
+            .or_else(|| self.confirm(base, &all, Some(stage.confirmed.numbers()), &starts).ok());
         if confirmed.is_none() || hypothesis.gain > FAR && !confirmed.as_ref().is_some_and(holds) {
             // Far from where the tangents hold: usual numbers, and nearly none of them.
             let further: Vec<Vec<f64>> = [1.0, 0.1]
