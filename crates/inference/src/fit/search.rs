@@ -20,7 +20,7 @@ use bulge_muscles::units::significant;
 const FEW_ROWS: usize = 400;
 /// Refinement of the lattice on which they are: their minima are followed on the usual one.
 const COARSE: f64 = 0.5;
-/// Starting points.
+/// Starting points: where it begins, nearly off, and two for each number that isn't known from a data sheet; this many at most.
 const STARTS: usize = 8;
 /// Standard deviations of a data sheet within which a rig error is its noise.
 const SHEET: f64 = 4.0;
@@ -201,7 +201,8 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     };
     let mut starts = vec![clamped(problem.coordinates(start), &bounds.lower, &bounds.upper)];
     starts.push(clamped(problem.coordinates(&nearly_off(model, start)), &bounds.lower, &bounds.upper));
-    starts.extend(scattered(prepared, &problem, start, STARTS - 2));
+    let unknown = free(model).into_iter().filter(|index| !prepared.nuisance[*index]).count();
+    starts.extend(scattered(prepared, &problem, start, (2 * unknown).min(STARTS - 2)));
     let tried = starts.len();
     let followed: Vec<_> =
         starts.par_iter().map(|coordinates| settled(&problem_of(), coordinates, &bounds, &options)).collect();
