@@ -283,20 +283,23 @@ impl Given<'_> {
             |confirmed: &Confirmed| stage.confirmed.cost() - confirmed.cost() >= PROMISED * hypothesis.gain;
         let known = search.and_then(|search| search.fit_of(&all));
         let again = known.and_then(|known| self.confirm(base, &all, Some(known.numbers()), &[]).ok());
-        let mut confirmed = again
-            .filter(holds)
-            .or_else(|| self.confirm(base, &all, Some(stage.confirmed.numbers()), &starts).ok());
-        if confirmed.is_none() || hypothesis.gain > FAR && !confirmed.as_ref().is_some_and(holds) {
+        let mut confirmed = match again {
+            Some(again) if holds(&again) => Some(again),
+            again => {
+                let found = self.confirm(base, &all, Some(stage.confirmed.numbers()), &starts).ok();
+                lower(again, found)
+            }
+        };
+        // The search before has tried further starts already.
+        let is_far = hypothesis.gain > FAR && known.is_none() && !confirmed.as_ref().is_some_and(holds);
+        if confirmed.is_none() || is_far {
             // Far from where the tangents hold: usual numbers, and nearly none of them.
             let further: Vec<Vec<f64>> = [1.0, 0.1]
                 .iter()
                 .map(|part| before.iter().copied().chain(Self::usual(base, &effects, *part)).collect())
                 .collect();
-            let other = self.confirm(base, &all, Some(stage.confirmed.numbers()), &further).ok();
-            confirmed = match (confirmed, other) {
-                (Some(a), Some(b)) => Some(if b.cost() < a.cost() { b } else { a }),
-                (a, b) => a.or(b),
-            };
+            confirmed =
+                lower(confirmed, self.confirm(base, &all, Some(stage.confirmed.numbers()), &further).ok());
         }
         let tickets: f64 = hypothesis.effects.iter().map(|i| ticket(&stage.scene, *i)).sum();
         let log_evidence = confirmed
@@ -330,6 +333,14 @@ impl Given<'_> {
             .filter(|(p, _)| names.contains(&p.effect.as_str()))
             .map(|(_, value)| *value)
             .collect()
+    }
+}
+
+/// The lower of two minima.
+fn lower(one: Option<Confirmed>, other: Option<Confirmed>) -> Option<Confirmed> {
+    match (one, other) {
+        (Some(a), Some(b)) => Some(if b.cost() < a.cost() { b } else { a }),
+        (a, b) => a.or(b),
     }
 }
 
