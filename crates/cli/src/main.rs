@@ -106,7 +106,8 @@ fn main() -> ExitCode {
         }
     };
     let command = arguments.command.unwrap_or(Command::Demo(demo::Demo::default()));
-    let outcome = match command {
+    // On one thread of the pool, where the work is: what is read and what is computed share its heap.
+    let outcome = rayon::scope(|_| match command {
         Command::Demo(command) => command.run(),
         Command::Shape(command) => command.run(),
         Command::Curve(command) => command.run(),
@@ -127,7 +128,7 @@ fn main() -> ExitCode {
         Command::Effects(command) => command.run(),
         Command::Muscle(command) => command.run(),
         Command::Validate(command) => command.run(),
-    };
+    });
     let said = |text: &str| if files::stdout_is_taken() { Ok(()) } else { print(text) };
     match outcome.and_then(|text| said(&text)) {
         Ok(()) => ExitCode::SUCCESS,

@@ -3,7 +3,7 @@
 use bulge_effects::law::Law;
 use bulge_effects::{Catalogue, Effect};
 use bulge_measurements::Data;
-use bulge_model::{Model, ModelError, Record, Wanted, Warm};
+use bulge_model::{Model, ModelError, Partly, Record, Wanted, Warm};
 use bulge_muscles::{Muscle, Quantity};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -206,15 +206,20 @@ impl<'a> Analysis<'a> {
                 Err(error) => return Err(self.about(error)),
             }
         }
-        let counting = Warm::of_rows(&self.used.mask);
-        let found = prepared.model.evaluate_partly(&self.record, &theta, &Wanted::default(), &counting);
-        let found = found.map_err(|error| self.about(error))?;
+        let found = self.predicted(&prepared, &theta)?;
         if count == 0 && self.with_state(&[&found.prediction.force]).next().is_none() {
             // Without a single row there is nothing to compare with.
             let error = found.error.unwrap_or(ModelError::Values { given: 0, expected: 1 });
             return Err(self.about(prepared.model.explained(&self.record, &theta, error)));
         }
         Ok(Climbed { prepared, theta, fit: None, force: found.prediction.force, failed })
+    }
+
+    /// What a model with its numbers says of all rows that count.
+    pub(crate) fn predicted(&self, prepared: &Prepared, theta: &[f64]) -> Result<Partly, InferenceError> {
+        let counting = Warm::of_rows(&self.used.mask);
+        let found = prepared.model.evaluate_partly(&self.record, theta, &Wanted::default(), &counting);
+        found.map_err(|error| self.about(error))
     }
 
     fn check_rows(&self, numbers: usize) -> Result<(), InferenceError> {

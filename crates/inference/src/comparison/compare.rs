@@ -53,7 +53,7 @@ struct Step {
 impl Step {
     /// Whether any row has a state.
     fn says_something(&self, analysis: &Analysis<'_>) -> bool {
-        !self.climbed.force.is_empty() && analysis.with_state(&[&self.climbed.force]).next().is_some()
+        self.rung.without_state.as_ref().is_none_or(|left| left.rows < analysis.rows().count())
     }
 }
 
@@ -97,6 +97,12 @@ impl<'a> Comparing<'a> {
         for (place, effect) in analysis.options.effects.iter().enumerate() {
             names.push(effect.card().name.to_owned());
             let known = self.lock().get(&names).map(Arc::clone);
+            if place > 0
+                && let Some(below) = Arc::get_mut(&mut ladder[place])
+            {
+                // Of many rows forces are large, and what the rungs between say is in the ladder.
+                below.climbed.force = Vec::new();
+            }
             let step = match known {
                 Some(known) => known,
                 None => {
@@ -104,10 +110,6 @@ impl<'a> Comparing<'a> {
                     let step = Arc::new(Step { rung: analysis.rung(place + 1, &climbed), climbed });
                     if again {
                         self.lock().insert(names.clone(), Arc::clone(&step));
-                    } else if step.says_something(analysis) {
-                        // Of many rows forces are large, and what the rungs between said is in the ladder.
-                        let between = ladder[1..].iter_mut().filter_map(Arc::get_mut);
-                        between.for_each(|step| step.climbed.force = Vec::new());
                     }
                     step
                 }
@@ -123,9 +125,14 @@ impl<'a> Comparing<'a> {
     }
 
     fn compared(&self, analysis: &Analysis<'_>, again: bool) -> Result<Comparison, InferenceError> {
-        let ladder = self.ladder(analysis, again)?;
-        let last =
-            &ladder[ladder.iter().rposition(|step| step.says_something(analysis)).unwrap_or(0)].climbed;
+        let mut ladder = self.ladder(analysis, again)?;
+        let place = ladder.iter().rposition(|step| step.says_something(analysis)).unwrap_or(0);
+        if let Some(Step { climbed, .. }) = Arc::get_mut(&mut ladder[place])
+            && climbed.force.is_empty()
+        {
+            climbed.force = analysis.predicted(&climbed.prepared, &climbed.theta)?.prediction.force;
+        }
+        let last = &ladder[place].climbed;
         // A surface follows the residuals of a better model better: then less of them is taken for noise.
         let again = analysis.noise_floor(last);
         let floor = match (&self.floor, again) {

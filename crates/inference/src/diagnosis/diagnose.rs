@@ -87,7 +87,7 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
     }
     let first = analysis.climb(0, None)?;
     analysis.measure_noise(&first);
-    let base = analysis.climb(options.base.effects.len(), Some(&first))?;
+    let mut base = analysis.climb(options.base.effects.len(), Some(&first))?;
     drop(first);
     // Of rows without a state the base says nothing: what the catalogue could say there, nothing could be compared with.
     let mut used = vec![false; analysis.record.len()];
@@ -95,10 +95,13 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
         used[row] = true;
     }
     for _ in 0..MOST_LEFT_OUT {
-        match on_rows(&analysis, &base, &used, options) {
+        match on_rows(&analysis, &mut base, &used, options) {
             Ok(diagnosis) => return Ok(diagnosis.without(&analysis, &used)),
             Err(Stop::Error(error)) => return Err(error),
-            Err(Stop::Rows(rows)) => rows.into_iter().for_each(|row| used[row] = false),
+            Err(Stop::Rows(rows)) => {
+                rows.into_iter().for_each(|row| used[row] = false);
+                base.force = analysis.predicted(&base.prepared, &base.theta)?.prediction.force;
+            }
         }
     }
     let left_out = "the model has no state at nearly all of them".to_owned();
@@ -124,7 +127,7 @@ impl Diagnosis {
 /// The diagnosis on some of the rows.
 fn on_rows(
     analysis: &Analysis<'_>,
-    base: &Climbed,
+    base: &mut Climbed,
     used: &[bool],
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis, Stop> {
@@ -132,6 +135,8 @@ fn on_rows(
     progress.at(0.1, "the noise");
     let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
     let ground = ground(analysis, base, used, options)?;
+    // Of many rows it is large, and the means have it.
+    base.force = Vec::new();
     let Some(law) = &ground.law else {
         let rows = ground.record.len();
         let says = format!("{rows} rows are too few to know their noise");
