@@ -47,7 +47,6 @@ pub struct Data {
     columns: Columns,
     files: Vec<SourceFile>,
     lines: Vec<u32>,
-    specimen: Vec<u32>,
     specimens: Vec<String>,
     /// Unpressurised length of each specimen \[m\], where it is not the muscle's; empty if none has its own.
     lengths: Vec<Option<f64>>,
@@ -137,7 +136,6 @@ impl Data {
             files: vec![source.file],
             lines: source.table.lines,
             reading: source.table.reading,
-            specimen: Vec::new(),
             specimens: Vec::new(),
             lengths: Vec::new(),
             sweeps: Vec::new(),
@@ -168,10 +166,9 @@ impl Data {
     }
 
     fn structured(mut self) -> Self {
-        let rows = self.len();
-        (self.specimen, self.specimens) = match &self.columns.specimen {
-            Some(labels) => (labels.rows().to_vec(), labels.names().to_vec()),
-            None => (vec![0; rows], vec!["1".to_owned()]),
+        self.specimens = match &self.columns.specimen {
+            Some(labels) => labels.names().to_vec(),
+            None => vec!["1".to_owned()],
         };
         let is_one = self.files.len() == 1;
         let mut start = 0;
@@ -185,7 +182,7 @@ impl Data {
                 (rows, if is_one { String::new() } else { format!("{stem}/") })
             })
             .collect();
-        let found = sweep::find(&self.columns, &self.specimen, &files);
+        let found = sweep::find(&self.columns, &files);
         (self.sweeps, self.between, self.contradictions) =
             (found.sweeps, found.between, found.contradictions);
         self.finished()
@@ -310,8 +307,8 @@ impl Data {
             Trace::Contraction(values) => values.clone(),
             Trace::Length(values) => {
                 let contraction =
-                    |(length, specimen): (&f64, &u32)| 1.0 - length / self.length_of(*specimen, l0);
-                values.iter().zip(&self.specimen).map(contraction).collect()
+                    |(row, length): (usize, &f64)| 1.0 - length / self.length_of(self.specimen_of(row), l0);
+                values.iter().enumerate().map(contraction).collect()
             }
         }
     }
@@ -364,10 +361,10 @@ impl Data {
         self.columns.direction.as_deref()
     }
 
-    /// For each row, the place of its specimen in [`Data::specimens`].
+    /// The place of a row's specimen in [`Data::specimens`].
     #[must_use]
-    pub fn specimen(&self) -> &[u32] {
-        &self.specimen
+    pub fn specimen_of(&self, row: usize) -> u32 {
+        self.columns.specimen.as_ref().and_then(|labels| labels.rows().get(row)).map_or(0, |place| *place)
     }
 
     /// Names of the specimens, in the order in which they appear.
@@ -443,7 +440,6 @@ impl Data {
         let mut found = self.clone();
         found.columns.filter(&kept);
         found.lines = picked(&self.lines, &kept);
-        found.specimen = picked(&self.specimen, &kept);
         let mut start = 0;
         for file in &mut found.files {
             let rows = start..start + file.rows;

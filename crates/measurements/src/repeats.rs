@@ -291,7 +291,7 @@ impl Data {
         for (row, force) in self.force().iter().enumerate() {
             let direction = self.stated_direction().map_or(0, |stated| stated[row]);
             let key =
-                (self.specimen()[row], self.pressure()[row].to_bits(), motion[row].to_bits(), direction);
+                (self.specimen_of(row), self.pressure()[row].to_bits(), motion[row].to_bits(), direction);
             states.entry(key).or_default().add(*force, 1.0);
         }
         let repeated = states.values().filter(|found| found.points > 1);

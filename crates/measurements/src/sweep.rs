@@ -76,31 +76,42 @@ pub(crate) enum Contradiction {
 }
 
 /// Finds the sweeps. `files` are the rows of each file, with the name's beginning.
-pub(crate) fn find(columns: &Columns, specimen: &[u32], files: &[(Range<usize>, String)]) -> Found {
+pub(crate) fn find(columns: &Columns, files: &[(Range<usize>, String)]) -> Found {
     let mut found = Found::default();
     for (file, prefix) in files {
         let first = found.sweeps.len();
-        let mut start = file.start;
         let mut label_before = None;
-        for part in specimen.get(file.clone()).unwrap_or_default().chunk_by(|a, b| a == b) {
-            let rows = start..start + part.len();
-            start = rows.end;
-            for rows in runs(columns, &rows, &mut found) {
+        for (specimen, part) in specimens(columns, file) {
+            for rows in runs(columns, &part, &mut found) {
                 let number = found.sweeps.len() - first + 1;
                 let labels = columns.sweep.as_ref();
                 let label = labels.and_then(|labels| labels.rows().get(rows.start).copied());
-                if label.is_some() && label == label_before && rows.start == start - part.len() {
+                if label.is_some() && label == label_before && rows.start == part.start {
                     found.contradictions.push((rows.start, Contradiction::Specimen));
                 }
                 label_before = label;
                 let label = label.and_then(|label| labels?.names().get(label as usize).cloned());
                 let name = format!("{prefix}{}", label.unwrap_or_else(|| number.to_string()));
-                found.sweeps.push(Sweep { name, rows, specimen: part[0], kind: SweepKind::Static });
+                found.sweeps.push(Sweep { name, rows, specimen, kind: SweepKind::Static });
             }
         }
     }
     found.contradictions.sort_by_key(|(row, _)| *row);
     found
+}
+
+/// The specimens of a file one after the other, with their rows.
+fn specimens(columns: &Columns, file: &Range<usize>) -> Vec<(u32, Range<usize>)> {
+    let Some(of_rows) = columns.specimen.as_ref().and_then(|labels| labels.rows().get(file.clone())) else {
+        return vec![(0, file.clone())];
+    };
+    let mut start = file.start;
+    let part = |part: &[u32]| {
+        let rows = start..start + part.len();
+        start = rows.end;
+        (part[0], rows)
+    };
+    of_rows.chunk_by(|a, b| a == b).map(part).collect()
 }
 
 /// The uninterrupted runs among rows of one specimen in one file.

@@ -177,7 +177,7 @@ fn append(moments: &mut Vec<Moment>, data: &Data, path: &Moved, contraction: &[f
             cycle: path.cycle[row],
             largest,
             begins,
-            specimen: data.specimen()[row],
+            specimen: data.specimen_of(row),
         });
     }
     if let Some(sweep) = moments.get_mut(rows) {

@@ -116,8 +116,8 @@ impl Data {
         }
         columns.set_item("sweep", PyArray1::from_vec(py, sweep))?;
         let names = data.specimens();
-        let specimen: Vec<&str> =
-            data.specimen().iter().map(|i| names.get(*i as usize).map_or("", String::as_str)).collect();
+        let name = |row| names.get(data.specimen_of(row) as usize).map_or("", String::as_str);
+        let specimen: Vec<&str> = (0..data.len()).map(name).collect();
         columns.set_item("specimen", specimen)?;
         Ok(columns)
     }

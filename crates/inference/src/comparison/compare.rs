@@ -103,16 +103,15 @@ impl<'a> Comparing<'a> {
                 // Of many rows forces are large, and what the rungs between say is in the ladder.
                 below.climbed.force = Vec::new();
             }
-            let step = match known {
-                Some(known) => known,
-                None => {
-                    let climbed = analysis.climb(place + 1, Some(&ladder[place].climbed))?;
-                    let step = Arc::new(Step { rung: analysis.rung(place + 1, &climbed), climbed });
-                    if again {
-                        self.lock().insert(names.clone(), Arc::clone(&step));
-                    }
-                    step
+            let step = if let Some(known) = known {
+                known
+            } else {
+                let climbed = analysis.climb(place + 1, Some(&ladder[place].climbed))?;
+                let step = Arc::new(Step { rung: analysis.rung(place + 1, &climbed), climbed });
+                if again {
+                    self.lock().insert(names.clone(), Arc::clone(&step));
                 }
+                step
             };
             ladder.push(step);
         }

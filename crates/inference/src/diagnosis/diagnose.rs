@@ -99,7 +99,9 @@ fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<
             Ok(diagnosis) => return Ok(diagnosis.without(&analysis, &used)),
             Err(Stop::Error(error)) => return Err(error),
             Err(Stop::Rows(rows)) => {
-                rows.into_iter().for_each(|row| used[row] = false);
+                for row in rows {
+                    used[row] = false;
+                }
                 base.force = analysis.predicted(&base.prepared, &base.theta)?.prediction.force;
             }
         }

@@ -288,7 +288,7 @@ impl Readings<'_> {
                     let _ = write!(text, "{},{},", decimal(time[row], DECIMALS[0]), number + 1);
                 }
                 if several {
-                    let specimen = self.done.data.specimen()[row] as usize;
+                    let specimen = self.done.data.specimen_of(row) as usize;
                     let _ = write!(text, "{},", self.names[specimen]);
                 }
                 let _ = write!(text, "{},", decimal(pressure / 1e5, DECIMALS[1]));

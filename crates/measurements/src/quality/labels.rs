@@ -66,7 +66,7 @@ fn interrupted(gate: &Gate) -> Option<Finding> {
     let labels = gate.data.columns().sweep.as_ref()?;
     let mut seen = HashSet::new();
     let returns = |row: usize| {
-        let is_new = seen.insert((gate.data.line(row).0, gate.data.specimen()[row], labels.rows()[row]));
+        let is_new = seen.insert((gate.data.line(row).0, gate.data.specimen_of(row), labels.rows()[row]));
         (!is_new).then_some(row)
     };
     let within = |row: &usize| gate.data.contradictions.binary_search_by_key(row, |(row, _)| *row).is_ok();
@@ -129,7 +129,7 @@ fn duplicates(gate: &Gate) -> Option<Finding> {
     }
     let columns: Vec<&[f64]> = data.columns().numbers().map(|(_, values)| values).collect();
     let marks = |row: usize| {
-        (data.specimen()[row], data.cycle().map(|cycle| cycle[row]), data.stated_direction().map(|d| d[row]))
+        (data.specimen_of(row), data.cycle().map(|cycle| cycle[row]), data.stated_direction().map(|d| d[row]))
     };
     let fingerprint = |row: usize| {
         let mut hasher = DefaultHasher::new();
