@@ -132,8 +132,8 @@ fn named(field: Field, text: &str) -> Option<Unit> {
     let lower = text.to_lowercase().replace(char::is_whitespace, "");
     let lower = lower.replace('\u{b2}', "^2").replace('\u{b3}', "^3");
     let factor = FACTORS.iter().find(|(word, owner, _)| *owner == field && *word == lower);
-    if let Some((word, _, factor)) = factor {
-        return Some(Unit { scale: Scale::by(*factor), name: (*word).to_owned(), is_absolute: false });
+    if let Some((_, _, factor)) = factor {
+        return Some(Unit { scale: Scale::by(*factor), name: text.to_owned(), is_absolute: false });
     }
     if field == Field::Temperature && ["f", "\u{b0}f", "degf", "fahrenheit"].contains(&lower.as_str()) {
         return Some(Unit { scale: Scale::FAHRENHEIT, name: "degF".to_owned(), is_absolute: false });
