@@ -22,7 +22,6 @@ fn with(muscle: &Muscle, numbers: &[(Parameter, f64)]) -> Muscle {
 #[test]
 fn both_ways_give_the_same_equilibrium() {
     let bladder = [(Parameter::C10, 3e5), (Parameter::C01, 5e4)];
-    let cloth = Unfolding::new(LineStiffness::from_si(8e4), Length::from_si(0.035)).unwrap();
     let pleated = preset("ppam-2-r16").unwrap();
     let muscles = [
         braid(300.0, 28.6),
@@ -34,11 +33,13 @@ fn both_ways_give_the_same_equilibrium() {
             &[bladder[0], (Parameter::FittingRadius, 0.0085), (Parameter::GasWall, 1e-3)],
         ),
         with(&pleated, &[(Parameter::Misalignment, 0.1)]),
-        pleated.clone().with_unfolding(cloth),
+        cloth(&pleated, 8e4, 0.035),
         with(&braid(300.0, 28.6), &[(Parameter::FibreStiffness, 5e3)]),
         with(&braid(300.0, 28.6), &[bladder[0], bladder[1], (Parameter::FibreStiffness, 5e3)]),
         with(&braid(40.0, 20.0), &[bladder[0], (Parameter::FibreStiffness, 500.0)]),
         with(&pleated, &[(Parameter::FibreStiffness, 12e3)]),
+        with(&cloth(&pleated, 8e4, 0.035), &[(Parameter::FibreStiffness, 12e3)]),
+        with(&cloth(&braid(300.0, 28.6), 3e4, 0.0115), &[bladder[0], (Parameter::FibreStiffness, 5e3)]),
     ];
     let mut tried = 0;
     for muscle in &muscles {
@@ -145,6 +146,12 @@ fn evaluations_stay_few() {
             &with(&rubber(long.clone()).unwrap(), &[(Parameter::FibreStiffness, 5e3)]),
             3.0,
             &[(0.02, 704), (0.1, 824), (0.2, 1007)],
+        ),
+        (
+            "elastic braid with cloth",
+            &with(&cloth(&long, 8e3, 0.0115), &[(Parameter::FibreStiffness, 5e3)]),
+            3.0,
+            &[(0.02, 552), (0.1, 1342)],
         ),
     ] {
         let problem = Problem::new(muscle, Pressure::bar(bar)).unwrap();
