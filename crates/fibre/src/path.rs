@@ -23,6 +23,8 @@ const SEED_STEPS: u32 = 40;
 const STEPS: u32 = 8;
 /// Difference of ln(S/S_half) from 0 at a place; one more step makes it rounding.
 const MET: f64 = 1e-9;
+/// The same of an equilibrium that is known from elsewhere.
+const KNOWN: f64 = 1e-6;
 /// Places between two of them, and their distance where that ends.
 const BETWEEN: u32 = 60;
 const CLOSE: f64 = 1e-9;
@@ -34,7 +36,7 @@ const FLATTER: f64 = 0.6;
 /// Places of a path, at most.
 const MOST_PLACES: usize = 300;
 /// ln|k| from which on a middle is too flat, and ln|B| from which on it is.
-const FLATTEST: f64 = -2000.0;
+const FLATTEST: f64 = -2e4;
 const STRAIGHT: f64 = -9.0;
 /// Meridional force in p R^2, and strain of the fibres, beyond which fibres are drawn out far enough.
 const DRAWN: [f64; 2] = [1e9, 0.5];
@@ -73,23 +75,18 @@ pub(crate) struct Paths<'a> {
 }
 
 impl<'a> Paths<'a> {
-    /// All that seeds lead to; none where the meridian is no quadrature.
-    pub(crate) fn of(net: &'a Net<f64>) -> Self {
+    /// All that seeds lead to, and the one with an equilibrium that is `known`; none where the meridian is no quadrature.
+    pub(crate) fn of(net: &'a Net<f64>, known: Option<Unknowns>) -> Self {
         let mut plane = Plane { net, lifted: net.lift(), effort: Effort::of_at_most(MOST_EVALUATIONS) };
         let mut found: Vec<Vec<Place>> = Vec::new();
-        let seeds = if quadrature::suits(net) { seeds(net) } else { Vec::new() };
-        for (side, bulge) in seeds {
-            let first = Unknowns::new(net, side, [bulge.ln(), FLAT]).logs[0];
-            let is_known = found.iter().any(|path| covers(path, side, first));
-            if is_known {
-                continue;
+        if quadrature::suits(net) {
+            found.extend(known.and_then(|at| plane.known(at)).map(|seed| plane.through(seed)));
+            for (side, bulge) in seeds(net) {
+                let first = Unknowns::new(net, side, [bulge.ln(), FLAT]).logs[0];
+                if !found.iter().any(|path| covers(path, side, first)) {
+                    found.extend(plane.seed(side, bulge).map(|seed| plane.through(seed)));
+                }
             }
-            let Some(seed) = plane.seed(side, bulge) else { continue };
-            let mut path = plane.along(seed, -1.0);
-            path.reverse();
-            path.push(seed);
-            path.extend(plane.along(seed, 1.0));
-            found.push(path);
         }
         Self { plane, found }
     }
@@ -236,6 +233,21 @@ impl Plane<'_> {
             }
         }
         None
+    }
+
+    /// The place of an equilibrium.
+    fn known(&mut self, at: Unknowns) -> Option<Place> {
+        let (run, length) = self.run(at)?;
+        (length.value().abs() < KNOWN).then(|| self.place(at, &run, &length))
+    }
+
+    /// The path through a place.
+    fn through(&mut self, seed: Place) -> Vec<Place> {
+        let mut path = self.along(seed, -1.0);
+        path.reverse();
+        path.push(seed);
+        path.extend(self.along(seed, 1.0));
+        path
     }
 
     /// From a place in one direction, until its fibres are slack, drawn out far or as good as straight, it pushes more and more, or there is no next one.

@@ -8,7 +8,7 @@ use crate::continuation::drawn_taut;
 use crate::net::Net;
 use crate::path::{Paths, Place};
 use crate::problem::Problem;
-use crate::shape::{Method, Response};
+use crate::shape::Method;
 use crate::shooting::{self, ALONE, USUAL};
 use crate::solve::Found;
 use crate::start;
@@ -45,13 +45,17 @@ pub(crate) struct Seen {
     pub(crate) contraction: f64,
     /// The least volume \[m^3\].
     pub(crate) volume: f64,
+    /// The last equilibrium.
+    pub(crate) last: Option<Unknowns>,
 }
 
 impl Seen {
     pub(crate) const NOTHING: Self =
-        Self { force: f64::NEG_INFINITY, contraction: 0.0, volume: f64::INFINITY };
+        Self { force: f64::NEG_INFINITY, contraction: 0.0, volume: f64::INFINITY, last: None };
 
-    fn add(&mut self, response: &Response) {
+    fn add(&mut self, found: &Found) {
+        let response = &found.response;
+        self.last = found.unknowns();
         if response.force_n > self.force {
             (self.force, self.contraction) = (response.force_n, response.contraction);
         }
@@ -74,7 +78,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
         let ending = if alone && self.near.is_some() { ALONE } else { USUAL };
         let found = self.problem.at_with(self.method, contraction, (self.near, ending))?;
         self.near = found.unknowns();
-        self.seen.add(&found.response);
+        self.seen.add(&found);
         Ok(found)
     }
 
@@ -273,14 +277,20 @@ pub(crate) enum Goal {
 }
 
 impl Problem {
-    /// An equilibrium from the paths of this muscle, which takes long; the first that pulls, or that exists where it need not.
-    pub(crate) fn on_a_path(&self, method: Method, goal: Goal, must_pull: bool) -> Option<Found> {
-        self.on_one_of(&mut Paths::of(&self.net), method, goal, must_pull)
+    /// An equilibrium from the paths of this muscle, with what a search has seen, which takes long; the first that pulls, or that exists where it need not.
+    pub(crate) fn on_a_path(
+        &self,
+        method: Method,
+        goal: Goal,
+        must_pull: bool,
+        seen: &Seen,
+    ) -> Option<Found> {
+        self.on_one_of(&mut Paths::of(&self.net, seen.last), method, goal, must_pull)
     }
 
     /// The end of the range on a path: the equilibrium at which the force vanishes, or the contraction at which the fibres of a muscle that pulls become slack.
-    pub(crate) fn limit_on_a_path(&self, method: Method) -> Option<Result<Found, f64>> {
-        let mut paths = Paths::of(&self.net);
+    pub(crate) fn limit_on_a_path(&self, method: Method, seen: &Seen) -> Option<Result<Found, f64>> {
+        let mut paths = Paths::of(&self.net, seen.last);
         let found = self.on_one_of(&mut paths, method, Goal::Force(0.0), true).map(Ok);
         found.or_else(|| paths.slackening().map(Err))
     }

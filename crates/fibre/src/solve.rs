@@ -126,11 +126,11 @@ impl Problem {
     /// The equilibrium at a contraction, step by step from where one is found, or from a path.
     fn walked(&self, method: Method, contraction: f64, must_pull: bool) -> Option<Found> {
         let start = self.contraction_start().min(contraction);
-        let nothing = &mut { Seen::NOTHING };
+        let mut seen = Seen::NOTHING;
         let walked =
-            self.root(method, [start, FAR], nothing, |found| contraction - found.response.contraction);
+            self.root(method, [start, FAR], &mut seen, |found| contraction - found.response.contraction);
         let walked = walked.ok().filter(|found| self.pulls(&found.response) || !must_pull);
-        walked.or_else(|| self.on_a_path(method, Goal::Contraction(contraction), must_pull))
+        walked.or_else(|| self.on_a_path(method, Goal::Contraction(contraction), must_pull, &seen))
     }
 
     /// The contraction at which the force vanishes.
@@ -156,10 +156,11 @@ impl Problem {
     /// The equilibrium at which the force vanishes.
     fn at_limit(&self, method: Method) -> Result<Found, FibreError> {
         let way = [self.contraction_start(), FAR];
-        match self.root(method, way, &mut { Seen::NOTHING }, |found| found.response.force_n) {
+        let mut seen = Seen::NOTHING;
+        match self.root(method, way, &mut seen, |found| found.response.force_n) {
             Err(error @ FibreError::NotConverged { contraction, .. }) => {
                 let slack = |limit| FibreError::Slack { contraction, limit: Some(limit) };
-                self.limit_on_a_path(method).map_or(Err(error), |end| end.map_err(slack))
+                self.limit_on_a_path(method, &seen).map_or(Err(error), |end| end.map_err(slack))
             }
             other => other,
         }
@@ -251,7 +252,7 @@ impl Problem {
             Err(error @ (FibreError::NotConverged { .. } | FibreError::Overstretched { .. })) => {
                 let Seen { force: high_n, contraction, .. } = seen;
                 let too_large = FibreError::ForceTooLarge { force_n: force, high_n, contraction };
-                match (self.on_a_path(method, Goal::Force(force), true), error) {
+                match (self.on_a_path(method, Goal::Force(force), true, &seen), error) {
                     (Some(found), _) => Ok(found),
                     _ if high_n.is_finite() && high_n < force => Err(too_large),
                     // Less than where the fibres slacken.
@@ -293,7 +294,7 @@ impl Problem {
         match self.root(method, [start, limit], &mut seen, |found| volume - found.response.volume_m3) {
             Ok(found) if self.pulls(&found.response) => Ok(found),
             Err(error @ FibreError::Slack { .. }) => Err(error),
-            _ => self.on_a_path(method, Goal::Volume(volume), true).ok_or(
+            _ => self.on_a_path(method, Goal::Volume(volume), true, &seen).ok_or(
                 if seen.volume.is_finite() && seen.volume > volume {
                     FibreError::VolumeTooSmall { volume_m3: volume, low_m3: seen.volume }
                 } else {
