@@ -377,23 +377,18 @@ impl Member {
         let scale = self.scales[0].abs();
         if response.force_n < -1e-9 * scale {
             let end = self.range_end()?;
-            return Err(if contraction > end.contraction() {
-                end.beyond(contraction).into()
-            } else {
-                FibreError::WouldPush { contraction, force_n: response.force_n }.into()
-            });
+            let beyond = contraction > end.contraction();
+            let pushes = FibreError::WouldPush { contraction, force_n: response.force_n };
+            return Err(if beyond { end.beyond(contraction) } else { pushes }.into());
         }
         self.outputs_of(&response, outputs, values)
     }
 
     /// What is said of slack fibres, with the limit of the range.
     fn with_limit(&self, contraction: f64, error: FamilyError) -> FamilyError {
-        match (&error, self.range_end()) {
-            (FamilyError::Equilibrium(FibreError::Slack { limit: None, .. }), Ok(end))
-                if contraction > end.contraction() =>
-            {
-                end.beyond(contraction).into()
-            }
+        let is_unnamed = matches!(error, FamilyError::Equilibrium(FibreError::Slack { limit: None, .. }));
+        match is_unnamed.then(|| self.range_end()) {
+            Some(Ok(end)) if contraction > end.contraction() => end.beyond(contraction).into(),
             _ => error,
         }
     }
