@@ -251,16 +251,17 @@ impl Problem {
         match self.root(method, way, &mut seen, |found| found.response.force_n - force) {
             Err(error @ (FibreError::NotConverged { .. } | FibreError::Overstretched { .. })) => {
                 let Seen { force: high_n, contraction, .. } = seen;
-                let too_large = FibreError::ForceTooLarge { force_n: force, high_n, contraction };
-                match (self.on_a_path(method, Goal::Force(force), true, &seen), error) {
-                    (Some(found), _) => Ok(found),
-                    _ if high_n.is_finite() && high_n < force => Err(too_large),
-                    // Less than where the fibres slacken.
-                    (None, error) => match self.at_limit(method) {
+                if high_n.is_finite() && high_n < force {
+                    return Err(FibreError::ForceTooLarge { force_n: force, high_n, contraction });
+                }
+                self.on_a_path(method, Goal::Force(force), true, &seen).map_or_else(
+                    || match self.at_limit(method) {
+                        // Less than where the fibres slacken.
                         Err(slack @ FibreError::Slack { limit: Some(_), .. }) => Err(slack),
                         _ => Err(error),
                     },
-                }
+                    Ok,
+                )
             }
             other => other,
         }
