@@ -209,4 +209,8 @@ fn fibres_are_not_drawn_out_beyond_what_they_bear() {
         let error = problem.solve(Given::Contraction(-3.0), Approach::Auto).unwrap_err();
         assert!(matches!(error, FibreError::Overstretched { .. }), "{error}");
     }
+    // Inextensible fibres that are all but straight.
+    let problem = Problem::new(&preset("dmsp-20-250").unwrap(), Pressure::bar(2.0)).unwrap();
+    let error = problem.solve(Given::Force(1e6), Approach::Auto).unwrap_err();
+    assert!(matches!(error, FibreError::ForceTooLarge { .. }), "{error}");
 }
