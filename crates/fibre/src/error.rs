@@ -2,7 +2,7 @@
 
 use bulge_muscles::Fault;
 
-use crate::problem::WIDEST_FITTING;
+use crate::problem::{MOST_STRAIN, WIDEST_FITTING};
 
 /// No equilibrium, or none was found.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -106,6 +106,16 @@ pub enum FibreError {
         group: f64,
         /// Its limit for a slender muscle.
         limit: f64,
+    },
+    /// The muscle would be drawn out so far that no fibre bears it.
+    #[error(
+        "no equilibrium at contraction {:.4} %: its fibres would be stretched by {:.1} %, and none bears more than {:.0} %; ask for less length or force", 100.0 * contraction, 100.0 * strain, 100.0 * MOST_STRAIN
+    )]
+    Overstretched {
+        /// Asked contraction.
+        contraction: f64,
+        /// Strain of the fibres there.
+        strain: f64,
     },
     /// The muscle would have to push, and the contraction at which its force vanishes was not found.
     #[error(

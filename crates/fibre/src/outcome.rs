@@ -8,7 +8,7 @@ use crate::cylinder;
 use crate::groups::Groups;
 use crate::meridian::{COS, SIN, TENSION};
 use crate::net::Net;
-use crate::problem::Problem;
+use crate::problem::{MOST_STRAIN, Problem};
 use crate::shape::{Convergence, Method};
 use crate::shooting::{self, Ending, Total, Way};
 use crate::unknowns::Unknowns;
@@ -162,6 +162,9 @@ impl Problem {
                 if group > 0.0 && self.net.compliance * outcome.tension > 1.0 && contraction > -0.5 =>
             {
                 Err(FibreError::TooSoft { group, limit })
+            }
+            Ok(outcome) if contraction < 0.0 && self.net.compliance * outcome.tension > MOST_STRAIN => {
+                Err(FibreError::Overstretched { contraction, strain: self.net.compliance * outcome.tension })
             }
             other => other,
         }

@@ -50,6 +50,10 @@ pub const BRAID_ANGLE: [f64; 2] = [5.0, 50.0];
 /// Largest radius of the fittings over r0/sin(alpha0), at which the fibres of a braid lie along the circumference.
 pub const WIDEST_FITTING: f64 = 0.995;
 
+/// Strain of the fibres of a muscle longer than at rest beyond which it isn't computed: nylon breaks at 0.15 to 0.3, polyester at 0.15, aramid at 0.03
+/// (W. E. Morton and J. W. S. Hearle, *Physical Properties of Textile Fibres*, Woodhead 2008).
+pub const MOST_STRAIN: f64 = 0.3;
+
 /// Range of the number of fibres with lobes between them: with more, rounding is larger than the errors that the integration keeps to.
 pub const LOBED_FIBRES: [f64; 2] = [3.0, 300.0];
 /// Largest n l0/r* of n fibres with lobes between them that can open to the radius r*: how far the middle of a longer muscle is from a

@@ -26,6 +26,7 @@ use arrayvec::ArrayVec;
 use bulge_numerics::Real;
 use std::f64::consts::PI;
 
+mod chebyshev;
 mod elastic;
 
 use elastic::{Elastic, Tensions};
@@ -60,9 +61,9 @@ const LEAST_RATIO: f64 = 0.1;
 /// Largest 1 - cos(chi), as in the integration of the ODE.
 const MOST_TURNED: f64 = 1.999;
 
-/// Whether the meridians of a net are quadratures: without lobes, and without cloth around fibres that stretch.
+/// Whether the meridians of a net are quadratures: without lobes.
 pub(crate) fn suits<D: Real>(net: &Net<D>) -> bool {
-    net.lobes.is_none() && (net.cloth.is_none() || net.compliance.value() == 0.0)
+    net.lobes.is_none()
 }
 
 /// What the integrands need of both ends. The index m means mid-length.
@@ -370,9 +371,10 @@ pub(crate) fn trajectory<D: Real>(net: &Net<D>, middle: Middle<D>) -> Result<Tra
         return along(net, &middle, &Inextensible::of(net, &middle), &plan);
     }
     let tensions = Tensions::of(&plain, &values, &mut plan.evaluations);
-    let tensions = tensions.ok_or(NoTrajectory { evaluations: plan.evaluations })?;
-    plan.fill(&Elastic::of(&plain, &values, &tensions))?;
-    along(net, &middle, &Elastic::of(net, &middle, &tensions), &plan)
+    let none = NoTrajectory { evaluations: plan.evaluations };
+    let tensions = tensions.ok_or(none)?;
+    plan.fill(&Elastic::of(&plain, &values, &tensions).ok_or(none)?)?;
+    along(net, &middle, &Elastic::of(net, &middle, &tensions).ok_or(none)?, &plan)
 }
 
 /// The integrals along a meridian, at the points that its values ask for.
@@ -447,7 +449,7 @@ mod tests {
 
     fn nets() -> Vec<(&'static str, Net<f64>)> {
         let bladder = Some(Bladder { c10: 0.5, c01: 0.2 });
-        let cloth = Some(Cloth { stiffness: 20.0, radius: 1.4 });
+        let cloth = Some(Cloth { stiffness: 3.0, radius: 1.1 });
         vec![
             ("braid", braid()),
             ("bladder", Net { bladder, depth: -0.1, ..braid() }),
@@ -459,6 +461,12 @@ mod tests {
             ("elastic bladder", Net { compliance: 1e-3, bladder, depth: -0.1, ..braid() }),
             ("hardly elastic", Net { compliance: 1e-7, bladder, end_radius: 0.8, ..braid() }),
             ("elastic, straight", Net { compliance: 1e-2, half_fibre: 3.0, depth: 0.1, ..Net::plain() }),
+            ("elastic cloth", Net { compliance: 4e-3, cloth, ..braid() }),
+            ("elastic, straight, cloth", Net { compliance: 1e-2, half_fibre: 3.0, cloth, ..Net::plain() }),
+            (
+                "elastic, all",
+                Net { compliance: 1e-3, bladder, cloth, depth: 0.1, half_fibre: 5.0, ..braid() },
+            ),
         ]
     }
 
@@ -494,11 +502,13 @@ mod tests {
                         },
                         ..lifted
                     };
-                    let at = Unknowns { side, logs: [ln_bulge, second] };
+                    let at = Unknowns::new(&net, side, [ln_bulge, second]);
                     let Some(middle) = at.middle(&seeded, Dual::variable) else { continue };
                     let ode = meridian::trajectory(&seeded, middle, 1e-13);
                     let found = trajectory(&seeded, middle);
-                    let Ok(ode) = ode else { continue };
+                    let Some(ode) = ode.ok().filter(|ode| ode.end[meridian::COS].value() > -0.5) else {
+                        continue;
+                    };
                     let Ok(found) = found else { panic!("{name} {side} {ln_bulge} {second}") };
                     let pairs = [
                         (ode.half_fibre, found.half_fibre, 0.0),

@@ -6,8 +6,9 @@ use bulge_numerics::root::{RootError, newton_bracketed};
 use crate::FibreError;
 use crate::continuation::drawn_taut;
 use crate::net::Net;
+use crate::path::{Paths, Place};
 use crate::problem::Problem;
-use crate::shape::{Method, Response};
+use crate::shape::Method;
 use crate::shooting::{self, ALONE, USUAL};
 use crate::solve::Found;
 use crate::start;
@@ -30,6 +31,9 @@ const DRAWN_OUT: [f64; 7] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4];
 /// Difference of the contraction from that of drawn-out fibres below which it counts in parts of itself, and the least that numbers tell.
 const DRAWN_OUT_ROOM: f64 = 1e-3;
 const LEAST_ROOM: f64 = 1e-5;
+/// Newton steps from a place on a path, and how far they may lead.
+const NEAR_STEPS: u32 = 12;
+const NEARBY: f64 = 1e-4;
 /// How far elastic fibres are drawn beyond their length for the same.
 const STRETCHED: [f64; 5] = [1e-3, 3e-3, 1e-2, 3e-2, 0.1];
 
@@ -41,13 +45,17 @@ pub(crate) struct Seen {
     pub(crate) contraction: f64,
     /// The least volume \[m^3\].
     pub(crate) volume: f64,
+    /// The last equilibrium.
+    pub(crate) last: Option<Unknowns>,
 }
 
 impl Seen {
     pub(crate) const NOTHING: Self =
-        Self { force: f64::NEG_INFINITY, contraction: 0.0, volume: f64::INFINITY };
+        Self { force: f64::NEG_INFINITY, contraction: 0.0, volume: f64::INFINITY, last: None };
 
-    fn add(&mut self, response: &Response) {
+    fn add(&mut self, found: &Found) {
+        let response = &found.response;
+        self.last = found.unknowns();
         if response.force_n > self.force {
             (self.force, self.contraction) = (response.force_n, response.contraction);
         }
@@ -70,7 +78,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
         let ending = if alone && self.near.is_some() { ALONE } else { USUAL };
         let found = self.problem.at_with(self.method, contraction, (self.near, ending))?;
         self.near = found.unknowns();
-        self.seen.add(&found.response);
+        self.seen.add(&found);
         Ok(found)
     }
 
@@ -255,6 +263,78 @@ impl Problem {
                 Err(FibreError::NotConverged { contraction: at, residual: value, iterations: 100 })
             }
         }
+    }
+}
+
+/// What a place on a path is to have.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Goal {
+    Contraction(f64),
+    /// \[N\].
+    Force(f64),
+    /// \[m^3\].
+    Volume(f64),
+}
+
+impl Problem {
+    /// An equilibrium from the paths of this muscle, with what a search has seen, which takes long; the first that pulls, or that exists where it need not.
+    pub(crate) fn on_a_path(
+        &self,
+        method: Method,
+        goal: Goal,
+        must_pull: bool,
+        seen: &Seen,
+    ) -> Option<Found> {
+        self.on_one_of(&mut Paths::of(&self.net, seen.last), method, goal, must_pull)
+    }
+
+    /// The end of the range on a path: the equilibrium at which the force vanishes, or the contraction at which the fibres of a muscle that pulls become slack.
+    pub(crate) fn limit_on_a_path(&self, method: Method, seen: &Seen) -> Option<Result<Found, f64>> {
+        let mut paths = Paths::of(&self.net, seen.last);
+        let found = self.on_one_of(&mut paths, method, Goal::Force(0.0), true).map(Ok);
+        found.or_else(|| paths.slackening().map(Err))
+    }
+
+    fn on_one_of(&self, paths: &mut Paths, method: Method, goal: Goal, must_pull: bool) -> Option<Found> {
+        let radius = self.muscle.radius().si();
+        let [unit_force, unit_volume] = [self.pressure * radius * radius, radius.powi(3)];
+        let excess = |place: &Place| match goal {
+            Goal::Contraction(asked) => place.contraction - asked,
+            Goal::Force(asked) => place.force - asked / unit_force,
+            Goal::Volume(asked) => place.volume - asked / unit_volume,
+        };
+        let places = paths.crossings(excess);
+        places.iter().find_map(|place| {
+            let found = self.near_place(method, goal, place).ok()?;
+            (self.pulls(&found.response) || !must_pull).then_some(found)
+        })
+    }
+
+    /// The equilibrium beside a place, by the usual way.
+    fn near_place(&self, method: Method, goal: Goal, place: &Place) -> Result<Found, FibreError> {
+        let excess = |found: &Found| match goal {
+            Goal::Contraction(asked) => asked - found.response.contraction,
+            Goal::Force(asked) => found.response.force_n - asked,
+            Goal::Volume(asked) => asked - found.response.volume_m3,
+        };
+        let near = Some(place.unknowns);
+        let mut walk = Walk { problem: self, method, near, seen: &mut { Seen::NOTHING }, excess };
+        if let Goal::Contraction(asked) = goal {
+            return walk.at(asked, true);
+        }
+        let mut at = place.contraction;
+        for _ in 0..NEAR_STEPS {
+            let (y, slope) = walk.value(at, true)?;
+            let step = -y / slope;
+            if step.abs() > NEARBY {
+                break;
+            }
+            at += step;
+            if step.abs() <= NEARBY * ROOT_TOLERANCE {
+                return walk.at(at, true);
+            }
+        }
+        Err(not_converged(at, NEAR_STEPS))
     }
 }
 

@@ -6,7 +6,7 @@ use bulge_numerics::Dual;
 use crate::FibreError;
 use crate::outcome::{Approach, Outcome, Solution};
 use crate::problem::{Problem, Variable};
-use crate::search::{FAR, Seen};
+use crate::search::{FAR, Goal, Seen};
 use crate::shape::{Method, Response};
 use crate::shooting::{EXACT, Ending, Total, USUAL};
 use crate::start::longest;
@@ -105,7 +105,7 @@ impl Problem {
             if !matches!(error, FibreError::NotConverged { .. }) {
                 return Err(error);
             }
-            self.walked(method, contraction).ok_or(error)
+            self.walked(method, contraction, false).ok_or(error)
         });
         found.map(|found| found.response)
     }
@@ -123,11 +123,14 @@ impl Problem {
         }
     }
 
-    /// The equilibrium at a contraction, step by step from where one is found.
-    fn walked(&self, method: Method, contraction: f64) -> Option<Found> {
+    /// The equilibrium at a contraction, step by step from where one is found, or from a path.
+    fn walked(&self, method: Method, contraction: f64, must_pull: bool) -> Option<Found> {
         let start = self.contraction_start().min(contraction);
-        let nothing = &mut { Seen::NOTHING };
-        self.root(method, [start, FAR], nothing, |found| contraction - found.response.contraction).ok()
+        let mut seen = Seen::NOTHING;
+        let walked =
+            self.root(method, [start, FAR], &mut seen, |found| contraction - found.response.contraction);
+        let walked = walked.ok().filter(|found| self.pulls(&found.response) || !must_pull);
+        walked.or_else(|| self.on_a_path(method, Goal::Contraction(contraction), must_pull, &seen))
     }
 
     /// The contraction at which the force vanishes.
@@ -152,8 +155,15 @@ impl Problem {
 
     /// The equilibrium at which the force vanishes.
     fn at_limit(&self, method: Method) -> Result<Found, FibreError> {
-        let start = self.contraction_start();
-        self.root(method, [start, FAR], &mut { Seen::NOTHING }, |found| found.response.force_n)
+        let way = [self.contraction_start(), FAR];
+        let mut seen = Seen::NOTHING;
+        match self.root(method, way, &mut seen, |found| found.response.force_n) {
+            Err(error @ FibreError::NotConverged { contraction, .. }) => {
+                let slack = |limit| FibreError::Slack { contraction, limit: Some(limit) };
+                self.limit_on_a_path(method, &seen).map_or(Err(error), |end| end.map_err(slack))
+            }
+            other => other,
+        }
     }
 
     /// Exact derivatives of force and volume with respect to the contraction, the pressure and every parameter of the muscle, by dual
@@ -218,7 +228,7 @@ impl Problem {
             Some(limit) if contraction <= limit => Err(FibreError::TooLong { contraction, limit }),
             // Step by step from where there is one.
             _ if matches!(error, FibreError::NotConverged { .. }) => {
-                self.walked(method, contraction).filter(|found| self.pulls(&found.response)).ok_or(error)
+                self.walked(method, contraction, true).ok_or(error)
             }
             _ => Err(error),
         }
@@ -239,9 +249,19 @@ impl Problem {
         let mut seen = Seen::NOTHING;
         let way = [self.contraction_start(), FAR];
         match self.root(method, way, &mut seen, |found| found.response.force_n - force) {
-            Err(FibreError::NotConverged { .. }) if seen.force < force => {
+            Err(error @ (FibreError::NotConverged { .. } | FibreError::Overstretched { .. })) => {
                 let Seen { force: high_n, contraction, .. } = seen;
-                Err(FibreError::ForceTooLarge { force_n: force, high_n, contraction })
+                if high_n.is_finite() && high_n < force {
+                    return Err(FibreError::ForceTooLarge { force_n: force, high_n, contraction });
+                }
+                self.on_a_path(method, Goal::Force(force), true, &seen).map_or_else(
+                    || match self.at_limit(method) {
+                        // Less than where the fibres slacken.
+                        Err(slack @ FibreError::Slack { limit: Some(_), .. }) => Err(slack),
+                        _ => Err(error),
+                    },
+                    Ok,
+                )
             }
             other => other,
         }
@@ -274,11 +294,14 @@ impl Problem {
         // Beyond the limit it falls again.
         match self.root(method, [start, limit], &mut seen, |found| volume - found.response.volume_m3) {
             Ok(found) if self.pulls(&found.response) => Ok(found),
-            Err(_) if seen.volume > volume => {
-                Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: seen.volume })
-            }
             Err(error @ FibreError::Slack { .. }) => Err(error),
-            _ => Err(FibreError::VolumeNotFound { volume_m3: volume }),
+            _ => self.on_a_path(method, Goal::Volume(volume), true, &seen).ok_or(
+                if seen.volume.is_finite() && seen.volume > volume {
+                    FibreError::VolumeTooSmall { volume_m3: volume, low_m3: seen.volume }
+                } else {
+                    FibreError::VolumeNotFound { volume_m3: volume }
+                },
+            ),
         }
     }
 

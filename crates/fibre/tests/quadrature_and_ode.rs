@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
-use bulge_fibre::{Approach, Problem};
+use bulge_fibre::{Approach, FibreError, Given, MOST_STRAIN, Problem};
 use bulge_muscles::{
     Bladder, Length, LineStiffness, Muscle, Parameter, Pressure, Quantity, Unfolding, preset,
 };
@@ -22,7 +22,6 @@ fn with(muscle: &Muscle, numbers: &[(Parameter, f64)]) -> Muscle {
 #[test]
 fn both_ways_give_the_same_equilibrium() {
     let bladder = [(Parameter::C10, 3e5), (Parameter::C01, 5e4)];
-    let cloth = Unfolding::new(LineStiffness::from_si(8e4), Length::from_si(0.035)).unwrap();
     let pleated = preset("ppam-2-r16").unwrap();
     let muscles = [
         braid(300.0, 28.6),
@@ -34,11 +33,13 @@ fn both_ways_give_the_same_equilibrium() {
             &[bladder[0], (Parameter::FittingRadius, 0.0085), (Parameter::GasWall, 1e-3)],
         ),
         with(&pleated, &[(Parameter::Misalignment, 0.1)]),
-        pleated.clone().with_unfolding(cloth),
+        cloth(&pleated, 8e4, 0.035),
         with(&braid(300.0, 28.6), &[(Parameter::FibreStiffness, 5e3)]),
         with(&braid(300.0, 28.6), &[bladder[0], bladder[1], (Parameter::FibreStiffness, 5e3)]),
         with(&braid(40.0, 20.0), &[bladder[0], (Parameter::FibreStiffness, 500.0)]),
         with(&pleated, &[(Parameter::FibreStiffness, 12e3)]),
+        with(&cloth(&pleated, 8e4, 0.035), &[(Parameter::FibreStiffness, 12e3)]),
+        with(&cloth(&braid(300.0, 28.6), 3e4, 0.0115), &[bladder[0], (Parameter::FibreStiffness, 5e3)]),
     ];
     let mut tried = 0;
     for muscle in &muscles {
@@ -146,6 +147,12 @@ fn evaluations_stay_few() {
             3.0,
             &[(0.02, 704), (0.1, 824), (0.2, 1007)],
         ),
+        (
+            "elastic braid with cloth",
+            &with(&cloth(&long, 8e3, 0.0115), &[(Parameter::FibreStiffness, 5e3)]),
+            3.0,
+            &[(0.02, 552), (0.1, 1342)],
+        ),
     ] {
         let problem = Problem::new(muscle, Pressure::bar(bar)).unwrap();
         for (contraction, expected) in counts {
@@ -155,4 +162,55 @@ fn evaluations_stay_few() {
             assert!(is_near, "{name}, {contraction}: {count} evaluations, {expected} expected");
         }
     }
+}
+
+/// Braids on narrow fittings whose stiff cloth comes taut within a part of 10^4 of the contraction, a long one whose gas acts far inside, and rubber on wide fittings, which
+/// leaves little to contract: found on a path of equilibria. F = -p dV/dl, or dF/dp = -dV/dl with stored energy.
+#[test]
+fn paths_lead_where_no_start_does() {
+    let narrow = cloth(&with(&braid(150.0, 40.0), &[(Parameter::FittingRadius, 0.004)]), 3e5, 0.0042);
+    let inside = with(&braid(947.3, 12.078), &[(Parameter::GasWall, 2.2055e-3)]);
+    let problem = Problem::new(&narrow, Pressure::bar(1.0)).unwrap();
+    let limit = problem.contraction_limit(Approach::Auto).unwrap();
+    let force = |pressure: f64, contraction: f64| {
+        let problem = Problem::new(&narrow, Pressure::bar(pressure)).unwrap();
+        problem.follow(contraction, Approach::Auto).unwrap()
+    };
+    let middle = limit - 2e-3;
+    let by_pressure = (force(1.001, middle).force_n - force(0.999, middle).force_n) / 200.0;
+    let [up, down] = [1e-6, -1e-6].map(|step| force(1.0, middle + step).volume_polygon_m3);
+    let by_length = (up - down) / (2e-6 * narrow.length().si());
+    assert!((by_pressure / by_length - 1.0).abs() < 1e-4, "{by_pressure} {by_length}");
+    let held = problem.solve(Given::Force(0.5 * force(1.0, middle).force_n), Approach::Auto).unwrap();
+    assert!(held.contraction > middle && held.contraction < limit, "{}", held.contraction);
+    let beyond = problem.solve(Given::Contraction(0.1), Approach::Auto).unwrap_err();
+    assert!(matches!(beyond, FibreError::BeyondLimit { .. }), "{beyond}");
+
+    let problem = Problem::new(&inside, Pressure::bar(1.0)).unwrap();
+    let at = |contraction: f64| problem.solve(Given::Contraction(contraction), Approach::Auto).unwrap();
+    let slope = (at(0.01356 + 1e-5).volume_polygon_m3 - at(0.01356 - 1e-5).volume_polygon_m3)
+        / (2e-5 * inside.length().si());
+    assert!((at(0.01356).force_n / (1e5 * slope) - 1.0).abs() < 1e-5, "{slope}");
+}
+
+/// Elastic fibres are not drawn out farther than any fibre bears: status 3 with the largest force, and every approach alike.
+#[test]
+fn fibres_are_not_drawn_out_beyond_what_they_bear() {
+    let stiffness = [(Parameter::FibreStiffness, 5e3)];
+    for muscle in [with(&braid(300.0, 28.6), &stiffness), with(&preset("ppam-2-r16").unwrap(), &stiffness)] {
+        let problem = Problem::new(&muscle, Pressure::bar(2.0)).unwrap();
+        let all = 5e3 * f64::from(muscle.fibres().unwrap());
+        let error = problem.solve(Given::Force(1e7), Approach::Auto).unwrap_err();
+        let FibreError::ForceTooLarge { high_n, contraction, .. } = error else { panic!("{error}") };
+        // T = EA times the strain; the force is that of the fibres, nearly along the axis.
+        assert!(high_n > 0.8 * MOST_STRAIN * all && high_n < 1.01 * MOST_STRAIN * all, "{high_n} of {all}");
+        assert!(contraction > -0.6 && contraction < -0.2, "{contraction}");
+        assert!(problem.solve(Given::Force(0.99 * high_n), Approach::Auto).is_ok());
+        let error = problem.solve(Given::Contraction(-3.0), Approach::Auto).unwrap_err();
+        assert!(matches!(error, FibreError::Overstretched { .. }), "{error}");
+    }
+    // Inextensible fibres that are all but straight.
+    let problem = Problem::new(&preset("dmsp-20-250").unwrap(), Pressure::bar(2.0)).unwrap();
+    let error = problem.solve(Given::Force(1e6), Approach::Auto).unwrap_err();
+    assert!(matches!(error, FibreError::ForceTooLarge { .. }), "{error}");
 }

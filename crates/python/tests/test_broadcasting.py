@@ -207,6 +207,55 @@ def test_pressure_must_push(ppam):
             ppam.force(0.1, pressure=pressure)
 
 
+@pytest.mark.parametrize("contraction", [1.0, "120 %"])
+def test_a_muscle_that_contracts_by_its_length_has_none(ppam, braid, cylinder, contraction):
+    for muscle in [ppam, braid, cylinder]:
+        calls = [
+            lambda: muscle.force(contraction, pressure=BAR),  # noqa: B023
+            lambda: muscle.evaluate(["force", "volume"], contraction, pressure=[BAR, 2 * BAR]),  # noqa: B023
+            lambda: muscle.shape(contraction=contraction, pressure=BAR),  # noqa: B023
+        ]
+        # A point of an array without an answer is one kind of exception, whatever the reason.
+        for call, kind in zip(calls, [bulge.NoSolutionError, bulge.NoSolutionError, bulge.InputError], strict=True):
+            with pytest.raises(kind, match="contracts by 100 % has no length") as caught:
+                call()
+            assert "\n" not in str(caught.value)
+    found = ppam.force([0.1, 1.0, 1.2], pressure=BAR, errors="coerce")
+    assert np.isnan(found).tolist() == [False, True, True]
+
+
+BRAID_WITH_WALL = """
+name = "b"
+kind = "braided"
+length = "250 mm"
+radius = "10 mm"
+braid_angle = "25 deg"
+wall = "{wall}"
+[effects.wall-thickness]
+"""
+
+
+@pytest.mark.parametrize("wall", ["-2 mm", "10 mm", "nan mm"])
+def test_walls_that_leave_no_room_are_refused(tmp_path, wall):
+    numbers = {"kind": "braided", "length": "250 mm", "radius": "10 mm", "braid_angle": "25 deg"}
+    text = BRAID_WITH_WALL.format(wall=wall)
+    file = tmp_path / "braid.toml"
+    file.write_text(text)
+    hose = bulge.Muscle.from_toml(BRAID_WITH_WALL.format(wall="2 mm"))
+    ways = [
+        lambda: bulge.Muscle(wall=wall, **numbers).force(0.1, pressure=BAR),
+        lambda: bulge.Muscle.from_toml(text),
+        lambda: bulge.Muscle.from_toml(file),
+        lambda: hose.replace(wall=wall),
+    ]
+    for way in ways:
+        with pytest.raises(bulge.InputError, match="wall"):
+            way()
+    with pytest.raises(bulge.BulgeError, match="wall"):
+        hose.force(0.1, pressure=BAR, wall=wall)
+    assert wall == "nan mm" or np.isnan(hose.force(0.1, pressure=BAR, wall=wall, errors="coerce"))
+
+
 def test_the_same_mistake_is_the_same_exception(ppam):
     kinds = set()
     for call in [lambda: ppam.force(float("nan"), pressure=BAR), lambda: ppam.shape(contraction=float("nan"), pressure=BAR)]:

@@ -1,5 +1,6 @@
 //! One chunk of a sweep: its points computed, and as the bytes of a Parquet file or of CSV. A pure function of the plan and the chunk's number.
 
+use bulge_fibre::RangeEnd;
 use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -57,7 +58,7 @@ pub struct Computer<'a> {
 /// The muscle of the last point, which its neighbours share.
 struct Last {
     number: u64,
-    member: Result<(Member, Option<f64>), String>,
+    member: Result<(Member, Option<RangeEnd>), String>,
 }
 
 impl<'a> Computer<'a> {
@@ -95,14 +96,15 @@ impl<'a> Computer<'a> {
                 Some(same) if same.number == member => same,
                 _ => Last { number: member, member: self.member(&point, follows) },
             };
-            let found = now.member.as_ref().map_err(Clone::clone).and_then(|(member, limit)| {
-                begins_below(&place, *limit)?;
+            let found = now.member.as_ref().map_err(Clone::clone).and_then(|(member, end)| {
+                let limit = end.map(RangeEnd::contraction);
+                begins_below(&place, limit)?;
                 for (x, at) in point.iter_mut().zip(&place) {
                     *x = at.value(limit.unwrap_or(1.0));
                 }
                 let contraction = self.family.contraction(&point);
                 member
-                    .pulling(contraction, *limit, &self.plan.outputs, &mut values)
+                    .pulling(contraction, *end, &self.plan.outputs, &mut values)
                     .map_err(|error| error.to_string())?;
                 finite(&values, &self.plan.outputs)
             });
@@ -148,10 +150,10 @@ impl<'a> Computer<'a> {
         all
     }
 
-    fn member(&self, point: &[f64], follows: bool) -> Result<(Member, Option<f64>), String> {
+    fn member(&self, point: &[f64], follows: bool) -> Result<(Member, Option<RangeEnd>), String> {
         let of = |member: Member| {
-            let limit = if follows { Some(member.contraction_limit()?) } else { None };
-            Ok((member, limit))
+            let end = if follows { Some(member.range_end()?) } else { None };
+            Ok((member, end))
         };
         self.family.member(point).and_then(of).map_err(|error: FamilyError| error.to_string())
     }

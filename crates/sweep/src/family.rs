@@ -1,7 +1,7 @@
 //! The family of muscles that the axes of a plan span: the muscle at a point of the axes, and its outputs.
 
 use bulge_effects::{Catalogue, Group, Known, known};
-use bulge_fibre::{Approach, FibreError, Given, Gradient, Problem, Response, Variable};
+use bulge_fibre::{Approach, FibreError, Given, Gradient, Problem, RangeEnd, Response, Variable};
 use bulge_model::Extended;
 use bulge_muscles::{Muscle, Parameter, Pressure, Quantity as _};
 use std::f64::consts::TAU;
@@ -332,6 +332,17 @@ impl Member {
         }
     }
 
+    /// Where the equilibria that pull end as the muscle contracts: its force vanishes, or its fibres slacken before.
+    ///
+    /// # Errors
+    /// If it isn't found.
+    pub fn range_end(&self) -> Result<RangeEnd, FamilyError> {
+        match &self.extended {
+            Some(extended) => Ok(extended.range_end(self.problem.pressure(), self.approach)?),
+            None => Ok(self.problem.range_end(self.approach)?),
+        }
+    }
+
     /// Outputs at a contraction, followed beyond the limit.
     ///
     /// # Errors
@@ -349,30 +360,37 @@ impl Member {
     /// Outputs at a contraction at which the muscle pulls.
     ///
     /// # Errors
-    /// If there is no equilibrium, or the muscle would have to push: the limit is named.
+    /// If there is no equilibrium, or the muscle would have to push or its fibres be slack: the limit is named.
     pub fn pulling(
         &self,
         contraction: f64,
-        limit: Option<f64>,
+        end: Option<RangeEnd>,
         outputs: &[Output],
         values: &mut [f64],
     ) -> Result<(), FamilyError> {
-        if let Some(limit) = limit
-            && contraction > limit
+        if let Some(end) = end
+            && contraction > end.contraction()
         {
-            return Err(FibreError::BeyondLimit { contraction, limit }.into());
+            return Err(end.beyond(contraction).into());
         }
-        let response = self.response(contraction)?;
+        let response = self.response(contraction).map_err(|error| self.with_limit(contraction, error))?;
         let scale = self.scales[0].abs();
         if response.force_n < -1e-9 * scale {
-            let limit = self.contraction_limit()?;
-            return Err(if contraction > limit {
-                FibreError::BeyondLimit { contraction, limit }.into()
-            } else {
-                FibreError::WouldPush { contraction, force_n: response.force_n }.into()
-            });
+            let end = self.range_end()?;
+            let beyond = contraction > end.contraction();
+            let pushes = FibreError::WouldPush { contraction, force_n: response.force_n };
+            return Err(if beyond { end.beyond(contraction) } else { pushes }.into());
         }
         self.outputs_of(&response, outputs, values)
+    }
+
+    /// What is said of slack fibres, with the limit of the range.
+    fn with_limit(&self, contraction: f64, error: FamilyError) -> FamilyError {
+        let is_unnamed = matches!(error, FamilyError::Equilibrium(FibreError::Slack { limit: None, .. }));
+        match is_unnamed.then(|| self.range_end()) {
+            Some(Ok(end)) if contraction > end.contraction() => end.beyond(contraction).into(),
+            _ => error,
+        }
     }
 
     fn response(&self, contraction: f64) -> Result<Response, FamilyError> {

@@ -404,10 +404,10 @@ impl Joint {
         }
         let [mut low, mut high] = whole;
         for (muscle, pressure) in self.muscles.iter().zip(pressures) {
-            let limit =
-                muscle.family.member(&[muscle.contraction, pressure]).and_then(|m| m.contraction_limit());
-            let limit = limit.map_err(|error| muscle.failed(0.0, pressure, error))?;
-            let bounds = [if muscle.is_singular { LEAST_CONTRACTION } else { f64::NEG_INFINITY }, limit];
+            let end = muscle.family.member(&[muscle.contraction, pressure]).and_then(|m| m.range_end());
+            let end = end.map_err(|error| muscle.failed(0.0, pressure, error))?;
+            let bounds =
+                [if muscle.is_singular { LEAST_CONTRACTION } else { f64::NEG_INFINITY }, end.contraction()];
             for angle in whole {
                 let contraction = muscle.contraction(&self.linkage, angle);
                 let bound = contraction.clamp(bounds[0], bounds[1]);

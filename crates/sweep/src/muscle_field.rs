@@ -1,7 +1,5 @@
 //! A family of muscles as a field to tabulate: the contraction first, up to its limit.
 
-use bulge_fibre::FibreError;
-
 use crate::certified::{Field, FieldAxis, FieldOutput, NoValue};
 use crate::family::Family;
 use crate::family_error::FamilyError;
@@ -97,9 +95,9 @@ fn ends_before_limit(family: &Family, plan: &Plan, contraction: f64) -> Result<(
             }
             rest /= 3;
         }
-        let limit = family.member(&point)?.contraction_limit()?;
-        if contraction > limit {
-            return Err(FibreError::BeyondLimit { contraction, limit }.into());
+        let end = family.member(&point)?.range_end()?;
+        if contraction > end.contraction() {
+            return Err(end.beyond(contraction).into());
         }
     }
     Ok(())
@@ -125,7 +123,8 @@ impl Field for MuscleField {
         point.extend_from_slice(others);
         let planned = self.planned(&point);
         let limit = self.family.member(&planned).and_then(|member| member.contraction_limit());
-        limit.map_err(none("the contraction limit is not found", &planned))
+        limit
+            .map_err(none("no contraction at which the force vanishes, where this table is to end", &planned))
     }
 
     fn values(&self, point: &[f64], values: &mut [f64]) -> Result<(), NoValue> {

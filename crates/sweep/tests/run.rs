@@ -525,6 +525,41 @@ fn points_without_equilibrium_say_why() {
     }
 }
 
+/// A range to the limit ends where the fibres slacken, if that comes before the force vanishes; and points beyond are told that limit.
+#[test]
+fn a_range_ends_where_fibres_slacken() {
+    let folder = TempDir::new().unwrap();
+    let text = "name = \"b\"\nkind = \"braided\"\nlength = \"60 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nwall = \"3 mm\"\n\
+        [effects.wall-thickness]\n[effects.end-radius]\nradius = \"16 mm\"\n[effects.bladder-elasticity]\nc10 = \"2 MPa\"\n";
+    fs::write(folder.path().join("muscle.toml"), text).unwrap();
+    let sweep = |range: &str| {
+        let text = format!(
+            "muscle = \"muscle.toml\"\npressure = \"2 bar\"\noutputs = [\"force\"]\n[axes.contraction]\nrange = \"{range}\"\npoints = 5\n"
+        );
+        Plan::from_toml(&text, "sweep.toml", Some(folder.path())).unwrap()
+    };
+    let to_limit = sweep("10 %..limit");
+    let rows_of = |plan: &Plan| {
+        let folder = whole(plan, false);
+        let rows = rows(folder.path());
+        assert_whole(plan, &rows);
+        rows
+    };
+    let found = rows_of(&to_limit);
+    assert_eq!(found.iter().find_map(reason), None);
+    let limit = number(&found[4], "contraction").unwrap();
+    // The muscle still pulls where its fibres slacken.
+    assert!(number(&found[4], "force").unwrap() > 1.0, "{limit}");
+    let named = format!("{:.4} % on", 100.0 * limit);
+    let beyond = rows_of(&sweep("10 %..50 %"));
+    let reasons: Vec<&str> = beyond.iter().filter_map(reason).collect();
+    assert!(!reasons.is_empty() && reasons.len() < 5, "{reasons:?}");
+    assert!(
+        reasons.iter().all(|reason| reason.contains("slack") && reason.contains(&named)),
+        "{named}: {reasons:?}"
+    );
+}
+
 #[test]
 fn a_range_that_begins_beyond_the_limit_says_so() {
     // Slender muscles contract further: 45 % exists for some of them only.

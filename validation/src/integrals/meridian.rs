@@ -26,6 +26,8 @@ const GAUSS: [(f64, f64); 10] = [
 const SERIES: f64 = 1e-4;
 /// Longest piece in u.
 const PIECE: f64 = 1.2;
+/// Halvings towards fittings on which fibres nearly lie along the circumference.
+const HALVINGS: u32 = 12;
 /// Part of the way below which a saddle is a cosh exactly.
 const SADDLE: f64 = 1e-10;
 
@@ -170,11 +172,17 @@ pub(super) fn meridian(net: &Net, radius: f64, second: f64) -> Option<Meridian> 
     for (stretch, last) in stretches.into_iter().flatten() {
         let to = end(last);
         let pieces = ((to - from) / PIECE).ceil().max(2.0);
-        let step = (to - from) / pieces;
-        let mut left = 0.0;
-        while left < pieces {
+        let whole = (to - from) / pieces;
+        // Where the fibres lie nearly along the circumference the last piece is halved towards its end.
+        let mut left = from;
+        let mut halvings = if net.is_steep() { HALVINGS } else { 0 };
+        while left < to - 1e-12 * (to - from) {
+            let rest = to - left;
+            let is_last = rest < 1.5 * whole;
+            let step = if is_last && halvings > 0 { 0.5 * rest } else { rest.min(whole) };
+            halvings -= u32::from(is_last && halvings > 0);
             for (node, weight) in GAUSS {
-                let u = from + step * (left + node);
+                let u = left + step * node;
                 let rho = place(u);
                 let [gap, force, sigma, tension] = stretch.at(rho, sum.guess)?;
                 let turned = gap / force;
@@ -196,7 +204,7 @@ pub(super) fn meridian(net: &Net, radius: f64, second: f64) -> Option<Meridian> 
                 let r = middle.radius - middle.side * rho;
                 sum.add(along / sine, sigma, 1.0 - turned, net.volume_area(r), tension);
             }
-            left += 1.0;
+            left += step;
         }
         from = to;
     }

@@ -17,6 +17,9 @@ const LOBED_STEP: f64 = 1e-6;
 /// Newton iterations for a tension.
 const ITERATIONS: u32 = 60;
 
+/// Squared sine of the fibres' angle at the fittings from which on sigma and the rubber change much on the last part of the way.
+const STEEP: f64 = 0.8;
+
 /// What the pressure acts on.
 #[derive(Debug, Clone)]
 enum Area {
@@ -169,6 +172,11 @@ impl Net {
 
     pub(super) fn is_inextensible(&self) -> bool {
         self.compliance == 0.0
+    }
+
+    /// Whether fibres nearly lie along the circumference at the fittings.
+    pub(super) fn is_steep(&self) -> bool {
+        (self.turn * self.end).powi(2) > STEEP
     }
 
     fn wall(&self, r: f64, sigma: f64, taut: bool) -> Wall {

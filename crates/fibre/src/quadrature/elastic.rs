@@ -7,108 +7,64 @@
 //! ```
 //!
 //! with rho = |r_mid - r|. G'' is known wherever T is ([`Net::local`]), and nothing is a difference of large numbers: near a saddle, where s is exp(-50), as elsewhere.
-//! T and g are smooth functions of rho, interpolated between Chebyshev's points (L. N. Trefethen, *Approximation Theory and Approximation Practice*, SIAM 2013,
-//! chapters 2 to 8): twice as many, until the last coefficients of both vanish.
+//! T and g are smooth functions of rho, interpolated between Chebyshev's points (see `chebyshev`): twice as many, until the last
+//! coefficients of both vanish; on pieces, where that takes too many. One begins where cloth comes taut: there H and G'
+//! are continuous and G'' jumps.
 
 use arrayvec::ArrayVec;
-use bulge_numerics::{Real, gauss};
-use std::f64::consts::PI;
-use std::sync::LazyLock;
+use bulge_numerics::Real;
 
+use super::chebyshev::{GRIDS, Grid, INTERVALS, MOST};
 use super::{Ends, Local, Meridian, Point};
 use crate::meridian::Middle;
 use crate::net::Net;
 
-/// Intervals between Chebyshev's points: the first that is enough.
-const INTERVALS: [usize; 4] = [8, 16, 32, 64];
-/// Points for the most intervals.
-const MOST: usize = 65;
-/// Size of the last two Chebyshev coefficients, relative to the function, from which on it counts as resolved: the integrals then err by about the square root of the ratio of
-/// two coefficients less.
-const RESOLVED: f64 = 3e-12;
+/// Pieces of a meridian, and points on all of them, at most.
+const MOST_PIECES: usize = 6;
+const MOST_NODES: usize = 200;
 /// Newton steps for a tension from that of a neighbour.
 const STEPS: u32 = 20;
 /// Step of the tension, relative, at which they end: the next one is rounding.
 const SETTLED: f64 = 1e-9;
 
-/// Chebyshev's points between 0 (mid-length) and 1 (fitting), with what interpolates and integrates between them.
-struct Grid {
-    places: Vec<f64>,
-    /// Barycentric weights.
-    weights: Vec<f64>,
-    /// Row i: weights of the values in the integral of (1 - t) f(t x_i) over t from 0 to 1.
-    doubly: Vec<Vec<f64>>,
-    /// Weights of the values in the last two Chebyshev coefficients.
-    last: [Vec<f64>; 2],
-}
-
-impl Grid {
-    fn new(intervals: usize) -> Self {
-        let angle = |i: usize| PI * i as f64 / intervals as f64;
-        let half = |i: usize| if i == 0 || i == intervals { 0.5 } else { 1.0 };
-        let weight = |i: usize| if i.is_multiple_of(2) { half(i) } else { -half(i) };
-        let of_all = |f: &dyn Fn(usize) -> f64| (0..=intervals).map(f).collect::<Vec<_>>();
-        let mut grid = Self {
-            places: of_all(&|i| (0.5 * angle(i)).sin().powi(2)),
-            weights: of_all(&weight),
-            doubly: Vec::new(),
-            last: [
-                of_all(&|i| weight(i) / intervals as f64),
-                of_all(&|i| 2.0 * weight(i) * angle(i).cos() / intervals as f64),
-            ],
-        };
-        grid.doubly = grid.places.iter().map(|x| grid.integrated(*x)).collect();
-        grid
-    }
-
-    /// Weights of the values in the integral of (1 - t) f(t x) over t from 0 to 1.
-    fn integrated(&self, x: f64) -> Vec<f64> {
-        let mut weights = vec![0.0; self.places.len()];
-        // Pieces on which the rule of six points is exact for polynomials of this degree, up to rounding.
-        let pieces = self.places.len().div_ceil(4);
-        for piece in 0..pieces {
-            for (node, weight) in gauss::SIX {
-                let t = (piece as f64 + node) / pieces as f64;
-                let factor = weight / pieces as f64 * (1.0 - t);
-                for (sum, share) in weights.iter_mut().zip(self.shares(t * x)) {
-                    *sum += factor * share;
-                }
-            }
-        }
-        weights
-    }
-
-    /// The weights of the values in the interpolated one at `x`: the barycentric formula.
-    fn shares(&self, x: f64) -> ArrayVec<f64, MOST> {
-        let pairs = self.places.iter().zip(&self.weights);
-        let mut shares: ArrayVec<f64, MOST> = pairs.map(|(place, weight)| weight / (x - place)).collect();
-        let sum: f64 = shares.iter().sum();
-        if sum.is_finite() {
-            let per_sum = 1.0 / sum;
-            shares.iter_mut().for_each(|share| *share *= per_sum);
-        } else {
-            // One of the points.
-            shares.iter_mut().for_each(|share| *share = f64::from(u8::from(share.is_infinite())));
-        }
-        shares
-    }
-
-    /// Whether values at the points are those of a function that they resolve.
-    fn resolves(&self, values: &(impl Iterator<Item = f64> + Clone)) -> bool {
-        let sum = |weights: &[f64]| weights.iter().zip(values.clone()).map(|(w, v)| w * v).sum::<f64>().abs();
-        let largest = values.clone().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        sum(&self.last[0]) + sum(&self.last[1]) <= RESOLVED * largest
-    }
-}
-
-static GRIDS: LazyLock<[Grid; INTERVALS.len()]> = LazyLock::new(|| INTERVALS.map(Grid::new));
-
 /// What is known at one of Chebyshev's points.
 #[derive(Debug, Clone, Copy)]
 struct Node<D> {
     strain: D,
-    /// g.
+    /// g of its piece.
     curve: D,
+}
+
+/// A part of the way from mid-length to the fitting on which one law acts and one grid is enough, with G = G_0 + x (G'_0 + x g), x from its beginning.
+#[derive(Debug, Clone, Copy)]
+struct Piece<D> {
+    span: Span,
+    /// Place of its first node.
+    first: usize,
+    /// G_0, G'_0.
+    rise: D,
+    slope: D,
+}
+
+/// Where a piece lies, as parts of rho at the fitting.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    from: f64,
+    to: f64,
+    /// Whether the cloth is slack there although it is taut at mid-length.
+    slack: bool,
+    grid: usize,
+}
+
+impl Span {
+    fn grid(&self) -> &'static Grid {
+        &GRIDS[self.grid]
+    }
+
+    fn parts(&self) -> impl Iterator<Item = f64> {
+        let (from, length) = (self.from, self.to - self.from);
+        self.grid().places.iter().map(move |place| from + length * place)
+    }
 }
 
 /// A meridian of elastic fibres.
@@ -116,40 +72,55 @@ pub(super) struct Elastic<D> {
     ends: Ends<D>,
     /// N - A at mid-length.
     force: D,
-    /// s.
-    slope: D,
-    grid: &'static Grid,
-    nodes: ArrayVec<Node<D>, MOST>,
-    /// Tension at the fitting.
+    /// H.
+    energy: D,
+    pieces: ArrayVec<Piece<D>, MOST_PIECES>,
+    nodes: ArrayVec<Node<D>, MOST_NODES>,
+    /// Where the last piece ends: tension, G, G' and G''.
     tension: D,
+    rise: D,
+    slope: D,
+    bend: D,
+    /// The net with what acts at mid-length.
     net: Net<D>,
 }
 
-/// The tensions at Chebyshev's points, and how many there are.
+/// The pieces of a meridian and the tensions at their points.
 pub(super) struct Tensions {
-    grid: usize,
-    values: ArrayVec<f64, MOST>,
+    spans: ArrayVec<Span, MOST_PIECES>,
+    values: ArrayVec<f64, MOST_NODES>,
 }
 
 impl Tensions {
     /// As many as resolve the meridian from a middle; none where there is none, or where that takes too many. They are added to `evaluations`.
     pub(super) fn of(net: &Net<f64>, middle: &Middle<f64>, evaluations: &mut u32) -> Option<Self> {
-        let r_m = net.end_radius + middle.bulge;
-        let energy = net.hamiltonian(r_m, middle.tension);
-        (0..INTERVALS.len()).find_map(|grid| {
-            let mut values = ArrayVec::new();
-            let (mut r, mut tension) = (r_m, middle.tension);
-            for place in &GRIDS[grid].places {
-                let next = r_m - middle.bulge * place;
-                let near = tension + net.local(r, tension).tension_r * (next - r);
-                tension = tension_at(net, next, energy, near)?;
-                r = next;
-                values.push(tension);
-                *evaluations += 1;
+        let mut meridian = Elastic::begun(net, middle);
+        let mut found = Self { spans: ArrayVec::new(), values: ArrayVec::new() };
+        let kink = meridian.kink().filter(|kink| *kink < 1.0);
+        let mut rest: ArrayVec<(f64, f64, bool), MOST_PIECES> = ArrayVec::new();
+        rest.extend(kink.map(|kink| (kink, 1.0, true)));
+        rest.push((0.0, kink.unwrap_or(1.0), false));
+        while let Some((from, to, slack)) = rest.pop() {
+            let span = |grid| Span { from, to, slack, grid };
+            let mut resolved = false;
+            for grid in 0..INTERVALS.len() {
+                let values = meridian.tensions(&span(grid), evaluations)?;
+                let tried = meridian.beside(&span(grid), &values)?;
+                if tried.is_resolved {
+                    found.values.try_extend_from_slice(&values).ok()?;
+                    found.spans.try_push(span(grid)).ok()?;
+                    meridian.add(&tried)?;
+                    resolved = true;
+                    break;
+                }
             }
-            let tensions = Self { grid, values };
-            Elastic::of(net, middle, &tensions).is_resolved().then_some(tensions)
-        })
+            if !resolved {
+                let middle = 0.5 * (from + to);
+                rest.try_push((middle, to, slack)).ok()?;
+                rest.try_push((from, middle, slack)).ok()?;
+            }
+        }
+        Some(found)
     }
 }
 
@@ -163,7 +134,8 @@ fn tension_at(net: &Net<f64>, r: f64, energy: f64, near: f64) -> Option<f64> {
         if !step.is_finite() {
             return None;
         }
-        if step.abs() <= SETTLED * tension.abs() {
+        // Fibres that are nearly slack carry less than rounding makes of the rubber's energy.
+        if step.abs() <= SETTLED * tension.abs().max(energy.abs()) {
             return Some(tension - (net.hamiltonian(r, tension) - energy) / slope);
         }
     }
@@ -176,45 +148,134 @@ fn slope_of_energy(net: &Net<f64>, r: f64, tension: f64) -> f64 {
     local.sigma * local.force_t
 }
 
+/// A piece with its nodes, and where it ends.
+struct Tried<D> {
+    piece: Piece<D>,
+    nodes: ArrayVec<Node<D>, MOST>,
+    tension: D,
+    rise: D,
+    slope: D,
+    bend: D,
+    is_resolved: bool,
+}
+
 impl<D: Real> Elastic<D> {
-    pub(super) fn of(net: &Net<D>, middle: &Middle<D>, tensions: &Tensions) -> Self {
-        let ends = Ends::of(net, middle);
-        let force = net.local(ends.r_m, middle.tension).force;
-        let energy = net.hamiltonian(ends.r_m, middle.tension);
-        let plain = net.constant();
-        let grid = &GRIDS[tensions.grid];
-        let mut strains: ArrayVec<D, MOST> = ArrayVec::new();
-        let mut second: ArrayVec<D, MOST> = ArrayVec::new();
-        let mut last = middle.tension;
-        for (place, value) in grid.places.iter().zip(&tensions.values) {
-            let r = ends.r_m - middle.bulge * *place;
-            // One Newton step that carries the derivatives.
-            let gap = net.hamiltonian(r, D::from(*value)) - energy;
-            last = -gap / slope_of_energy(&plain, r.value(), *value) + *value;
-            strains.push(net.compliance * last);
-            second.push(net.local(r, last).hoop_r - net.section(r).area_rr);
+    pub(super) fn of(net: &Net<D>, middle: &Middle<D>, tensions: &Tensions) -> Option<Self> {
+        let mut meridian = Self::begun(net, middle);
+        let mut values = tensions.values.as_slice();
+        for span in &tensions.spans {
+            let (here, rest) = values.split_at_checked(span.grid().places.len())?;
+            let piece = meridian.beside(span, here)?;
+            meridian.add(&piece)?;
+            values = rest;
         }
-        let curve = |weights: &[f64]| {
-            let terms = weights.iter().zip(&second);
-            terms.fold(D::from(0.0), |sum, (weight, value)| value.scale_add(*weight, sum))
-        };
-        let nodes =
-            strains.iter().zip(&grid.doubly).map(|(strain, row)| Node { strain: *strain, curve: curve(row) });
+        Some(meridian)
+    }
+
+    /// At mid-length.
+    fn begun(net: &Net<D>, middle: &Middle<D>) -> Self {
+        let ends = Ends::of(net, middle);
+        let net = net.acting_at(ends.r_m.value());
+        let force = net.local(ends.r_m, middle.tension).force;
+        let zero = D::from(0.0);
         Self {
             force: force - net.area(ends.r_m),
+            energy: net.hamiltonian(ends.r_m, middle.tension),
+            pieces: ArrayVec::new(),
+            nodes: ArrayVec::new(),
+            tension: middle.tension,
+            rise: zero,
             slope: middle.curvature * force * ends.side,
-            grid,
-            nodes: nodes.collect(),
-            tension: last,
-            net: *net,
+            bend: zero,
+            net,
             ends,
         }
     }
 
-    fn is_resolved(&self) -> bool {
-        let strains = self.nodes.iter().map(|node| node.strain.value() + 1.0);
-        let curves = self.nodes.iter().map(|node| node.curve.value());
-        self.grid.resolves(&strains) && self.grid.resolves(&curves)
+    fn law(&self, span: &Span) -> Net<D> {
+        if span.slack { Net { cloth: None, ..self.net } } else { self.net }
+    }
+
+    fn radius(&self, part: f64) -> D {
+        self.ends.r_m - self.ends.bulge * part
+    }
+
+    /// The next piece, on which the fibres have tensions near `values`.
+    fn beside(&self, span: &Span, values: &[f64]) -> Option<Tried<D>> {
+        let net = self.law(span);
+        let (plain, grid) = (net.constant(), span.grid());
+        let mut strains: ArrayVec<D, MOST> = ArrayVec::new();
+        let mut bends: ArrayVec<D, MOST> = ArrayVec::new();
+        let mut tension = self.tension;
+        for (part, value) in span.parts().zip(values) {
+            let r = self.radius(part);
+            // One Newton step that carries the derivatives.
+            let gap = net.hamiltonian(r, D::from(*value)) - self.energy;
+            tension = -gap / slope_of_energy(&plain, r.value(), *value) + *value;
+            strains.push(net.compliance * tension);
+            bends.push(net.local(r, tension).hoop_r - net.section(r).area_rr);
+        }
+        let sum = |weights: &[f64]| {
+            let terms = weights.iter().zip(&bends);
+            terms.fold(D::from(0.0), |sum, (weight, value)| value.scale_add(*weight, sum))
+        };
+        let (size, bend) = (self.ends.size, *bends.last()?);
+        let mut slope = self.slope;
+        if let (Some(cloth), Some(last)) = (&self.net.cloth, self.pieces.last())
+            && span.slack
+            && !last.span.slack
+        {
+            // The pieces stay where they are as the radius moves at which G'' jumps.
+            let moved = self.ends.r_m - cloth.radius - size * span.from;
+            slope += (self.bend - *bends.first()?) * moved;
+        }
+        let nodes: ArrayVec<Node<D>, MOST> = strains
+            .iter()
+            .zip(&grid.doubly)
+            .map(|(strain, row)| Node { strain: *strain, curve: sum(row) })
+            .collect();
+        let length = size * (span.to - span.from);
+        let curve = nodes.last()?.curve;
+        let is_resolved = grid.resolves(&nodes.iter().map(|node| node.strain.value() + 1.0), 0.0)
+            && grid.resolves(
+                &nodes.iter().map(|node| node.curve.value()),
+                (self.rise / length.squared()).value(),
+            );
+        Some(Tried {
+            piece: Piece { span: *span, first: self.nodes.len(), rise: self.rise, slope },
+            nodes,
+            tension,
+            rise: self.rise + length * (slope + length * curve),
+            slope: slope + length * sum(&grid.singly),
+            bend,
+            is_resolved,
+        })
+    }
+
+    fn add(&mut self, tried: &Tried<D>) -> Option<()> {
+        self.nodes.try_extend_from_slice(&tried.nodes).ok()?;
+        self.pieces.try_push(tried.piece).ok()?;
+        (self.tension, self.rise, self.slope, self.bend) =
+            (tried.tension, tried.rise, tried.slope, tried.bend);
+        Some(())
+    }
+}
+
+impl Elastic<f64> {
+    /// The tensions at the points of the next piece.
+    fn tensions(&self, span: &Span, evaluations: &mut u32) -> Option<ArrayVec<f64, MOST>> {
+        let net = self.law(span);
+        let (mut r, mut tension) = (self.radius(span.from), self.tension);
+        let mut values = ArrayVec::new();
+        for part in span.parts() {
+            let next = self.radius(part);
+            let near = tension + net.local(r, tension).tension_r * (next - r);
+            tension = tension_at(&net, next, self.energy, near)?;
+            r = next;
+            values.push(tension);
+            *evaluations += 1;
+        }
+        Some(values)
     }
 }
 
@@ -225,26 +286,38 @@ impl<D: Real> Meridian<D> for Elastic<D> {
 
     fn ratio(&self) -> f64 {
         let first = self.nodes.first().map_or(f64::NAN, |node| node.curve.value());
-        self.ends.size.value() * first / self.slope.value()
+        let slope = self.pieces.first().map_or(f64::NAN, |piece| piece.slope.value());
+        self.ends.size.value() * first / slope
     }
 
     fn kink(&self) -> Option<f64> {
-        None
+        let cloth = self.net.cloth?;
+        Some(((self.ends.r_m - cloth.radius) / self.ends.size).value())
     }
 
     fn at(&self, point: &Point) -> Local<D> {
-        let Ends { r_m, bulge, size, q2, .. } = self.ends;
-        let r = r_m - bulge * point.part;
-        let y = r * r;
+        let Ends { r_m, size, q2, .. } = self.ends;
         let zero = D::from(0.0);
-        let shares = self.grid.shares(point.part);
-        let [strain, curve] =
-            self.nodes.iter().zip(&shares).fold([zero; 2], |[strain, curve], (node, share)| {
-                [node.strain.scale_add(*share, strain), node.curve.scale_add(*share, curve)]
-            });
+        let reaches = |piece: &&Piece<D>| piece.span.to >= point.part && piece.span.slack == point.slack;
+        let Some(piece) = self.pieces.iter().find(reaches).or(self.pieces.last()) else {
+            // Without pieces there is no meridian.
+            let none = D::from(f64::NAN);
+            return Local { y: none, r: none, sigma: none, strain: none, g: none, whole: none, turned: none };
+        };
+        let Span { from, to, .. } = piece.span;
+        let shares = piece.span.grid().shares((point.part - from) / (to - from));
+        let nodes = self.nodes.iter().skip(piece.first).zip(&shares);
+        let [strain, curve] = nodes.fold([zero; 2], |[strain, curve], (node, share)| {
+            [node.strain.scale_add(*share, strain), node.curve.scale_add(*share, curve)]
+        });
+        let r = self.radius(point.part);
+        let y = r * r;
         let sigma = ((strain + 1.0).squared() - q2 * y).sqrt();
-        let rho = size * point.part;
-        let g = self.slope + rho * curve;
+        let (rho, x) = (size * point.part, size * (point.part - from));
+        let mut g = piece.slope + x * curve;
+        if from > 0.0 {
+            g = (piece.rise + x * g) / rho;
+        }
         let rise = g * rho;
         let force = self.force + self.net.area(r) + rise;
         Local { y, r, sigma, strain, g: sigma * g / (r + r_m), whole: sigma * force, turned: rise / force }
