@@ -26,13 +26,17 @@ pub(crate) fn settled(
     options: &Options,
 ) -> Result<Minimum, LeastSquaresError<ModelError>> {
     let mut at = start.to_vec();
-    // Where the equilibria were solved last, and the sum of squares there.
+    // Where the equilibria were solved last but one, and the sum of squares there.
     let mut solved: Option<(Vec<f64>, f64)> = None;
-    for _ in 0..ROUNDS {
+    let solve = |at: &[f64]| {
         problem.hold();
-        let here = cost(problem, &at).ok();
+        cost(problem, at).ok()
+    };
+    let mut here = None;
+    for _ in 0..ROUNDS {
+        let solved_here = here.take().unwrap_or_else(|| solve(&at));
         let began = solved.as_ref().map_or(f64::INFINITY, |(_, cost)| *cost);
-        let Some(here) = here.filter(|here| *here <= began + near(began)) else {
+        let Some(cost_here) = solved_here.filter(|here| *here <= began + near(began)) else {
             // No equilibrium where the linear ones led, or further from the data than before: half of the way.
             let Some((before, _)) = &solved else { break };
             at = before.iter().zip(&at).map(|(before, at)| 0.5 * (before + at)).collect();
@@ -42,12 +46,20 @@ pub(crate) fn settled(
             break;
         }
         let minimum = minimise(problem, &at, bounds, options)?;
-        if minimum.cost >= here - near(here) && (is_still(&at, &minimum) || is_exact(problem, &minimum)) {
+        let is_end = minimum.cost >= cost_here - near(cost_here);
+        if is_end && is_still(&at, &minimum) {
             problem.release();
             return Ok(minimum);
         }
+        let there = solve(&minimum.theta);
+        // The equilibria there give the same sum of squares.
+        if is_end && there.is_some_and(|cost| (cost - minimum.cost).abs() <= near(cost)) {
+            problem.release();
+            return Ok(minimum);
+        }
+        here = Some(there);
         let from = std::mem::replace(&mut at, minimum.theta);
-        solved = Some((from, here));
+        solved = Some((from, cost_here));
     }
     problem.release();
     let from = solved.map_or_else(|| start.to_vec(), |(from, _)| from);
@@ -59,12 +71,6 @@ fn is_still(from: &[f64], minimum: &Minimum) -> bool {
     let k = from.len();
     let column = |j: usize| (0..k).map(|i| minimum.r[i * k + j].powi(2)).sum::<f64>().sqrt();
     from.iter().zip(&minimum.theta).enumerate().all(|(j, (from, to))| (to - from).abs() * column(j) < STILL)
-}
-
-/// Whether the equilibria at the minimum give it the same sum of squares.
-fn is_exact(problem: &FitProblem<'_>, minimum: &Minimum) -> bool {
-    problem.hold();
-    cost(problem, &minimum.theta).is_ok_and(|cost| (cost - minimum.cost).abs() <= near(cost))
 }
 
 fn near(cost: f64) -> f64 {
