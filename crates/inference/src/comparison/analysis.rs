@@ -177,8 +177,9 @@ impl<'a> Analysis<'a> {
     pub(crate) fn climb(&self, count: usize, below: Option<&Climbed>) -> Result<Climbed, InferenceError> {
         let prepared = self.model(count)?;
         let mut theta = prepared.model.start();
+        let mut known = Vec::new();
         if let Some(below) = below {
-            carry_over(&below.prepared.model, &below.theta, &prepared.model, &mut theta);
+            known = carry_over(&below.prepared.model, &below.theta, &prepared.model, &mut theta);
         }
         let near = self.near.filter(|_| count == self.options.effects.len());
         if let Some((model, numbers)) = near {
@@ -192,6 +193,7 @@ impl<'a> Analysis<'a> {
                 record: &self.record,
                 used: &self.used.mask,
                 noise: self.noise,
+                known: &known,
                 is_near: near.is_some(),
                 quick: false,
             };
@@ -440,8 +442,14 @@ impl<'a> Analysis<'a> {
                 return Ok(None);
             }
             let theta = if numbers > 0 {
-                let task =
-                    Task { record: &thin, used: &train, noise: self.noise, is_near: true, quick: true };
+                let task = Task {
+                    record: &thin,
+                    used: &train,
+                    noise: self.noise,
+                    known: &[],
+                    is_near: true,
+                    quick: true,
+                };
                 fit(&climbed.prepared, &climbed.theta, &task)?.theta
             } else {
                 climbed.theta.clone()

@@ -66,6 +66,7 @@ fn fitted(analysis: &Analysis<'_>, law: &'static Law, values: &[f64]) -> Result<
         record: &analysis.record,
         used: &analysis.used.mask,
         noise: analysis.noise,
+        known: &[],
         is_near: true,
         quick: true,
     };

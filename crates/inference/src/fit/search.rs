@@ -20,7 +20,7 @@ use bulge_muscles::units::significant;
 const FEW_ROWS: usize = 400;
 /// Refinement of the lattice on which they are: their minima are followed on the usual one.
 const COARSE: f64 = 0.5;
-/// Starting points: where it begins, nearly off, and two for each number that isn't known from a data sheet; this many at most.
+/// Starting points: where it begins, nearly off, and two for each number that neither a data sheet nor a smaller model knows; this many at most.
 const STARTS: usize = 8;
 /// Standard deviations of a data sheet within which a rig error is its noise.
 const SHEET: f64 = 4.0;
@@ -51,6 +51,8 @@ pub(crate) struct Task<'a> {
     pub(crate) record: &'a Record,
     pub(crate) used: &'a [bool],
     pub(crate) noise: Noise,
+    /// For each number whether it starts where a fit without the others left it, and stays there in most of the starts; empty if none does.
+    pub(crate) known: &'a [bool],
     /// Tries only the start that it is given: one that is known to be near the minimum.
     pub(crate) is_near: bool,
     /// Makes no statement about uncertainty: for held-out errors.
@@ -201,8 +203,10 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     };
     let mut starts = vec![clamped(problem.coordinates(start), &bounds.lower, &bounds.upper)];
     starts.push(clamped(problem.coordinates(&nearly_off(model, start)), &bounds.lower, &bounds.upper));
-    let unknown = free(model).into_iter().filter(|index| !prepared.nuisance[*index]).count();
-    starts.extend(scattered(prepared, &problem, start, (2 * unknown).min(STARTS - 2)));
+    let is_known = |index: usize| task.known.get(index).is_some_and(|known| *known);
+    let unknown =
+        free(model).into_iter().filter(|index| !prepared.nuisance[*index] && !is_known(*index)).count();
+    starts.extend(scattered(prepared, &problem, (start, &is_known), (2 * unknown).min(STARTS - 2)));
     let tried = starts.len();
     let followed: Vec<_> =
         starts.par_iter().map(|coordinates| settled(&problem_of(), coordinates, &bounds, &options)).collect();
@@ -275,11 +279,16 @@ fn nearly_off(model: &Model, start: &[f64]) -> Vec<f64> {
     start.iter().zip(model.off()).map(towards).collect()
 }
 
-/// Points of the plausible box, in the coordinates of the search; numbers with a narrow prior stay near its mean.
-fn scattered(prepared: &Prepared, problem: &FitProblem<'_>, start: &[f64], count: usize) -> Vec<Vec<f64>> {
+/// Points of the plausible box, in the coordinates of the search; numbers with a narrow prior stay near its mean, those that are known where they start.
+fn scattered(
+    prepared: &Prepared,
+    problem: &FitProblem<'_>,
+    (start, is_known): (&[f64], &dyn Fn(usize) -> bool),
+    count: usize,
+) -> Vec<Vec<f64>> {
     let model = &prepared.model;
     let (mut lowest, mut highest) = (start.to_vec(), start.to_vec());
-    for index in free(model) {
+    for index in free(model).into_iter().filter(|index| !is_known(*index)) {
         let p = &model.parameters()[index];
         let (low, high) = match prepared.priors[index] {
             Some((mean, sd)) if prepared.nuisance[index] => (mean - sd, mean + sd),
