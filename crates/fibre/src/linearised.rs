@@ -17,7 +17,7 @@ use crate::closed_form::Near;
 use crate::outcome::{Approach, Outcome, Solution};
 use crate::problem::{Problem, Variable};
 use crate::shape::Convergence;
-use crate::shooting::{FITTED, Total};
+use crate::shooting::{BESIDE, FITTED, Total};
 use crate::unknowns::Unknowns;
 
 /// A value with its derivatives, in SI.
@@ -181,8 +181,9 @@ impl Problem {
             Found::Shooting(shot) => Some(shot.towards(self, ask.contraction)),
             Found::ClosedForm(_) => None,
         });
+        let ending = if from.is_some() { BESIDE } else { FITTED };
         let outcome =
-            self.outcome_of_many(self.method(ask.approach)?, ask.contraction, &net, from, FITTED)?;
+            self.outcome_of_many(self.method(ask.approach)?, ask.contraction, &net, from, ending)?;
         let with_contraction = |total: &Total<N>| {
             let mut gradient = total.by_parameter;
             gradient[0] = total.by_contraction;

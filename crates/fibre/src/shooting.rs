@@ -88,6 +88,8 @@ pub(crate) const EXACT: Ending = Ending {
 };
 /// The same in a fit, which asks thousands of times and may ask far from sense: nothing that is found takes more.
 pub(crate) const FITTED: Ending = Ending { most: 15_000, ..EXACT };
+/// The same beside an equilibrium that was found: what isn't found from there or anew is hardly there.
+pub(crate) const BESIDE: Ending = Ending { most: 7_500, ..FITTED };
 /// Newton iterations from a start that was given, after which the search begins anew: a good one takes two or three.
 const MOST_FROM_NEAR: u32 = 8;
 /// Where the meridian is a quadrature, which has no tolerance and costs little: the step after which the next one is as small as rounding lets it be.

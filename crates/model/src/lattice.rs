@@ -48,7 +48,7 @@ type Solved = (usize, Node, Option<Start>);
 
 /// Nodes beyond the one at which the force vanishes: rows up to there have whole stencils. Further on equilibria soon end, and finding out where takes long; a row there is solved
 /// itself.
-const BEYOND: usize = 4;
+const BEYOND: usize = 3;
 
 /// The nodes of one pressure.
 struct Line {

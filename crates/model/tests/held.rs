@@ -134,6 +134,6 @@ fn rows_next_to_the_end_of_equilibria_are_those_solved_alone() {
     let full = found.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
     let interpolated = errors.iter().filter(|error| **error > 0.0).count();
     let worst = errors.iter().copied().fold(0.0, f64::max);
-    // Two thirds and more are interpolated; the rest, next to the end, is solved row by row.
-    assert!(worst < 1e-4 * full && 3 * interpolated > 2 * errors.len(), "{worst} N, {interpolated}");
+    // Up to where the force vanishes rows are interpolated; the rest, next to the end, is solved row by row.
+    assert!(worst < 1e-4 * full && 2 * interpolated > errors.len(), "{worst} N, {interpolated}");
 }
