@@ -1,7 +1,7 @@
 //! Model against measurement: the ladder of errors, rung by rung, and where the error lies.
 
 use bulge_effects::Effect;
-use bulge_measurements::{Data, QualityOptions};
+use bulge_measurements::{Data, Finding, QualityOptions};
 use bulge_model::{Model, ModelError};
 use bulge_muscles::{Muscle, Quantity};
 use std::collections::HashMap;
@@ -39,6 +39,7 @@ pub(crate) fn compare_near(
 pub struct Comparing<'a> {
     analysis: Analysis<'a>,
     floor: Option<NoiseFloor>,
+    quality: Vec<Finding>,
     base: Arc<Step>,
     /// By the effects up to each, in their order.
     steps: Mutex<HashMap<Vec<String>, Arc<Step>>>,
@@ -74,7 +75,10 @@ impl<'a> Comparing<'a> {
         // Weights follow from the noise: the first rung again if it fits anything.
         let climbed = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
         let base = Arc::new(Step { rung: analysis.rung(0, &climbed), climbed });
-        Ok(Self { analysis, floor, base, steps: Mutex::default() })
+        let quality =
+            QualityOptions { l0_m: Some(analysis.muscle.length().si()), ..QualityOptions::default() };
+        let quality = analysis.data.quality(&quality).findings;
+        Ok(Self { analysis, floor, quality, base, steps: Mutex::default() })
     }
 
     /// Compares with these effects, in this order, instead of those of the options.
@@ -145,8 +149,10 @@ impl<'a> Comparing<'a> {
             let name = step.rung.added.as_deref().unwrap_or("base");
             warnings.extend(step.climbed.failed.as_ref().map(|error| not_fitted(name, error)));
         }
+        let (contributions, maps) =
+            rayon::join(|| stack::contributions(analysis, last), || residuals::maps(analysis, forces));
         // With the last fit's numbers the muscle may not even pull before all effects are in.
-        let contributions = stack::contributions(analysis, last).unwrap_or_else(|error| {
+        let contributions = contributions.unwrap_or_else(|error| {
             warnings.push(format!("what each effect contributes can't be shown one by one: {error}"));
             Vec::new()
         });
@@ -154,20 +160,18 @@ impl<'a> Comparing<'a> {
             let why = "with the numbers of the last fit the muscle has no state before all effects are in";
             warnings.push(format!("what each effect contributes can't be shown one by one: {why}"));
         }
-        let Analysis { data, muscle, options, .. } = analysis;
+        let Analysis { muscle, options, .. } = analysis;
         Ok(Comparison {
             schema: "bulge.comparison/1",
             muscle: muscle.name().to_owned(),
             base: options.law.as_ref().map_or("equilibrium", |(law, _, _)| law.name).to_owned(),
             data: analysis.summary(),
-            quality: data
-                .quality(&QualityOptions { l0_m: Some(muscle.length().si()), ..QualityOptions::default() })
-                .findings,
+            quality: self.quality.clone(),
             noise_floor: floor,
             by: residuals::breakdowns(analysis, forces),
             loops: loops::gaps(analysis, forces),
             isotonic: isotonic::held_loads(analysis, [&ladder[0].climbed, last]),
-            maps: residuals::maps(analysis, forces),
+            maps,
             curves: residuals::curves(analysis, forces),
             contributions,
             scatter: residuals::scatter(analysis, forces),

@@ -20,7 +20,8 @@ use bulge_muscles::units::significant;
 const FEW_ROWS: usize = 400;
 /// Refinement of the lattice on which they are: their minima are followed on the usual one.
 const COARSE: f64 = 0.5;
-/// Starting points: where it begins, nearly off, and two for each number that neither a data sheet nor a smaller model knows; this many at most.
+/// Starting points: where it begins, nearly off, one for the first number that neither a data sheet nor a smaller model knows and two for each further one; this many at
+/// most.
 const STARTS: usize = 8;
 /// Standard deviations of a data sheet within which a rig error is its noise.
 const SHEET: f64 = 4.0;
@@ -206,7 +207,12 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
     let is_known = |index: usize| task.known.get(index).is_some_and(|known| *known);
     let unknown =
         free(model).into_iter().filter(|index| !prepared.nuisance[*index] && !is_known(*index)).count();
-    starts.extend(scattered(prepared, &problem, (start, &is_known), (2 * unknown).min(STARTS - 2)));
+    starts.extend(scattered(
+        prepared,
+        &problem,
+        (start, &is_known),
+        (2 * unknown).saturating_sub(1).min(STARTS - 2),
+    ));
     let tried = starts.len();
     let followed: Vec<_> =
         starts.par_iter().map(|coordinates| settled(&problem_of(), coordinates, &bounds, &options)).collect();
