@@ -343,22 +343,11 @@ impl<'a> Analysis<'a> {
 
     /// What no model can go below, as the residuals of a rung show it.
     pub(crate) fn noise_floor(&self, climbed: &Climbed) -> Option<NoiseFloor> {
-        let residuals: Vec<f64> = self
-            .record
-            .force()
-            .iter()
-            .zip(&climbed.force)
-            .map(|(measured, model)| measured - model)
-            .collect();
         let repeats = self.data.repeats(self.muscle.length().si());
-        let used: Vec<bool> = self
-            .used
-            .mask
-            .iter()
-            .zip(&climbed.force)
-            .map(|(used, force)| *used && force.is_finite())
-            .collect();
-        noise_floor(repeats.pure_error().as_ref(), &self.record, &used, &residuals, self.muscle)
+        let (measured, force) = (self.record.force(), &climbed.force);
+        let counts = |row: usize| self.used.mask[row] && force[row].is_finite();
+        let residual = |row: usize| measured[row] - force[row];
+        noise_floor(repeats.pure_error().as_ref(), &self.record, &counts, &residual, self.muscle)
     }
 
     /// The noise of the force from here on, and the floor for people. What the residuals show to be a disturbed reading doesn't count from here on, and rows whose

@@ -21,12 +21,12 @@ const MOST_READINGS: usize = 100_000;
 /// Part of the sum of squares below which what a promised decrease leaves may be rounding.
 const LEFT: f64 = 1e-9;
 
-/// From repeats, else from what a smooth surface leaves, else from the data sheet.
+/// From repeats, else from what a smooth surface leaves of the residuals of the rows that count, else from the data sheet.
 pub(crate) fn noise_floor(
     repeats: Option<&PureError>,
     record: &Record,
-    used: &[bool],
-    residuals: &[f64],
+    counts: &dyn Fn(usize) -> bool,
+    residual: &dyn Fn(usize) -> f64,
     muscle: &Muscle,
 ) -> Option<NoiseFloor> {
     if let Some(error) = repeats.filter(|error| error.degrees_of_freedom >= ENOUGH && error.sd_n > 0.0) {
@@ -39,7 +39,7 @@ pub(crate) fn noise_floor(
             ),
         });
     }
-    if let Some((sd_n, columns)) = saturated(record, used, residuals) {
+    if let Some((sd_n, columns)) = saturated(record, counts, residual) {
         // No reading is better than its last digit.
         let sd_n = sd_n.max(step(record.force()) / 12.0_f64.sqrt());
         return Some(NoiseFloor {
@@ -113,8 +113,12 @@ impl Residuals for Surface {
 }
 
 /// Standard deviation about a smooth surface and its number of columns; none if there are too few rows for one.
-fn saturated(record: &Record, used: &[bool], residuals: &[f64]) -> Option<(f64, usize)> {
-    let counting = || (0..record.len()).filter(|row| used[*row]);
+fn saturated(
+    record: &Record,
+    counts: &dyn Fn(usize) -> bool,
+    residual: &dyn Fn(usize) -> f64,
+) -> Option<(f64, usize)> {
+    let counting = || (0..record.len()).filter(|row| counts(*row));
     let step = counting().count().div_ceil(MOST_ROWS).max(1);
     let rows: Vec<usize> = counting().step_by(step).collect();
     let moments = record.moments();
@@ -138,7 +142,6 @@ fn saturated(record: &Record, used: &[bool], residuals: &[f64]) -> Option<(f64, 
         },
     );
     let parities = if record.is_path() { 2 } else { 1 };
-    let sweeps = sweep_of(record.sweeps(), record.len());
     let offsets = if record.is_path() && record.sweeps().len() <= 20 { record.sweeps().len() - 1 } else { 0 };
     let columns = (degrees_p + 1) * (degrees_e + 1) * parities + offsets;
     if n < 2 * columns + 5 {
@@ -157,9 +160,10 @@ fn saturated(record: &Record, used: &[bool], residuals: &[f64]) -> Option<(f64, 
                 matrix.extend(along_e.iter().map(|y| sign * x * y));
             }
         }
-        matrix.extend((1..=offsets).map(|sweep| if sweeps[*row] == sweep { 1.0 } else { 0.0 }));
+        let own = sweep_of(record.sweeps(), *row);
+        matrix.extend((1..=offsets).map(|sweep| if own == sweep { 1.0 } else { 0.0 }));
     }
-    let values: Vec<f64> = rows.iter().map(|row| residuals[*row]).collect();
+    let values: Vec<f64> = rows.iter().map(|row| residual(*row)).collect();
     let surface = Surface { columns, rows: matrix, values };
     let fitted = |max_evaluations| {
         let options = Options { check_curvature: false, max_evaluations, ..Options::default() };
@@ -172,20 +176,24 @@ fn saturated(record: &Record, used: &[bool], residuals: &[f64]) -> Option<(f64, 
     let freedom = n.checked_sub(rank).filter(|f| *f > 0)?;
     let smooth = (cost / freedom as f64).sqrt();
     // What a coarse surface can't follow would count as noise: neighbours along a sweep know better.
-    let local = neighbours(record, used, residuals).unwrap_or(f64::INFINITY);
+    let local = neighbours(record, counts, residual).unwrap_or(f64::INFINITY);
     Some((smooth.min(local.max(0.5 * smooth)), columns)).filter(|(sd, _)| *sd > 0.0)
 }
 
 /// Scatter from second differences along the sweeps: `r_(i-1) - 2 r_i + r_(i+1)` has the variance 6 sd^2.
-fn neighbours(record: &Record, used: &[bool], residuals: &[f64]) -> Option<f64> {
+fn neighbours(
+    record: &Record,
+    counts: &dyn Fn(usize) -> bool,
+    residual: &dyn Fn(usize) -> f64,
+) -> Option<f64> {
     if !record.is_path() {
         return None;
     }
     let mut squares: Vec<f64> = Vec::new();
     for sweep in record.sweeps() {
         for i in (sweep.start + 1..sweep.end.saturating_sub(1)).step_by(every(record.len())) {
-            if used[i - 1] && used[i] && used[i + 1] {
-                let d = residuals[i - 1] - 2.0 * residuals[i] + residuals[i + 1];
+            if counts(i - 1) && counts(i) && counts(i + 1) {
+                let d = residual(i - 1) - 2.0 * residual(i) + residual(i + 1);
                 squares.push(d.abs() / 6.0_f64.sqrt());
             }
         }
@@ -231,7 +239,7 @@ mod tests {
         // A model that meets the rounded readings to a millionth of a newton.
         let residuals: Vec<f64> = (0..120).map(|i| 1e-6 * f64::from(i * 37 % 11)).collect();
         let muscle = preset("ppam-2-r16").unwrap();
-        let floor = noise_floor(None, &record, &[true; 120], &residuals, &muscle).unwrap();
+        let floor = noise_floor(None, &record, &|_| true, &|row| residuals[row], &muscle).unwrap();
         assert!((floor.sd_n - 40.0 / 12.0_f64.sqrt()).abs() < 1e-9, "{}", floor.sd_n);
     }
 }

@@ -122,7 +122,8 @@ impl Folds {
             return folded("specimen", of, record.specimens().len());
         }
         if record.sweeps().len() >= 3 {
-            return folded("sweep", sweep_of(record.sweeps(), record.len()), record.sweeps().len());
+            let of = (0..record.len()).map(|row| sweep_of(record.sweeps(), row)).collect();
+            return folded("sweep", of, record.sweeps().len());
         }
         None
     }
@@ -155,12 +156,8 @@ fn held(values: &[f64], used: &[bool]) -> Option<(Vec<usize>, usize)> {
 }
 
 /// Number of the sweep of each row.
-pub(crate) fn sweep_of(sweeps: &[Range<usize>], rows: usize) -> Vec<usize> {
-    let mut of = vec![0; rows];
-    for (number, sweep) in sweeps.iter().enumerate() {
-        of[sweep.clone()].fill(number);
-    }
-    of
+pub(crate) fn sweep_of(sweeps: &[Range<usize>], row: usize) -> usize {
+    sweeps.partition_point(|sweep| sweep.end <= row)
 }
 
 #[cfg(test)]

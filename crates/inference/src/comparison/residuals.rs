@@ -28,13 +28,12 @@ pub(crate) struct Errors {
 pub(crate) fn summary(analysis: &Analysis<'_>, force: &Vec<f64>) -> Errors {
     let measured = analysis.record.force();
     let has_any = analysis.with_state(&[force]).next().is_some();
-    let counted: Vec<usize> =
-        if has_any { analysis.with_state(&[force]).collect() } else { analysis.rows().collect() };
-    let n = counted.len().max(1) as f64;
-    let mean = counted.iter().map(|row| measured[*row]).sum::<f64>() / n;
+    let counted = || analysis.rows().filter(|row| !has_any || force[*row].is_finite());
+    let n = counted().count().max(1) as f64;
+    let mean = counted().map(|row| measured[row]).sum::<f64>() / n;
     let mut sums = [0.0; 3];
     let mut largest: f64 = 0.0;
-    for row in counted {
+    for row in counted() {
         let error = measured[row] - if has_any { force[row] } else { 0.0 };
         sums[0] += error;
         sums[1] += error * error;
@@ -47,10 +46,10 @@ pub(crate) fn summary(analysis: &Analysis<'_>, force: &Vec<f64>) -> Errors {
 }
 
 /// A variable cut into groups: name and unit, group of each row, label and middle of each group.
-struct Groups {
+struct Groups<'a> {
     variable: &'static str,
     unit: &'static str,
-    of: Vec<usize>,
+    of: Box<dyn Fn(usize) -> usize + 'a>,
     labels: Vec<(String, f64)>,
 }
 
@@ -59,71 +58,69 @@ pub(crate) fn breakdowns(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2]) -> Vec
     let record = &analysis.record;
     let moments = record.moments();
     let mut found: Vec<Breakdown> = Vec::new();
-    // One after the other: of many rows the groups alone are large.
-    let mut add = |groups: Groups| found.push(broken_down(analysis, forces, groups));
+    let mut add = |groups: Groups<'_>| found.push(broken_down(analysis, forces, groups));
     let levels = &analysis.levels;
     add(Groups {
         variable: "pressure",
         unit: "bar",
-        of: (0..record.len()).map(|row| levels.at(row)).collect(),
+        of: Box::new(|row| levels.at(row)),
         labels: levels.mean.iter().map(|p| (format!("{:.2}", p / 1e5), p / 1e5)).collect(),
     });
-    let bar_free = |variable, unit, value: &dyn Fn(usize) -> f64| even(analysis, variable, unit, value);
-    bar_free("contraction", "%", &|row| 100.0 * moments[row].contraction).into_iter().for_each(&mut add);
+    even(analysis, "contraction", "%", &|row| 100.0 * moments[row].contraction)
+        .into_iter()
+        .for_each(&mut add);
     if record.is_path() {
-        let of = moments
-            .iter()
-            .map(|m| {
-                if m.branch() > 0.0 {
-                    0
-                } else if m.branch() < 0.0 {
-                    2
-                } else {
-                    1
-                }
-            })
-            .collect();
+        let of = |row: usize| {
+            let branch = moments[row].branch();
+            if branch > 0.0 {
+                0
+            } else if branch < 0.0 {
+                2
+            } else {
+                1
+            }
+        };
         let [there, back] = branches(&analysis.data);
         let labels = [(there, 1.0), ("at rest", 0.0), (back, -1.0)];
         let labels = labels.into_iter().map(|(label, at)| (label.to_owned(), at)).collect();
-        add(Groups { variable: "direction", unit: "", of, labels });
+        add(Groups { variable: "direction", unit: "", of: Box::new(of), labels });
     }
     if record.has_time() {
-        bar_free("rate", "%/s", &|row| 100.0 * moments[row].rate).into_iter().for_each(&mut add);
-        bar_free("time", "s", &|row| moments[row].clock).into_iter().for_each(&mut add);
+        even(analysis, "rate", "%/s", &|row| 100.0 * moments[row].rate).into_iter().for_each(&mut add);
+        even(analysis, "time", "s", &|row| moments[row].clock).into_iter().for_each(&mut add);
     }
     if record.sweeps().len() <= MOST_SWEEPS {
         let labels = analysis.data.sweeps().iter().enumerate().map(|(i, s)| (s.name.clone(), (i + 1) as f64));
-        let of = sweep_of(record.sweeps(), record.len());
-        add(Groups { variable: "sweep", unit: "", of, labels: labels.collect() });
+        let of = |row| sweep_of(record.sweeps(), row);
+        add(Groups { variable: "sweep", unit: "", of: Box::new(of), labels: labels.collect() });
     }
     let names = record.specimens();
     add(Groups {
         variable: "specimen",
         unit: "",
-        of: moments.iter().map(|m| m.specimen as usize).collect(),
+        of: Box::new(|row| moments[row].specimen as usize),
         labels: names.iter().enumerate().map(|(i, name)| (name.clone(), (i + 1) as f64)).collect(),
     });
     if moments.iter().any(|m| m.temperature != 0.0) {
-        bar_free("temperature", "K", &|row| moments[row].temperature).into_iter().for_each(&mut add);
+        even(analysis, "temperature", "K", &|row| moments[row].temperature).into_iter().for_each(&mut add);
     }
     found.retain(|breakdown| breakdown.bins.len() > 1);
     found
 }
 
 /// Bins of equal width; none if the variable doesn't vary.
-fn even(
+fn even<'a>(
     analysis: &Analysis<'_>,
     variable: &'static str,
     unit: &'static str,
-    value: &dyn Fn(usize) -> f64,
-) -> Option<Groups> {
+    value: &'a dyn Fn(usize) -> f64,
+) -> Option<Groups<'a>> {
     let [low, high] =
         analysis.rows().map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
     if high.is_nan() || high <= low {
         return None;
     }
-    let of = (0..analysis.record.len()).map(|row| bin(value(row), low, high, BINS)).collect();
+    let of = Box::new(move |row| bin(value(row), low, high, BINS));
     let width = (high - low) / BINS as f64;
     let label = |i: usize| {
         let start = low + i as f64 * width;
@@ -146,11 +143,11 @@ pub(crate) fn bin(value: f64, low: f64, high: f64, bins: usize) -> usize {
     bin
 }
 
-fn broken_down(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2], groups: Groups) -> Breakdown {
+fn broken_down(analysis: &Analysis<'_>, forces: [&Vec<f64>; 2], groups: Groups<'_>) -> Breakdown {
     let measured = analysis.record.force();
     let mut sums = vec![(0_usize, [0.0; 2], [0.0; 2]); groups.labels.len()];
     for row in analysis.with_state(&forces) {
-        let (rows, bias, square) = &mut sums[groups.of[row]];
+        let (rows, bias, square) = &mut sums[(groups.of)(row)];
         *rows += 1;
         for (i, force) in forces.iter().enumerate() {
             let error = measured[row] - force[row];
