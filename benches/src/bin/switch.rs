@@ -14,12 +14,13 @@ use std::time::Instant;
 
 const ROUNDS: usize = 5;
 
-fn median(mut run: impl FnMut() -> Result<(), Failure>) -> Result<f64, Failure> {
+fn median<T>(mut run: impl FnMut() -> Result<T, Failure>) -> Result<f64, Failure> {
     let mut times = Vec::new();
     for _ in 0..ROUNDS {
         let start = Instant::now();
-        run()?;
+        let answer = run()?;
         times.push(start.elapsed().as_secs_f64());
+        drop(answer);
     }
     times.sort_by(f64::total_cmp);
     Ok(times[ROUNDS / 2])
@@ -46,9 +47,9 @@ fn main() -> Result<(), Failure> {
         };
         let both = chosen(&["bladder-elasticity", friction])?;
         let all = Options { effects: both.clone(), ..options.clone() };
-        let time = median(|| Ok(drop(compare(data, muscle, &all)?)))?;
+        let time = median(|| Ok(compare(data, muscle, &all)?))?;
         println!("{name}, {} rows: compare with both, once\t{time:.4}", data.len());
-        let time = median(|| Ok(drop(Comparing::new(data, muscle, &options)?)))?;
+        let time = median(|| Ok(Comparing::new(data, muscle, &options)?))?;
         println!("{name}: the base\t{time:.4}");
         for (on, from) in [
             ("bladder-elasticity", &[][..]),
@@ -71,10 +72,10 @@ fn main() -> Result<(), Failure> {
         }
         let comparing = Comparing::new(data, muscle, &options)?;
         comparing.with(&both)?;
-        let time = median(|| Ok(drop(comparing.with(&both[..1])?)))?;
+        let time = median(|| Ok(comparing.with(&both[..1])?))?;
         println!("{name}: {friction} off\t{time:.4}");
         let options = DiagnoseOptions::new(options.clone());
-        let time = median(|| Ok(drop(diagnose(data, muscle, &options)?)))?;
+        let time = median(|| Ok(diagnose(data, muscle, &options)?))?;
         println!("{name}: diagnose\t{time:.4}");
     }
     Ok(())

@@ -9,6 +9,7 @@ use crate::stretch::{self, DeadBand, Stretch};
 use crate::sweep::{self, Contradiction, Sweep, SweepKind};
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 /// How the motion was measured, as measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +45,7 @@ pub enum Motion<'a> {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Data {
-    columns: Columns,
+    columns: Arc<Columns>,
     files: Vec<SourceFile>,
     lines: Vec<u32>,
     specimens: Vec<String>,
@@ -132,7 +133,7 @@ impl Data {
     /// One file; specimens and sweeps come with `structured`.
     fn start(source: Source) -> Self {
         Self {
-            columns: source.table.columns,
+            columns: Arc::new(source.table.columns),
             files: vec![source.file],
             lines: source.table.lines,
             reading: source.table.reading,
@@ -158,7 +159,7 @@ impl Data {
             return Err(MeasurementError::SameContent { first: same.name.clone(), second: name.clone() });
         }
         let first = self.files[0].name.clone();
-        self.columns.append(&source.table.columns, [&first, name])?;
+        Arc::make_mut(&mut self.columns).append(&source.table.columns, [&first, name])?;
         self.lines.extend(source.table.lines);
         self.reading.append(source.table.reading);
         self.files.push(source.file);
@@ -438,7 +439,7 @@ impl Data {
             kept.partition_point(|row| *row < rows.start)..kept.partition_point(|row| *row < rows.end)
         };
         let mut found = self.clone();
-        found.columns.filter(&kept);
+        Arc::make_mut(&mut found.columns).filter(&kept);
         found.lines = picked(&self.lines, &kept);
         let mut start = 0;
         for file in &mut found.files {
@@ -455,8 +456,9 @@ impl Data {
         found.finished()
     }
 
-    /// All columns.
-    pub(crate) fn columns(&self) -> &Columns {
+    /// All columns, to be shared: of many rows a copy is large.
+    #[must_use]
+    pub fn columns(&self) -> &Arc<Columns> {
         &self.columns
     }
 

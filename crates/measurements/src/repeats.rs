@@ -440,7 +440,7 @@ mod tests {
         ] {
             let data = loops(2, 100, 1.0, 0.0, 3);
             assert_eq!(data.repeats(1.0).groups().len(), 1);
-            let mut columns = data.columns().clone();
+            let mut columns = data.columns().as_ref().clone();
             change(&mut columns, 101..202);
             let repeats = Data::from_columns(columns).unwrap().repeats(1.0);
             assert!(repeats.groups().is_empty() && repeats.pure_error().is_none(), "{name}");

@@ -1,9 +1,16 @@
 //! A measured history made ready for a model: one moment per row, sweep by sweep.
 
 use bulge_effects::Moment;
-use bulge_measurements::{Data, History};
+use bulge_measurements::{Columns, Data, History};
 use std::ops::Range;
 use std::sync::Arc;
+
+/// Measured forces: those of the file, which has them anyway, or others.
+#[derive(Debug, Clone)]
+enum Forces {
+    Read(Arc<Columns>),
+    Given(Arc<Vec<f64>>),
+}
 
 /// The rows of a data set as moments, with what was measured.
 #[derive(Debug, Clone)]
@@ -14,7 +21,7 @@ pub struct Record {
     specimens: Vec<String>,
     /// Length of the muscle over that of each specimen; empty if all are of one length.
     shortness: Vec<f64>,
-    force: Arc<Vec<f64>>,
+    force: Forces,
     force_sd: Option<Vec<f64>>,
     is_path: bool,
     has_time: bool,
@@ -37,7 +44,7 @@ impl Record {
             sweeps,
             specimens: data.specimens().to_vec(),
             shortness,
-            force: Arc::new(data.force().to_vec()),
+            force: Forces::Read(Arc::clone(data.columns())),
             force_sd: data.force_sd().map(<[f64]>::to_vec),
             is_path: path.is_path,
             has_time: data.time().is_some(),
@@ -64,7 +71,7 @@ impl Record {
             sweeps,
             specimens: (1..=specimens).map(|i| i.to_string()).collect(),
             shortness: Vec::new(),
-            force: Arc::new(force),
+            force: Forces::Given(Arc::new(force)),
             force_sd: None,
         })
     }
@@ -90,7 +97,10 @@ impl Record {
     /// Measured force \[N\].
     #[must_use]
     pub fn force(&self) -> &[f64] {
-        &self.force
+        match &self.force {
+            Forces::Read(columns) => &columns.force_n,
+            Forces::Given(force) => force,
+        }
     }
 
     /// Standard deviation of each force \[N\], where the file states it.
@@ -227,7 +237,7 @@ impl Record {
             sweeps,
             specimens: self.specimens.clone(),
             shortness: self.shortness.clone(),
-            force: Arc::new(kept.iter().map(|row| self.force[*row]).collect()),
+            force: Forces::Given(Arc::new(kept.iter().map(|row| self.force()[*row]).collect())),
             force_sd: self.force_sd.as_ref().map(|sd| kept.iter().map(|row| sd[*row]).collect()),
             is_path: self.is_path,
             has_time: self.has_time,
@@ -240,9 +250,10 @@ impl Record {
     /// The same moments with other forces \[N\], one for each; those that are missing stay.
     #[must_use]
     pub fn with_force(mut self, force: Vec<f64>) -> Self {
-        for (own, new) in Arc::make_mut(&mut self.force).iter_mut().zip(force) {
-            *own = new;
-        }
+        let mut forces = force;
+        forces.truncate(self.len());
+        forces.extend_from_slice(&self.force()[forces.len()..]);
+        self.force = Forces::Given(Arc::new(forces));
         self
     }
 
@@ -316,7 +327,7 @@ impl Record {
             sweeps,
             specimens: self.specimens.clone(),
             shortness: self.shortness.clone(),
-            force: Arc::new(force),
+            force: Forces::Given(Arc::new(force)),
             force_sd: self.force_sd.as_ref().map(sd),
             is_path: self.is_path,
             has_time: self.has_time,
