@@ -10,6 +10,7 @@ use std::sync::Arc;
 use crate::FibreError;
 use crate::lobes::Lobes;
 use crate::net::{Bladder, Cloth, Net};
+use crate::quadrature;
 
 /// What the result may be differentiated by, besides the contraction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,6 +100,7 @@ impl Problem {
         }
         let mut problem = Self { muscle, pressure, net: Net::plain() };
         problem.net = problem.net_of(|variable| problem.value(variable));
+        quadrature::prepare(&problem.net);
         Ok(problem)
     }
 

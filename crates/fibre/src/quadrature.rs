@@ -25,10 +25,12 @@
 use arrayvec::ArrayVec;
 use bulge_numerics::Real;
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 mod chebyshev;
 mod elastic;
 
+use chebyshev::GRIDS;
 use elastic::{Elastic, Tensions};
 
 use crate::meridian::{Middle, NoTrajectory, State, Trajectory};
@@ -64,6 +66,13 @@ const MOST_TURNED: f64 = 1.999;
 /// Whether the meridians of a net are quadratures: without lobes.
 pub(crate) fn suits<D: Real>(net: &Net<D>) -> bool {
     net.lobes.is_none()
+}
+
+/// Makes, once in a process, what the meridians of a net are interpolated with: a solve then allocates nothing.
+pub(crate) fn prepare(net: &Net<f64>) {
+    if net.compliance != 0.0 {
+        LazyLock::force(&GRIDS);
+    }
 }
 
 /// What the integrands need of both ends. The index m means mid-length.
