@@ -448,3 +448,50 @@ fn more_rows_do_not_make_the_noise_larger() {
         );
     }
 }
+
+/// Fillings and ventings at four held lengths, with stops of three sizes in the pressure for a hysteresis: formulas of no effect of the catalogue.
+fn held_lengths() -> Columns {
+    let mut random = Random::new(77, 0);
+    let [mut p, mut e, mut f, mut t] = [const { Vec::new() }; 4];
+    for (sweep, held) in [0.02, 0.07, 0.12, 0.17].into_iter().enumerate() {
+        let mut stops = [0.0_f64; 3];
+        let mut before: Option<f64> = None;
+        for i in 0..168_i32 {
+            let part = f64::from(i % 84) / 42.0;
+            let pressure = 6e4 + 5.4e5 * (1.0 - (part - 1.0).abs());
+            let step = before.map_or(0.0, |before| pressure - before);
+            before = Some(pressure);
+            let sizes = [(1.5e4, 3.2), (5e4, 2.8), (1.2e5, 2.0)];
+            let hysteresis: f64 = stops
+                .iter_mut()
+                .zip(sizes)
+                .map(|(stop, (size, force))| {
+                    *stop = (*stop + step).clamp(-size, size);
+                    *stop / size * force
+                })
+                .sum();
+            p.push(pressure);
+            e.push(held);
+            f.push(cylinder(pressure, held) - hysteresis + 1.5 * random.normal());
+            t.push(72.0 * sweep as f64 + 0.25 * f64::from(i));
+        }
+    }
+    let mut columns = Columns::new(p, Trace::Contraction(e), f);
+    columns.time_s = Some(t);
+    columns
+}
+
+#[test]
+fn what_is_named_at_held_length_can_be_accepted() {
+    let first = found(held_lengths());
+    let [missing] = &first.missing[..] else { panic!("{}", first.says) };
+    // A transition that is short for the strands is no friction of the length, which doesn't change.
+    assert!(missing.class.iter().all(|name| name != "coulomb-friction"), "{missing:?}");
+    assert_eq!(missing.fitted, missing.effect);
+    let catalogue = Catalogue::builtin();
+    let effect = std::sync::Arc::clone(catalogue.find(&missing.fitted).unwrap());
+    let muscle = from_toml(CYLINDER, "c.toml").unwrap();
+    let accepted = DiagnoseOptions::new(Options::new(catalogue, vec![effect]));
+    let again = diagnose(&Data::from_columns(held_lengths()).unwrap(), &muscle, &accepted).unwrap();
+    assert_eq!(again.verdict, Verdict::Adequate, "{}", again.says);
+}

@@ -185,14 +185,23 @@ fn find(header: &Header, column: &str) -> Result<usize, MeasurementError> {
     if let Some(place) = number.filter(|place| *place < header.names.len()) {
         return Ok(place);
     }
+    if let Some(number) = number {
+        let (what, count) = (number.saturating_add(1), header.names.len());
+        let what = format!(
+            "{}:{}: there is no column {what}: the file has {count} ({})",
+            header.file,
+            header.line,
+            listed(header)
+        );
+        return Err(MeasurementError::ColumnMap { what });
+    }
     let slips = |name: &&String| strsim::damerau_levenshtein(&bare(name), without_unit);
-    let near = header
-        .names
-        .iter()
-        .min_by_key(slips)
-        .filter(|name| slips(name) <= (without_unit.chars().count() / 3).max(1));
+    // Any letter is one slip from a single one.
+    let letters = without_unit.chars().count();
+    let is_near = |name: &&String| letters > 1 && slips(name) <= (letters / 3).max(1);
+    let near = header.names.iter().min_by_key(slips).filter(is_near);
     let what = format!(
-        "{}:{}: there is no column `{}`: {}there are {}",
+        "{}:{}: there is no column `{}`: {}write one of {}",
         header.file,
         header.line,
         quoted(column),
@@ -302,15 +311,23 @@ fn missing(header: &Header, name: &'static str) -> MeasurementError {
         _ => Field::Length,
     };
     // Its name may be there, with a unit of something else.
-    let has_name = |name: &&String| {
-        let plain = name.split('[').next().unwrap_or_default().trim().to_lowercase();
-        plain == field.name() || (field == Field::Length && plain == Field::Contraction.name())
-    };
-    if let Some(name) = header.names.iter().find(has_name).filter(|name| name.contains('[')) {
-        let is_contraction = field == Field::Length && !name.to_lowercase().starts_with(Field::Length.name());
-        let field = if is_contraction { Field::Contraction } else { field };
-        let inside = name.split_once('[').map_or("", |(_, rest)| rest.trim_end_matches([']', ' ']));
-        if let Some(problem) = problem(field, inside) {
+    let motions = [Field::Length, Field::Contraction, Field::Displacement];
+    let fields = if field.is_motion() { &motions[..] } else { std::slice::from_ref(&field) };
+    for name in header.names {
+        let Some((bare, inside)) = name.split_once(['[', '(']) else { continue };
+        let inside = inside.trim_end_matches([']', ')', ' ']);
+        let by_name = |guess: &Guess| guess.strength > Strength::UnitAlone;
+        // A name that goes with its unit says something else.
+        if guesses(name, None).iter().any(by_name) {
+            continue;
+        }
+        let usual = |field: &Field| field.example().split(['[', ']']).nth(1);
+        let says = |guess: &Guess, field: Field| guess.field == field && by_name(guess);
+        let means = |field: &&Field| guesses(bare, usual(field)).iter().any(|guess| says(guess, **field));
+        let Some(field) = fields.iter().find(means).copied() else { continue };
+        if unit(field, inside).is_none()
+            && let Some(problem) = problem(field, inside)
+        {
             return unit_error(header, field, name, problem);
         }
     }

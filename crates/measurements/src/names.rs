@@ -47,6 +47,7 @@ const WORDS: &[(&str, Field, bool)] = &[
     ("p_meas", Field::Pressure, true),
     ("force", Field::Force, false),
     ("load", Field::Force, false),
+    ("pull", Field::Force, false),
     ("loadcell", Field::Force, false),
     ("kraft", Field::Force, false),
     ("fuerza", Field::Force, false),

@@ -209,6 +209,8 @@ fn the_box_names_class_numbers_and_what_is_implausible() {
     let page = words(&html(&missing(comparison())).unwrap());
     for part in [
         "These data cannot tell it from: wall-thickness .",
+        "Other forms of it, not told apart here: bladder-c01.",
+        "Fitted as bouc-wen, with a transition much shorter than the strokes.",
         "modulus 0.310 MPa 95 % interval 0.280 to 0.330",
         "97 % of the time (400 such claims on simulated data like these: 95 % interval 95 to 98 %); the class holds the right effect 99 % of the time",
         "No other effect of the catalogue explains these data as well.",

@@ -64,7 +64,7 @@ pub(super) fn hidden(
     );
     verdict(text, &first);
     ladder(text, &first);
-    let found: Vec<String> = first.missing.iter().map(|missing| missing.effect.clone()).collect();
+    let found: Vec<String> = first.missing.iter().map(|missing| missing.fitted.clone()).collect();
     let again = asked(&found)?;
     let _ = writeln!(text, "\n  Asked again with {}:", found.join(" and "));
     verdict(text, &again);

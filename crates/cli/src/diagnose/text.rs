@@ -2,7 +2,8 @@
 
 use bulge_inference::{CandidateResult, Diagnosis, LadderStep, Missing, Verdict};
 use bulge_report::diagnosis::{
-    base_name, chance, further, headlines, is_significant, noise_says, once_in, others_in_class, remains_says,
+    base_name, chance, forms_says, further, headlines, is_significant, noise_says, once_in, others_in_class,
+    remains_says,
 };
 use std::fmt::Write;
 
@@ -106,6 +107,9 @@ fn found(out: &mut String, missing: &Missing, is_claimed: bool) {
         };
         paragraph(out, "    ", &format!("these data cannot tell it from: {}{right}", others.join(", ")));
     }
+    if let Some(says) = forms_says(missing) {
+        paragraph(out, "    ", &says);
+    }
     let width = missing.parameters.keys().map(String::len).max().unwrap_or(0);
     for (name, p) in missing.parameters.iter().take(MOST_NUMBERS) {
         let [value, low, high] = with_interval(p.value, p.low, p.high);
@@ -145,7 +149,11 @@ pub(crate) fn ladder(out: &mut String, diagnosis: &Diagnosis) {
             name(step),
             three(step.rmse_n),
             percent(step.rmse_n),
-            if step.adequate { "yes" } else { "no" }
+            match step.adequate {
+                _ if diagnosis.verdict == Verdict::CannotTell => "-",
+                true => "yes",
+                false => "no",
+            }
         );
     }
     let _ = writeln!(
@@ -156,6 +164,10 @@ pub(crate) fn ladder(out: &mut String, diagnosis: &Diagnosis) {
         percent(diagnosis.noise_floor_n),
         diagnosis.noise.source
     );
+    if let Some(directed) = diagnosis.comparison.ladder.last().and_then(|rung| rung.directed_rmse_n) {
+        let says = "without the readings whose direction is in doubt, which count less, the last error is";
+        paragraph(out, "    ", &format!("{says} {} N", three(directed)));
+    }
 }
 
 /// On what the misfit of the base depends, beyond chance.
@@ -260,7 +272,7 @@ fn accept(out: &mut String, diagnosis: &Diagnosis, call: &Call) {
     if diagnosis.missing.is_empty() || diagnosis.verdict != Verdict::Missing {
         return;
     }
-    let missing = diagnosis.missing.iter().map(|missing| missing.effect.as_str());
+    let missing = diagnosis.missing.iter().map(|missing| missing.fitted.as_str());
     let with: Vec<&str> = call.with.iter().map(String::as_str).chain(missing).collect();
     let data: Vec<String> = call.data.iter().map(|path| quoted(path)).collect();
     let own = call.effects.as_ref().map_or_else(String::new, |file| format!(" --effects {}", quoted(file)));
@@ -338,8 +350,10 @@ mod tests {
             "20 mm braid, textbook diagnosed on ",
             "  missing: bladder-elasticity (on data like these such a claim is right 97 % of the time)",
             "    these data cannot tell it from: wall-thickness (the class holds the right one 99 % of the time)",
+            "    other forms of it, not told apart here: bladder-c01",
             "    modulus  0.310 MPa (95 %: 0.280 to 0.330)",
             "  missing: coulomb-friction (on data like these such a claim is right more than 99 % of the time)",
+            "    fitted as bouc-wen, with a transition much shorter than the strokes",
             "    friction  14 N (95 %: 8 to 20)",
             "    ! IMPLAUSIBLE numbers",
             "  Two things are missing.",
@@ -359,8 +373,8 @@ mod tests {
             "    it separates bladder-elasticity and wall-thickness by 4.90 sigma, done 2 times",
             "  ! one warning",
             "  to accept this step:",
-            "    bulge diagnose \"my loops.csv\" b.csv --muscle braid.toml --effects own.toml --with end-taper,bladder-elasticity,coulomb-friction",
-            "    bulge fit \"my loops.csv\" b.csv --muscle braid.toml --effects own.toml --with end-taper,bladder-elasticity,coulomb-friction --out learnt.toml",
+            "    bulge diagnose \"my loops.csv\" b.csv --muscle braid.toml --effects own.toml --with end-taper,bladder-elasticity,bouc-wen",
+            "    bulge fit \"my loops.csv\" b.csv --muscle braid.toml --effects own.toml --with end-taper,bladder-elasticity,bouc-wen --out learnt.toml",
         ];
         let places = order.map(|part| place(&lines, part));
         assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{places:?} in {lines:#?}");

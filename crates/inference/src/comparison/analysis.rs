@@ -19,7 +19,6 @@ use crate::comparison::mismatch::questions;
 use crate::comparison::requirements::{check_needs, check_size};
 use crate::comparison::rows::{Used, full_scale, lines, used};
 use crate::comparison::specimens::of_specimens;
-use crate::comparison::tails::sd_with_tails;
 use crate::comparison::{loops, residuals};
 use crate::error::InferenceError;
 use crate::fit::carry_over::carry_over;
@@ -377,16 +376,6 @@ impl<'a> Analysis<'a> {
         floor
     }
 
-    /// Bounds what a reading in the tails of the noise does to fits from here on, by its weight. Means of rows, on which a diagnosis stands, bound it themselves.
-    pub(crate) fn bound_tails(&mut self, first: &Climbed) {
-        let residuals: Vec<f64> =
-            self.record.force().iter().zip(&first.force).map(|(measured, model)| measured - model).collect();
-        let sd = sd_with_tails(&self.record, &self.levels, &self.used.mask, &residuals, self.noise.force_n);
-        if let Some(sd) = sd {
-            self.record = Arc::new(Record::clone(&self.record).with_force_sd(sd));
-        }
-    }
-
     pub(crate) fn rung(&self, number: usize, climbed: &Climbed) -> Rung {
         let added = number.checked_sub(1).map(|i| &self.options.effects[i]);
         let title = match (added, &self.options.law) {
@@ -412,6 +401,7 @@ impl<'a> Analysis<'a> {
             held_out_by: held_out.and(self.folds.as_ref().map(|folds| folds.by)),
             r_squared: error.r_squared,
             fitted: free(&climbed.prepared.model).len(),
+            directed_rmse_n: self.directed_rmse(&climbed.force),
             half_gap_rmse_n: loops::half_gap_error(self, &climbed.force),
             fit: climbed.fit.clone(),
             without_state: self.without_state(climbed),

@@ -136,6 +136,8 @@ pub struct Rung {
     pub title: String,
     /// RMS error of the rows that have a state \[N\].
     pub rmse_n: f64,
+    /// The same without the rows whose direction is in doubt and which therefore count less; none where that is no smaller.
+    pub directed_rmse_n: Option<f64>,
     /// The same in per cent of full scale.
     pub rmse_percent: f64,
     /// Mean error, measured - model \[N\].

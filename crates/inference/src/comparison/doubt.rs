@@ -3,8 +3,12 @@
 use bulge_measurements::Data;
 use bulge_model::Record;
 
+use crate::comparison::analysis::Analysis;
 use crate::comparison::levels::Levels;
+use crate::comparison::residuals::rmse;
 
+/// The error of the other rows is told beside that of all where it is lower than this part of it.
+const WORTH_TELLING: f64 = 0.9;
 /// Fewer rows of a branch say nothing about its place.
 const FEWEST: usize = 3;
 
@@ -56,4 +60,20 @@ fn gap(branches: [Vec<f64>; 2]) -> f64 {
         *branch.select_nth_unstable_by(middle, f64::total_cmp).1
     });
     (lengthening - shortening).abs()
+}
+
+impl Analysis<'_> {
+    /// RMS error \[N\] of the rows whose direction is known; none where rows in doubt count like the others, or where the error is about that of all rows.
+    pub(crate) fn directed_rmse(&self, force: &[f64]) -> Option<f64> {
+        let sd = self.record.force_sd()?;
+        let stated = self.data.force_sd();
+        let counts_less = |row: usize| sd[row] > 1.001 * stated.map_or(self.noise.force_n, |own| own[row]);
+        let mut is_known = self.used.mask.clone();
+        for row in self.data.direction_in_doubt() {
+            is_known[row] &= !counts_less(row);
+        }
+        let of = |rows: &[bool]| rmse(self, force, &|row| rows[row]);
+        let [directed, all] = [&is_known, &self.used.mask].map(|rows| of(rows));
+        directed.filter(|directed| all.is_some_and(|all| *directed < WORTH_TELLING * all))
+    }
 }

@@ -1,7 +1,9 @@
 //! Readings far off the path of their neighbours: how far they may be off, and how little those beyond count.
 
 use bulge_model::Record;
+use std::sync::Arc;
 
+use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::levels::Levels;
 use crate::median::{MAD_TO_SD, median};
 
@@ -89,7 +91,7 @@ fn white(residual: &[f64], stretches: &[Vec<usize>]) -> f64 {
 
 /// Standard deviations of all rows \[N\], where a reading in the tails has one so large that it counts as it would at the bound (Huber's weights as variances,
 /// `s^2 (1 + m/(4 s))` for a reading that is moved by m); none if no reading lies there. `sd_n` is the noise of those of which the file states none.
-pub(crate) fn sd_with_tails(
+fn sd_with_tails(
     record: &Record,
     levels: &Levels,
     used: &[bool],
@@ -115,6 +117,18 @@ pub(crate) fn sd_with_tails(
         sd[row] *= (1.0 + by / (BOUND * sd_n)).sqrt();
     }
     Some(sd)
+}
+
+impl Analysis<'_> {
+    /// Bounds what a reading in the tails of the noise does to fits from here on, by its weight. Means of rows, on which a diagnosis stands, bound it themselves.
+    pub(crate) fn bound_tails(&mut self, first: &Climbed) {
+        let residuals: Vec<f64> =
+            self.record.force().iter().zip(&first.force).map(|(measured, model)| measured - model).collect();
+        let sd = sd_with_tails(&self.record, &self.levels, &self.used.mask, &residuals, self.noise.force_n);
+        if let Some(sd) = sd {
+            self.record = Arc::new(Record::clone(&self.record).with_force_sd(sd));
+        }
+    }
 }
 
 #[cfg(test)]

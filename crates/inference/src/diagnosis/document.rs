@@ -111,8 +111,12 @@ pub struct DiagnosedNoise {
 pub struct Missing {
     /// Its name.
     pub effect: String,
+    /// The effect whose numbers these are, as `--with` takes it. It is `effect`, but for friction that was fitted with a transition too short to matter.
+    pub fitted: String,
     /// All effects that these data can't tell from it, itself first; members of a family under the family's name.
     pub class: Vec<String>,
+    /// Others of its own family that these data can't tell from it: forms of one mechanism.
+    pub forms: Vec<String>,
     /// How often such a claim is right on data like these.
     pub confidence: f64,
     /// The same with its interval, and how often the class holds the right one.
@@ -190,7 +194,7 @@ pub struct LadderStep {
 /// A variable on which a misfit depends.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Located {
-    /// `contraction`, `pressure`, `direction`, `time`, `rate`, `temperature`, `cycle`, `specimen`.
+    /// `mean`, `contraction`, `pressure`, `direction`, `time`, `rate`, `temperature`, `cycle`, `specimen`.
     pub variable: String,
     /// Part of the misfit.
     pub share: f64,

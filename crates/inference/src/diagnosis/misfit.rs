@@ -90,6 +90,7 @@ pub(crate) fn located(scene: &Scene) -> Vec<Located> {
 
 const fn says(variable: Variable) -> &'static str {
     match variable {
+        Variable::Mean => "is alike in all rows",
         Variable::Contraction => "changes along the contraction, alike at all pressures",
         Variable::Pressure => "changes with the pressure",
         Variable::Direction => "flips sign with the direction",

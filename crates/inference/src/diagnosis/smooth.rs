@@ -30,6 +30,8 @@ const TURNS: usize = 10;
 /// What a function depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Variable {
+    /// On nothing: alike in all rows. Where the contraction varies, that is its degree 0.
+    Mean,
     Contraction,
     Pressure,
     Direction,
@@ -42,7 +44,8 @@ pub(crate) enum Variable {
 
 impl Variable {
     /// All of them.
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 9] = [
+        Self::Mean,
         Self::Contraction,
         Self::Pressure,
         Self::Direction,
@@ -56,6 +59,7 @@ impl Variable {
     /// Its name in results.
     pub(crate) const fn name(self) -> &'static str {
         match self {
+            Self::Mean => "mean",
             Self::Contraction => "contraction",
             Self::Pressure => "pressure",
             Self::Direction => "direction",
@@ -97,14 +101,19 @@ fn map(record: &Record) -> Vec<Smooth> {
     let (x, y) = (scaled(record, |m| m.contraction), scaled(record, |m| m.pressure));
     let most = PRESSURE[usize::from(drives_pressure(record))].min(different(&y) - 1);
     let mut functions = Vec::new();
-    for i in 0..=CONTRACTION.min(different(&x) - 1) {
+    let lengths = different(&x);
+    for i in 0..=CONTRACTION.min(lengths - 1) {
         for j in 0..=most {
             let roughness = i as f64 + PRESSURE_WEIGHT * j as f64;
             if roughness > CONTRACTION as f64 {
                 continue;
             }
             let values = x.iter().zip(&y).map(|(x, y)| chebyshev(i, *x) * chebyshev(j, *y)).collect();
-            let variable = if j == 0 { Variable::Contraction } else { Variable::Pressure };
+            let variable = match j {
+                0 if lengths == 1 => Variable::Mean,
+                0 => Variable::Contraction,
+                _ => Variable::Pressure,
+            };
             functions.push(Smooth { variable, roughness, values });
         }
     }
@@ -302,6 +311,15 @@ mod tests {
         // Degrees i <= 11 (12 contractions are told apart) and i + 1.5 j <= 12 with j <= 2: 12 + 11 + 10.
         assert_eq!(found.len(), 33);
         assert!(found[0].values.iter().all(|v| (*v - 1.0).abs() < 1e-15));
+    }
+
+    #[test]
+    fn at_a_single_length_nothing_depends_on_the_contraction() {
+        let moments: Vec<Moment> = (0..30).map(|i| Moment::at_rest(1e5 + 1e4 * f64::from(i), 0.02)).collect();
+        let record = Record::from_moments(moments, vec![0.0; 30], std::iter::once(0..30).collect()).unwrap();
+        let variables: Vec<Variable> = smooth(&record).iter().map(|f| f.variable).collect();
+        assert_eq!(variables[0], Variable::Mean);
+        assert!(variables[1..].iter().all(|v| *v == Variable::Pressure) && variables.len() > 4);
     }
 
     #[test]

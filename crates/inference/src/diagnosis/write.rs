@@ -87,7 +87,7 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
         candidates: found.candidates(classes, &missing),
         missing,
         nearest,
-        ladder: found.ladder(&comparison, last.added.len(), adequate),
+        ladder: found.ladder(&comparison, last.added.len(), adequate && verdict != Verdict::CannotTell),
         noise_floor_n: sd_n,
         r#where: located(&search.stages[0].scene),
         explained: if named { found.explained() } else { Vec::new() },
@@ -241,14 +241,22 @@ impl Findings<'_> {
             .zip(&confirmed.theta)
             .find(|(p, _)| p.effect == card.name && p.name == "distance")
             .map(|(_, value)| *value);
-        let [low, high] =
-            self.given.record.moments().iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], m| {
-                [l.min(m.contraction), h.max(m.contraction)]
-            });
+        let stroke = |rows: &std::ops::Range<usize>| {
+            let contractions = self.given.record.moments()[rows.clone()].iter().map(|m| m.contraction);
+            let [low, high] =
+                contractions.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], e| [l.min(e), h.max(e)]);
+            high - low
+        };
+        let stroke = self.given.record.sweeps().iter().map(stroke).fold(0.0, f64::max);
+        // Where the length is held there is none: friction of the length is no candidate.
+        let first = &self.search.stages[0].scene.showings.effects;
+        let is_candidate = first.iter().any(|showing| showing.effect.card().name == COULOMB);
         // Beside Coulomb's friction it is what that lacks.
         let has_coulomb = confirmed.prepared.model.effects().iter().any(|c| c.effect.card().name == COULOMB);
-        let is_short =
-            card.family == HYSTERESIS && !has_coulomb && distance.is_some_and(|d| d < SHORT * (high - low));
+        let is_short = card.family == HYSTERESIS
+            && is_candidate
+            && !has_coulomb
+            && distance.is_some_and(|d| d < SHORT * stroke);
         if is_short { COULOMB.to_owned() } else { card.name.to_owned() }
     }
 
@@ -259,9 +267,14 @@ impl Findings<'_> {
         if name != class.effect.card().name {
             names.push(own.clone());
         }
+        let fitted = class.effect.card().name.to_owned();
+        let mut forms = Vec::new();
         for rival in class.rivals.iter().filter(|rival| rival.in_class) {
-            let family = rival.effect.card().family.to_owned();
-            if family != own && !names.contains(&family) {
+            let card = rival.effect.card();
+            let family = card.family.to_owned();
+            if family == own {
+                forms.push(card.name.to_owned());
+            } else if !names.contains(&family) {
                 names.push(family);
             }
         }
@@ -270,6 +283,8 @@ impl Findings<'_> {
         rivals.sort_by(|a, b| a.behind.total_cmp(&b.behind));
         Missing {
             class: names,
+            fitted,
+            forms,
             confidence: sure.named,
             simulated: sure,
             parameters: self.parameters(&class.effect),

@@ -17,12 +17,14 @@ const TRAVEL: f64 = 2e-3;
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     let data = gate.data;
+    let motion_unit = if gate.motion_name() == "contraction" { ("%", 100.0) } else { ("mm", 1e3) };
     let columns = [
-        ("force", data.force(), &gate.force, "N"),
-        (gate.motion_name(), gate.motion, gate.motion_resolution(), "in SI"),
-        ("pressure", data.pressure(), &gate.pressure, "Pa"),
+        ("force", data.force(), &gate.force, ("N", 1.0)),
+        (gate.motion_name(), gate.motion, gate.motion_resolution(), motion_unit),
+        ("pressure", data.pressure(), &gate.pressure, ("kPa", 1e-3)),
     ];
-    let of_column = |(name, values, resolution, unit): (&str, &[f64], &Resolution, &str)| {
+    let of_column = |(name, values, resolution, unit): (&str, &[f64], &Resolution, (&str, f64))| {
+        let (unit, factor) = unit;
         let is_motion = name == gate.motion_name();
         if is_motion && resolution.range <= TRAVEL * data.structure.scale {
             return None;
@@ -43,9 +45,9 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
         let severity = if levels < WARNING { Severity::Warning } else { Severity::Note };
         let says = format!(
             "the {name} is read in steps of {} {unit}: {levels} levels {} {}",
-            four(resolution.step),
+            four(factor * resolution.step),
             span.0,
-            four(span.1)
+            four(factor * span.1)
         );
         let instead =
             "use a finer range of the sensor or write more digits; differences below one step mean nothing";

@@ -280,6 +280,17 @@ fn what_the_user_says_settles_it() {
             vec!["no column `pressure`", "--columns \"pressure=NAME [UNIT]\"", "found: `t [s]`"],
         ),
         (
+            "t [s],p [bar],L [mm],Pull (furlong)",
+            "",
+            vec!["`Pull (furlong)` has the unknown unit `furlong`", "N, mN, kN", "such as `force [N]`"],
+        ),
+        (
+            "t [s],p [bar],L [mm],F [N]",
+            "force=9 [N]",
+            vec!["there is no column 9: the file has 4 (`t [s]`, `p [bar]`"],
+        ),
+        ("t [s],p [bar],L [mm],x", "force=y [N]", vec!["there is no column `y [N]`: write one of `t [s]`"]),
+        (
             "t [s],p [bar],L [mm],x",
             "force=x [bar]",
             vec!["`x [bar]` has a unit of pressure where one of force is needed"],

@@ -82,7 +82,13 @@ pub(super) fn verdict(comparison: &Comparison) -> Vec<String> {
     let mut verdict = Vec::new();
     let Some(last) = comparison.ladder.last() else { return verdict };
     if let Some(floor) = comparison.noise_floor.as_ref().filter(|floor| floor.sd_n > 0.0) {
-        let ratio = last.rmse_n / floor.sd_n;
+        if let Some(directed) = last.directed_rmse_n {
+            verdict.push(format!(
+                "Without the readings whose direction is in doubt, which count less, it is {}.",
+                newton(directed)
+            ));
+        }
+        let ratio = last.directed_rmse_n.unwrap_or(last.rmse_n) / floor.sd_n;
         let meaning = if ratio < 0.8 && last.fitted > 0 {
             "less than the readings themselves scatter, so part of the scatter was fitted"
         } else if ratio < 0.8 {

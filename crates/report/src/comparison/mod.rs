@@ -76,6 +76,7 @@ pub struct Plot {
 /// #     held_out_by: None,
 /// #     r_squared: 0.96,
 /// #     fitted: 0,
+/// #     directed_rmse_n: None,
 /// #     half_gap_rmse_n: None,
 /// #     without_state: None,
 /// #     fit: None,

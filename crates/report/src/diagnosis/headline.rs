@@ -73,6 +73,17 @@ fn opens_alike(a: &str, b: &str) -> bool {
     a.eq(b)
 }
 
+/// As what a missing effect was fitted, and which other forms of the same mechanism would do; none if it stands alone under its own name.
+#[must_use]
+pub fn forms_says(missing: &Missing) -> Option<String> {
+    let fitted = (missing.fitted != missing.effect)
+        .then(|| format!("fitted as {}, with a transition much shorter than the strokes", missing.fitted));
+    let others = (!missing.forms.is_empty())
+        .then(|| format!("other forms of it, not told apart here: {}", missing.forms.join(", ")));
+    let parts: Vec<String> = fitted.into_iter().chain(others).collect();
+    (!parts.is_empty()).then(|| parts.join("; "))
+}
+
 /// Effects that the data can't tell from a missing one, without itself.
 pub fn others_in_class(missing: &Missing) -> impl Iterator<Item = &str> {
     missing.class.iter().map(String::as_str).filter(|name| *name != missing.effect)

@@ -26,7 +26,7 @@ use bulge_inference::Diagnosis;
 use crate::PlotError;
 use crate::comparison::Plot;
 
-pub use headline::{further, headlines, others_in_class};
+pub use headline::{forms_says, further, headlines, others_in_class};
 pub use next::{NextDocument, NextStep};
 pub use words::{base_name, chance, found_by, is_significant, noise_says, once_in, remains_says};
 

@@ -9,8 +9,8 @@ use crate::comparison::number::{and, count, newton, three};
 use crate::comparison::page::{Figure, filled, model_and_measurement};
 use crate::comparison::wording::sentence;
 use crate::diagnosis::{
-    candidates, chance, explained, further, headlines, limits, located, noise_says, others_in_class,
-    remaining, remains_says, rivals, steps, words,
+    candidates, chance, explained, forms_says, further, headlines, limits, located, noise_says,
+    others_in_class, remaining, remains_says, rivals, steps, words,
 };
 use crate::interval::with_interval;
 
@@ -19,6 +19,9 @@ use crate::interval::with_interval;
 struct Found<'a> {
     effect: &'a str,
     class: String,
+    forms: Option<String>,
+    /// Whether no other effect explains the data as well.
+    is_alone: bool,
     detectability: String,
     /// How often the claim and its class are right; empty where nothing is claimed.
     right: String,
@@ -145,6 +148,8 @@ fn found(missing: &Missing, verdict: Verdict) -> Found<'_> {
     Found {
         effect: &missing.effect,
         class: and(&others),
+        is_alone: others.is_empty() && missing.forms.is_empty(),
+        forms: forms_says(missing).map(|says| sentence(&says)),
         detectability: three(missing.detectability),
         right: if verdict == Verdict::Missing { right(missing) } else { String::new() },
         numbers: numbers.collect(),

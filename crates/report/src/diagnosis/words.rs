@@ -1,6 +1,6 @@
 //! Sentences and numbers of a diagnosis that page and command line share: plain letters, no markup.
 
-use bulge_inference::{CorrelationTime, Diagnosis};
+use bulge_inference::{CorrelationTime, Diagnosis, Verdict};
 
 use crate::comparison::number::{count, newton, three};
 use crate::interval::with_interval;
@@ -81,8 +81,11 @@ pub fn remains_says(diagnosis: &Diagnosis) -> String {
     let ends = remaining.misfit_interval_n;
     let [value, low, high] = with_interval(remaining.misfit_n, ends)
         .unwrap_or_else(|| [remaining.misfit_n, ends[0], ends[1]].map(three));
-    let structure =
-        if remaining.structured { "it has a structure beyond chance" } else { "no structure beyond chance" };
+    let structure = match remaining.structured {
+        _ if diagnosis.verdict == Verdict::CannotTell => "whether it has a structure cannot be told",
+        true => "it has a structure beyond chance",
+        false => "no structure beyond chance",
+    };
     format!("{value} N of systematic misfit (RMS; 95 % interval {low} to {high} N): {structure}")
 }
 

@@ -122,6 +122,8 @@ fn rival(effect: &str, behind: f64, separation: f64) -> RivalResult {
 fn bladder() -> Missing {
     Missing {
         effect: "bladder-elasticity".to_owned(),
+        fitted: "bladder-elasticity".to_owned(),
+        forms: vec!["bladder-c01".to_owned()],
         class: ["bladder-elasticity", "wall-thickness"].map(str::to_owned).to_vec(),
         confidence: 0.97,
         simulated: Confidence { named: 0.97, class: 0.99, interval: [0.95, 0.98], claims: 400 },
@@ -136,6 +138,8 @@ fn bladder() -> Missing {
 fn friction() -> Missing {
     Missing {
         effect: "coulomb-friction".to_owned(),
+        fitted: "bouc-wen".to_owned(),
+        forms: Vec::new(),
         class: vec!["coulomb-friction".to_owned()],
         confidence: 0.999,
         simulated: Confidence { named: 0.999, class: 1.0, interval: [0.0, 1.0], claims: 0 },

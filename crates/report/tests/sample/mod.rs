@@ -382,6 +382,7 @@ fn ladder(rows: &[Row]) -> Vec<Rung> {
             held_out_by: Some("pressure"),
             r_squared: 1.0 - 0.09 * (rmse / base).powi(2),
             fitted: 2 * i,
+            directed_rmse_n: None,
             half_gap_rmse_n: Some(if i < 2 { 12.4 } else { 0.84 }),
             fit: (i > 0).then(fit),
         });
