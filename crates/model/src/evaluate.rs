@@ -310,9 +310,7 @@ impl Run<'_> {
         let counted = matters.iter().filter(|matters| **matters).count();
         let unsolved = Lattice::unsolved(equilibrium, self.shapes.len(), self.model.refinement);
         let spans = self.spans(record, &matters, &unsolved);
-        // Zero errors move rows a little while a lattice is held: into the next cell at most.
-        let margin = i64::from(slots.holds);
-        let lattice = unsolved.around(&spans, margin);
+        let lattice = unsolved.around(&spans);
         // A node costs what a row costs, in one evaluation; what is held serves many.
         let evaluations = if slots.holds { HELD_FOR } else { 1 };
         if lattice.needed() >= evaluations * counted {

@@ -104,15 +104,11 @@ impl Lattice {
         }
     }
 
-    /// The same with the nodes that rows need, and a margin of so many, not yet solved.
-    pub(crate) fn around(mut self, spans: &[Span], margin: i64) -> Self {
-        let margins = [if self.scale_free { 0 } else { margin }, margin];
-        let wider =
-            |span: &Span| [0, 1].map(|axis| [span[axis][0] - margins[axis], span[axis][1] + margins[axis]]);
-        let spans: Vec<Span> = spans.iter().map(wider).collect();
+    /// The same with the nodes that rows need, not yet solved. Zero errors that move a row into the next cell while a lattice is held leave it a stencil that lies aside.
+    pub(crate) fn around(mut self, spans: &[Span]) -> Self {
         let Some(first) = spans.first() else { return self };
         let mut extent = *first;
-        for span in &spans {
+        for span in spans {
             for axis in 0..2 {
                 extent[axis] = [extent[axis][0].min(span[axis][0]), extent[axis][1].max(span[axis][1])];
             }
@@ -120,7 +116,7 @@ impl Lattice {
         self.low = [extent[0][0], extent[1][0]];
         self.count = [0, 1].map(|axis| usize::try_from(extent[axis][1] - extent[axis][0] + 1).unwrap_or(0));
         let mut needed = vec![false; self.count[0] * self.count[1]];
-        for span in &spans {
+        for span in spans {
             for i in span[0][0]..=span[0][1] {
                 for j in span[1][0]..=span[1][1] {
                     if let Some(place) = self.index(i, j) {
@@ -350,25 +346,29 @@ impl Lattice {
         let rows = if self.scale_free { 1 } else { WIDTH };
         let (ws, ds) = weights(along_s.offset);
         // Values with their shape derivatives, and the values' slopes in steps.
-        let mut sums = [[0.0; OUTPUTS]; 1 + SHAPE];
-        let mut slopes = [[0.0; OUTPUTS]; 2];
+        let mut starts = [0; WIDTH];
+        for (start, row) in starts.iter_mut().zip(first..).take(rows) {
+            *start = self.index(row, along_s.first)?;
+        }
         let stride = 1 + self.shapes;
-        for (row, i) in (first..).zip(0..rows) {
-            let start = self.index(row, along_s.first)?;
-            let nodes = self.nodes[start * stride..].chunks_exact(stride);
-            for (node, j) in nodes.zip(0..WIDTH) {
-                let w = wp[i] * ws[j];
-                let [w_p, w_s] = [dp[i] * ws[j], wp[i] * ds[j]];
-                for (k, value) in node[0].iter().enumerate() {
-                    slopes[0][k] += w_p * value;
-                    slopes[1][k] += w_s * value;
-                }
-                for (sum, entry) in sums.iter_mut().zip(node) {
-                    for (sum, value) in sum.iter_mut().zip(entry) {
-                        *sum += w * value;
+        // One entry after the other: its sums stay in registers.
+        let summed = |entry: usize, along_p: &[f64; WIDTH], along_s: &[f64; WIDTH]| {
+            let mut sum = [0.0; OUTPUTS];
+            for (start, along_p) in starts.iter().zip(along_p).take(rows) {
+                let nodes = &self.nodes[start * stride..(start + WIDTH) * stride];
+                for (node, along_s) in nodes.chunks_exact(stride).zip(along_s) {
+                    let weight = along_p * along_s;
+                    for (sum, value) in sum.iter_mut().zip(&node[entry]) {
+                        *sum += weight * value;
                     }
                 }
             }
+            sum
+        };
+        let slopes = [summed(0, &dp, &ws), summed(0, &wp, &ds)];
+        let mut sums = [[0.0; OUTPUTS]; 1 + SHAPE];
+        for (entry, sum) in sums.iter_mut().enumerate().take(stride) {
+            *sum = summed(entry, &wp, &ws);
         }
         let s_by_contraction = if self.singular {
             1.0 / contraction

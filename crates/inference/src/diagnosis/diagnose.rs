@@ -3,6 +3,7 @@
 use bulge_measurements::Data;
 use bulge_model::Model;
 use bulge_muscles::Muscle;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::comparison::analysis::{Analysis, Climbed, Options};
@@ -246,5 +247,5 @@ fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
         let confidence = Confidence::of_tried(&before.tried, name, &before.scene.showings.effects);
         Judged { class: Class::alone(last, place, before), confidence, models: None }
     };
-    (0..last.added.len()).map(of).collect()
+    (0..last.added.len()).into_par_iter().map(of).collect()
 }

@@ -132,13 +132,23 @@ fn saturated(record: &Record, tangents: &[Vec<f64>], effects: &[&Vec<f64>]) -> V
         enter_new(&mut space, &within(record, tangent));
     }
     // What is least like all before enters first, so that few columns stand for many effects.
-    let mut left: Vec<Vec<f64>> = effects.iter().map(|column| within(record, column)).collect();
+    // A column, and what of it is new.
+    let mut left: Vec<(Vec<f64>, Vec<f64>)> = effects
+        .iter()
+        .map(|column| {
+            let column = within(record, column);
+            let new = space.outside(&column);
+            (column, new)
+        })
+        .collect();
     while space.len() < effects_most.min(MOST).max(tangents.len() + 1) {
-        let new = |column: &Vec<f64>| space.outside(column).sqrt() / norm(column).max(f64::MIN_POSITIVE);
-        let best = (0..left.len()).map(|i| (i, new(&left[i]))).max_by(|a, b| a.1.total_cmp(&b.1));
+        let part = |(column, new): &(Vec<f64>, Vec<f64>)| norm(new) / norm(column).max(f64::MIN_POSITIVE);
+        let best = (0..left.len()).map(|i| (i, part(&left[i]))).max_by(|a, b| a.1.total_cmp(&b.1));
         let Some((place, _)) = best.filter(|best| best.1 > ALIKE) else { break };
-        let column = left.swap_remove(place);
-        enter_new(&mut space, &column);
+        space.enter(&left.swap_remove(place).0);
+        for (_, new) in &mut left {
+            space.outside_last(new);
+        }
     }
     for function in smooth(record) {
         if space.len() >= most.min(MOST).max(tangents.len() + 1) {
@@ -194,7 +204,7 @@ fn between(record: &Record) -> Vec<Vec<f64>> {
 
 fn enter_new(space: &mut Space, column: &[f64]) {
     let whole = norm(column);
-    if whole > 0.0 && space.outside(column).sqrt() > NEW * whole {
+    if whole > 0.0 && norm(&space.outside(column)) > NEW * whole {
         space.enter(column);
     }
 }

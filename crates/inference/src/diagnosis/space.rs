@@ -23,8 +23,12 @@ impl Space {
     pub(crate) fn without(columns: &[Vec<f64>]) -> Self {
         let mut tangents: Vec<Vec<f64>> = Vec::new();
         for column in columns {
-            if let Some((unit, _)) = remainder(column, &[&tangents], WITHIN) {
-                tangents.push(unit);
+            let mut left = column.clone();
+            subtract(&mut left, &tangents);
+            subtract(&mut left, &tangents);
+            let length = norm(&left);
+            if length > WITHIN * norm(column) {
+                tangents.push(scaled(left, 1.0 / length));
             }
         }
         Self { tangents, frame: Vec::new() }
@@ -43,18 +47,21 @@ impl Space {
     /// Coordinates of a column; the frame grows if it lies outside.
     pub(crate) fn enter(&mut self, column: &[f64]) -> Vec<f64> {
         let mut left = column.to_vec();
+        let mut coordinates = vec![0.0; self.frame.len()];
         subtract(&mut left, &self.tangents);
         let size = norm(&left);
-        let mut coordinates = self.coordinates(&left);
-        if size > WITHIN * norm(column)
-            && let Some((unit, length)) = remainder(&left, &[&self.tangents, &self.frame], WITHIN)
-        {
-            self.frame.push(unit);
-            coordinates.push(length);
-        }
         if size <= WITHIN * norm(column) {
             // Rounding is no direction.
-            coordinates.fill(0.0);
+            return coordinates;
+        }
+        add(&mut coordinates, &subtract(&mut left, &self.frame));
+        // Twice, so that nothing of them is left (Kahan, Parlett).
+        subtract(&mut left, &self.tangents);
+        add(&mut coordinates, &subtract(&mut left, &self.frame));
+        let length = norm(&left);
+        if length > WITHIN * size {
+            self.frame.push(scaled(left, 1.0 / length));
+            coordinates.push(length);
         }
         coordinates
     }
@@ -66,43 +73,43 @@ impl Space {
         self.frame.iter().map(|unit| dot(unit, &left)).collect()
     }
 
-    /// Square of the part of a column that is outside the model's tangents and the frame.
-    pub(crate) fn outside(&self, column: &[f64]) -> f64 {
+    /// The part of a column that is outside the model's tangents and the frame.
+    pub(crate) fn outside(&self, column: &[f64]) -> Vec<f64> {
         let mut left = column.to_vec();
         subtract(&mut left, &self.tangents);
         subtract(&mut left, &self.frame);
-        dot(&left, &left)
+        left
+    }
+
+    /// The part that is outside also of the direction which came last, of one that was outside of all before.
+    pub(crate) fn outside_last(&self, left: &mut [f64]) {
+        subtract(left, &self.frame[self.frame.len().saturating_sub(1)..]);
     }
 }
 
-/// Takes the parts along orthonormal columns out of a column; twice, so that nothing of them is left (Kahan, Parlett).
-fn subtract(column: &mut [f64], units: &[Vec<f64>]) {
-    for _ in 0..2 {
-        for unit in units {
-            let part = dot(unit, column);
-            for (value, u) in column.iter_mut().zip(unit) {
-                *value -= part * u;
-            }
+/// Takes the parts along orthonormal columns out of a column, and gives them.
+fn subtract(column: &mut [f64], units: &[Vec<f64>]) -> Vec<f64> {
+    let without = |unit: &Vec<f64>| {
+        let part = dot(unit, column);
+        for (value, u) in column.iter_mut().zip(unit) {
+            *value -= part * u;
         }
+        part
+    };
+    units.iter().map(without).collect()
+}
+
+fn add(sum: &mut [f64], parts: &[f64]) {
+    for (sum, part) in sum.iter_mut().zip(parts) {
+        *sum += part;
     }
 }
 
-/// The part of a column outside orthonormal columns, as unit and length; none if that is only rounding.
-fn remainder(column: &[f64], spans: &[&Vec<Vec<f64>>], within: f64) -> Option<(Vec<f64>, f64)> {
-    let whole = norm(column);
-    let mut left = column.to_vec();
-    for _ in 0..2 {
-        for span in spans {
-            subtract(&mut left, span);
-        }
+fn scaled(mut column: Vec<f64>, factor: f64) -> Vec<f64> {
+    for value in &mut column {
+        *value *= factor;
     }
-    let length = norm(&left);
-    (length > within * whole && length > 0.0).then(|| {
-        for value in &mut left {
-            *value /= length;
-        }
-        (left, length)
-    })
+    column
 }
 
 pub(crate) fn norm(a: &[f64]) -> f64 {
@@ -136,7 +143,7 @@ mod tests {
         // A combination of all has nothing outside, and nothing of the tangents.
         let sum: Vec<f64> = (0..50).map(|i| 3.0 * tangents[0][i] + 2.0 * a[i] - b[i]).collect();
         let c = space.enter(&sum);
-        assert!(space.len() == 2 && space.outside(&sum) < 1e-20);
+        assert!(space.len() == 2 && norm(&space.outside(&sum)) < 1e-10);
         assert!((c[0] - (2.0 * ca[0] - cb[0])).abs() < 1e-12);
         assert!(norm(&space.enter(&tangents[1])) < 1e-12);
     }

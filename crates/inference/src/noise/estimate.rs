@@ -1,6 +1,7 @@
 //! Noise law of a record by restricted maximum likelihood under a saturated model (Patterson and Thompson 1971), with a test against white noise.
 
 use bulge_model::Record;
+use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::noise::error::NoiseError;
@@ -243,11 +244,10 @@ impl<'a> Estimate<'a> {
             deviance.map_or(f64::INFINITY, |d| d.value)
         };
         let first = self.first.as_ref().unwrap_or(self.likelihood);
-        let mut start = starts
-            .iter()
-            .map(|start| (value(first, start), start))
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, start)| start.clone())?;
+        let tried: Vec<(f64, &Vec<f64>)> =
+            starts.par_iter().map(|start| (value(first, start), start)).collect();
+        let mut start =
+            tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, start)| start.clone())?;
         if let Some(first) = &self.first {
             let search = Search { bounds: &bounds, step: 0.7, evaluations: 60, tolerance: 1e-2 };
             start = minimise(|x| value(first, x), &start, search).0;
@@ -302,8 +302,10 @@ impl<'a> Estimate<'a> {
     fn law(&self, unit: CorrelationTime, from: &str) -> NoiseLaw {
         let none = Parts { correlated: false, offset: false };
         let white = self.fit(none, &[self.coordinates(none, 0.0, 1.0, 0.0)]);
-        let correlated = self.parts.correlated.then(|| self.correlated()).flatten();
-        let offset = self.parts.offset.then(|| self.offset()).flatten();
+        let (correlated, offset) = rayon::join(
+            || self.parts.correlated.then(|| self.correlated()).flatten(),
+            || self.parts.offset.then(|| self.offset()).flatten(),
+        );
         let both = (self.parts.correlated && self.parts.offset)
             .then(|| self.both(correlated.as_ref(), offset.as_ref()))
             .flatten();

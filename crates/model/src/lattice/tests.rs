@@ -17,7 +17,7 @@ pub(crate) fn braid(radius: f64, c10: f64) -> (Muscle, Equilibrium) {
 pub(crate) fn lattice(equilibrium: &Equilibrium, pressure: f64, most: f64) -> Lattice {
     let empty = Lattice::unsolved(equilibrium, 0, 1.0);
     let spans = [0.9, 1.0, 1.1].map(|part| empty.span(part * pressure, [0.01, most]).unwrap());
-    empty.around(&spans, 0)
+    empty.around(&spans)
 }
 
 fn force(lattice: &Lattice, contraction: f64) -> Option<f64> {
@@ -72,7 +72,8 @@ fn errors_fall_with_the_sixth_power_of_the_step() {
     let error = |refinement: f64| {
         let empty = Lattice::unsolved(&equilibrium, 0, refinement);
         let spans = [1.5e5, 2e5, 3e5].map(|p| empty.span(p, [0.01, 0.15]).unwrap());
-        let lattice = empty.around(&spans, 6).solved(&equilibrium, &Starts::default()).0;
+        let wider = spans.map(|span| span.map(|[low, high]| [low - 6, high + 6]));
+        let lattice = empty.around(&wider).solved(&equilibrium, &Starts::default()).0;
         let rows = (0..40).map(|i| (1.5e5 + 3.7e3 * f64::from(i), 0.01 + 0.0035 * f64::from((7 * i) % 40)));
         rows.map(|(p, e)| (lattice.answer(p, e).unwrap().force.value - exact(p, e)).abs() / exact(p, 0.02))
             .fold(0.0, f64::max)
