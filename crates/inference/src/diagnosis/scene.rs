@@ -7,7 +7,7 @@ use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::null::{Chance, Null, Statistics};
 use crate::diagnosis::showing::Showings;
 use crate::diagnosis::smooth::{Variable, smooth};
-use crate::diagnosis::space::{Space, norm};
+use crate::diagnosis::space::{ENOUGH, Space, norm};
 use crate::diagnosis::tangents::Tangents;
 use crate::dot::dot;
 use crate::fit::nuisance::Prepared;
@@ -205,7 +205,9 @@ fn orthogonal(
     known: &[(Vec<f64>, Vec<f64>)],
 ) -> Option<(Vec<f64>, Vec<f64>)> {
     let whole = norm(&white);
+    let mut left = whole;
     for _ in 0..2 {
+        let before = left;
         for (other, unit) in known {
             let part = dot(&white, unit);
             for (value, u) in white.iter_mut().zip(unit) {
@@ -215,8 +217,11 @@ fn orthogonal(
                 *value -= part * o;
             }
         }
+        left = norm(&white);
+        if left > ENOUGH * before {
+            break;
+        }
     }
-    let left = norm(&white);
     if left <= NEW * whole {
         return None;
     }

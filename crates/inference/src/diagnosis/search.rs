@@ -199,7 +199,7 @@ impl Given<'_> {
             if room == 0 {
                 break;
             }
-            stage.tried = self.tried(base, stage, before);
+            stage.tried = self.tried(base, stage, room, before);
             if !again && let Some(lower) = self.lower(base, stage) {
                 (*stage, again) = (lower, true);
                 continue;
@@ -207,7 +207,6 @@ impl Given<'_> {
             again = false;
             let next = ranked(&stage.tried)
                 .into_iter()
-                .filter(|(best, _)| best.hypothesis.effects.len() <= room)
                 .find_map(|(best, confirmed)| self.step(stage, best, confirmed));
             let Some((next, stands_out)) = next else {
                 // The screen alone, and no effect that is worth its price: chance.
@@ -259,9 +258,9 @@ impl Given<'_> {
         Some((next, stands_out))
     }
 
-    /// The best hypotheses of a stage, each fitted.
-    fn tried(&self, base: &Model, stage: &Stage, before: Option<&Search>) -> Vec<Tried> {
-        let hypotheses = hypotheses(&stage.scene, &stage.confirmed.prepared.model);
+    /// The best hypotheses of a stage with so much `room` for further effects, each fitted.
+    fn tried(&self, base: &Model, stage: &Stage, room: usize, before: Option<&Search>) -> Vec<Tried> {
+        let hypotheses = hypotheses(&stage.scene, &stage.confirmed.prepared.model, room);
         hypotheses.into_par_iter().map(|hypothesis| self.fitted(base, stage, hypothesis, before)).collect()
     }
 
@@ -380,9 +379,9 @@ pub(crate) fn ticket(scene: &Scene, effect: usize) -> f64 {
 }
 
 /// Single effects and pairs that may explain the misfit, the best of each first.
-pub(crate) fn hypotheses(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
+pub(crate) fn hypotheses(scene: &Scene, model: &Model, room: usize) -> Vec<Hypothesis> {
     let singles = singles(scene, model);
-    let pairs = pairs(scene, model);
+    let pairs = if room > 1 { pairs(scene, model) } else { Vec::new() };
     let best = singles.iter().chain(&pairs).map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
     let near = |list: Vec<Hypothesis>, most: usize| {
         list.into_iter()

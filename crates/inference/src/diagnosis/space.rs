@@ -11,6 +11,9 @@ use crate::dot::dot;
 /// A column whose part outside the frame is smaller than this part of it lies within the frame.
 const WITHIN: f64 = 1e-7;
 
+/// A part that is taken out only once leaves this much of a column at least: rounding is then no larger in it than in the column (Daniel and others 1976).
+pub(crate) const ENOUGH: f64 = 0.5;
+
 /// Orthonormal columns: those of the model first, then the frame.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Space {
@@ -55,10 +58,13 @@ impl Space {
             return coordinates;
         }
         add(&mut coordinates, &subtract(&mut left, &self.frame));
-        // Twice, so that nothing of them is left (Kahan, Parlett).
-        subtract(&mut left, &self.tangents);
-        add(&mut coordinates, &subtract(&mut left, &self.frame));
-        let length = norm(&left);
+        let mut length = norm(&left);
+        if length < ENOUGH * norm(column) {
+            // Twice, so that nothing of them is left (Kahan, Parlett).
+            subtract(&mut left, &self.tangents);
+            add(&mut coordinates, &subtract(&mut left, &self.frame));
+            length = norm(&left);
+        }
         if length > WITHIN * size {
             self.frame.push(scaled(left, 1.0 / length));
             coordinates.push(length);
