@@ -22,7 +22,7 @@ pub struct Record {
     /// Length of the muscle over that of each specimen; empty if all are of one length.
     shortness: Vec<f64>,
     force: Forces,
-    force_sd: Option<Vec<f64>>,
+    force_sd: Option<Arc<Vec<f64>>>,
     is_path: bool,
     has_time: bool,
 }
@@ -45,7 +45,7 @@ impl Record {
             specimens: data.specimens().to_vec(),
             shortness,
             force: Forces::Read(Arc::clone(data.columns())),
-            force_sd: data.force_sd().map(<[f64]>::to_vec),
+            force_sd: data.force_sd().map(|sd| Arc::new(sd.to_vec())),
             is_path: path.is_path,
             has_time: data.time().is_some(),
         }
@@ -106,7 +106,7 @@ impl Record {
     /// Standard deviation of each force \[N\], where the file states it.
     #[must_use]
     pub fn force_sd(&self) -> Option<&[f64]> {
-        self.force_sd.as_deref()
+        self.force_sd.as_deref().map(Vec::as_slice)
     }
 
     /// Rows of each sweep.
@@ -238,7 +238,7 @@ impl Record {
             specimens: self.specimens.clone(),
             shortness: self.shortness.clone(),
             force: Forces::Given(Arc::new(kept.iter().map(|row| self.force()[*row]).collect())),
-            force_sd: self.force_sd.as_ref().map(|sd| kept.iter().map(|row| sd[*row]).collect()),
+            force_sd: self.force_sd().map(|sd| Arc::new(kept.iter().map(|row| sd[*row]).collect())),
             is_path: self.is_path,
             has_time: self.has_time,
         };
@@ -261,7 +261,7 @@ impl Record {
     #[must_use]
     pub fn with_force_sd(mut self, sd: Vec<f64>) -> Self {
         if sd.len() == self.len() {
-            self.force_sd = Some(sd);
+            self.force_sd = Some(Arc::new(sd));
         }
         self
     }
@@ -319,8 +319,9 @@ impl Record {
         for sweep in &sweeps {
             step(moments.get_mut(sweep.clone())?, self.is_path);
         }
-        let sd = |all: &Vec<f64>| {
-            groups.iter().map(|g| g.iter().map(|row| all[*row]).sum::<f64>() / g.len() as f64).collect()
+        let sd = |all: &[f64]| {
+            let means = groups.iter().map(|g| g.iter().map(|row| all[*row]).sum::<f64>() / g.len() as f64);
+            Arc::new(means.collect())
         };
         (force.len() == moments.len()).then(|| Self {
             moments: Arc::new(moments),
@@ -328,7 +329,7 @@ impl Record {
             specimens: self.specimens.clone(),
             shortness: self.shortness.clone(),
             force: Forces::Given(Arc::new(force)),
-            force_sd: self.force_sd.as_ref().map(sd),
+            force_sd: self.force_sd().map(sd),
             is_path: self.is_path,
             has_time: self.has_time,
         })

@@ -2,7 +2,7 @@
 
 use bulge_effects::law::Law;
 use bulge_effects::{Catalogue, Effect};
-use bulge_measurements::Data;
+use bulge_measurements::{Data, PureError};
 use bulge_model::{Model, ModelError, Partly, Record, Wanted, Warm};
 use bulge_muscles::{Muscle, Quantity};
 use rayon::prelude::*;
@@ -82,6 +82,10 @@ pub(crate) struct Analysis<'a> {
     pub(crate) full_scale: f64,
     /// What is asked about units, signs and scales.
     pub(crate) findings: Vec<Mismatch>,
+    /// Scatter between repeats.
+    pub(crate) pure_error: Option<PureError>,
+    /// Rows that count less, because their direction is in doubt.
+    pub(crate) doubtful: Vec<usize>,
     /// Rows in which the muscle as stated is slack, once that was asked.
     slack: Option<Vec<usize>>,
     /// The muscle or the law before anything is added: models made from it share the equilibria that they have solved.
@@ -123,6 +127,7 @@ impl<'a> Analysis<'a> {
             None => Model::new(muscle),
         };
         Ok(Self {
+            pure_error: data.repeats(muscle.length().si()).pure_error(),
             data,
             muscle,
             options,
@@ -133,6 +138,7 @@ impl<'a> Analysis<'a> {
             noise,
             full_scale,
             findings: Vec::new(),
+            doubtful: Vec::new(),
             slack: None,
             root,
             near: None,
@@ -314,6 +320,8 @@ impl<'a> Analysis<'a> {
             noise: self.noise,
             full_scale: self.full_scale,
             findings: self.findings.clone(),
+            pure_error: self.pure_error,
+            doubtful: self.doubtful.clone(),
             slack: self.slack.clone(),
             root: self.root.clone(),
             near: self.near,
@@ -342,11 +350,10 @@ impl<'a> Analysis<'a> {
 
     /// What no model can go below, as the residuals of a rung show it.
     pub(crate) fn noise_floor(&self, climbed: &Climbed) -> Option<NoiseFloor> {
-        let repeats = self.data.repeats(self.muscle.length().si());
         let (measured, force) = (self.record.force(), &climbed.force);
         let counts = |row: usize| self.used.mask[row] && force[row].is_finite();
         let residual = |row: usize| measured[row] - force[row];
-        noise_floor(repeats.pure_error().as_ref(), &self.record, &counts, &residual, self.muscle)
+        noise_floor(self.pure_error.as_ref(), &self.record, &counts, &residual, self.muscle)
     }
 
     /// The noise of the force from here on, and the floor for people. What the residuals show to be a disturbed reading doesn't count from here on, and rows whose
@@ -370,8 +377,9 @@ impl<'a> Analysis<'a> {
             &residuals,
             self.noise.force_n,
         );
-        if let Some(sd) = sd {
+        if let Some((rows, sd)) = sd {
             self.record = Arc::new(Record::clone(&self.record).with_force_sd(sd));
+            self.doubtful = rows;
         }
         floor
     }

@@ -73,7 +73,7 @@ fn step(force: &[f64]) -> f64 {
 }
 
 /// Every so-manieth reading is enough.
-fn every(readings: usize) -> usize {
+pub(crate) fn every(readings: usize) -> usize {
     readings.div_ceil(MOST_READINGS).max(1)
 }
 

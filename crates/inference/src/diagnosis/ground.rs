@@ -1,7 +1,6 @@
 //! What models are tried on: means of the rows, and what is known of their noise.
 
 use bulge_model::{ModelError, Record, Wanted, Warm};
-use bulge_muscles::Quantity;
 
 use crate::comparison::analysis::{Analysis, Climbed};
 use crate::diagnosis::as_set::as_set;
@@ -165,7 +164,7 @@ pub(crate) fn ground(
         counts: &counts,
         unequal: &extra,
         within: &averaged.within_each(&residual),
-        pure_error: analysis.data.repeats(analysis.muscle.length().si()).pure_error(),
+        pure_error: analysis.pure_error,
     };
     let found = source.law(&base.prepared, &base.theta);
     let found = found.map_err(|error| Stop::at_means(error, &averaged, analysis))?;

@@ -181,8 +181,7 @@ fn is_spike(x: &[f64], first: usize, length: usize, least: f64) -> bool {
             leads.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(*v), h.max(*v)]);
         [x[row] - high, low - x[row]]
     };
-    let excesses: Vec<[f64; 2]> = (first..end).map(excess).collect();
-    [0, 1].iter().any(|side| excesses.iter().all(|excess| excess[*side] > needed))
+    [0, 1].iter().any(|side| (first..end).all(|row| excess(row)[*side] > needed))
 }
 
 /// Puts spiked readings on the line between their neighbours.
