@@ -325,6 +325,12 @@ mod tests {
                 assert!((found.offset_n + 6.0).abs() < 1.2, "{pressures:?}: {}", found.offset_n);
             }
             assert_eq!(clean, 0, "{pressures:?}");
+            // Without noise, the offset is exact.
+            let mut exact: Vec<f64> =
+                record.moments().iter().map(|m| 3.0 * m.pressure / 1e5 * m.direction).collect();
+            exact[record.sweeps()[place].clone()].iter_mut().for_each(|value| *value -= 6.0);
+            let found = shifted(&record, &used, &exact, 1.0).unwrap();
+            assert!((found.offset_n + 6.0).abs() < 1e-9, "{pressures:?}: {}", found.offset_n);
         }
     }
 
