@@ -13,6 +13,8 @@ use crate::solve::Found;
 
 /// Part of the largest volume within which it can't be told how far from there it belongs.
 const FLAT: f64 = 1e-13;
+/// Part of the volume at the end of the range that rounding of the contraction there makes.
+const END: f64 = 1e-9;
 /// Steps of the contraction back from where fibres are slack.
 const SHORT_OF: [f64; 3] = [0.0, 1e-9, 1e-6];
 
@@ -68,7 +70,9 @@ impl Problem {
         let found = self.rising(method, volume, self.way_to(most.contraction()), &mut seen);
         let found = found.or_else(|| {
             let beyond = [most.contraction(), end.contraction()];
-            (volume > end.volume()).then(|| self.falling(method, volume, beyond, &mut seen)).flatten()
+            (volume > end.volume() * (1.0 - END))
+                .then(|| self.falling(method, volume, beyond, &mut seen))
+                .flatten()
         });
         let found = found.or_else(|| self.beside_least(method, volume, most.contraction(), &mut seen));
         let found = found.or_else(|| ((volume / end.volume() - 1.0).abs() <= FLAT).then_some(end.found));
