@@ -195,6 +195,38 @@ pub fn map(seed: u64, count: usize) -> Vec<Count> {
     counts.into()
 }
 
+/// The questions of a range one by one: what was asked, how it ended, and of those without an answer what the first integrals say.
+#[must_use]
+pub fn listed(seed: u64, range: std::ops::Range<usize>) -> Vec<String> {
+    range.into_par_iter().map(|number| told(seed, number)).collect()
+}
+
+fn told(seed: u64, number: usize) -> String {
+    let (kind, _) = KINDS[number % KINDS.len()];
+    let (muscle, pressure, question) = match drawn(seed, number) {
+        Ok(drawn) => drawn,
+        Err(error) => return format!("{kind}, number {number}: {error}"),
+    };
+    let asked = || answer(&muscle, pressure, question);
+    let ending = match catch_unwind(AssertUnwindSafe(asked)) {
+        Ok(Ok(Answer::Found(found))) => {
+            let wrong =
+                wrong_with(&found, question).map_or_else(String::new, |what| format!("wrong, {what}: "));
+            format!(
+                "{wrong}{} N, {} m^3 at {}, {:?}",
+                found.force_n, found.volume_m3, found.contraction, found.convergence
+            )
+        }
+        Ok(Ok(Answer::Limit(limit))) => format!("limit {limit}"),
+        Ok(Err(error)) => {
+            let judgement = Judgement::of(&muscle, pressure, question);
+            format!("{:?}, {error}; by the first integrals {judgement:?}", error.fault())
+        }
+        Err(_) => "panic".to_owned(),
+    };
+    format!("{kind}, number {number}, {question:?} at {pressure}: {ending}; {muscle:?}")
+}
+
 /// How often the search by the first integrals finds what the shooting found: of `count` questions those that were solved, those found with the same
 /// force and volume, and the others.
 #[must_use]
@@ -288,17 +320,24 @@ fn question(sampler: &mut Sampler, muscle: &Muscle, pressure: Pressure) -> Optio
     None
 }
 
+/// What a question is answered with.
+enum Answer {
+    Found(Box<Response>),
+    Limit(f64),
+}
+
+fn answer(muscle: &Muscle, pressure: Pressure, question: Option<Given>) -> Result<Answer, FibreError> {
+    let problem = Problem::new(muscle, pressure)?;
+    match question {
+        Some(given) => problem.solve(given, Approach::Auto).map(|found| Answer::Found(Box::new(found))),
+        None => problem.contraction_limit(Approach::Auto).map(Answer::Limit),
+    }
+}
+
 fn ask(muscle: &Muscle, pressure: Pressure, question: Option<Given>) -> Ending {
-    let answer = || -> Result<Option<Response>, FibreError> {
-        let problem = Problem::new(muscle, pressure)?;
-        match question {
-            Some(given) => problem.solve(given, Approach::Auto).map(Some),
-            None => problem.contraction_limit(Approach::Auto).map(|_| None),
-        }
-    };
-    match answer() {
-        Ok(None) => Ending::Solved { evaluations: 0 },
-        Ok(Some(found)) => wrong_with(&found, question)
+    match answer(muscle, pressure, question) {
+        Ok(Answer::Limit(_)) => Ending::Solved { evaluations: 0 },
+        Ok(Answer::Found(found)) => wrong_with(&found, question)
             .map_or(Ending::Solved { evaluations: found.convergence.evaluations }, Ending::Wrong),
         Err(error) if error.fault() == Fault::NotConverged => {
             Ending::Lost(error.to_string(), Judgement::of(muscle, pressure, question))

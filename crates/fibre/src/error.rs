@@ -135,20 +135,24 @@ pub enum FibreError {
         /// Contraction at which the force is zero.
         limit: f64,
     },
-    /// More than the muscle holds where its force vanishes.
-    #[error("no equilibrium with a volume of {:.4} ml: this muscle holds at most {:.4} ml, where its force vanishes", 1e6 * volume_m3, 1e6 * high_m3)]
+    /// More than the muscle holds at any contraction at which it pulls.
+    #[error("no equilibrium with a volume of {:.4} ml: this muscle holds at most {:.4} ml, at contraction {:.4} %, {why}", 1e6 * volume_m3, 1e6 * high_m3, 100.0 * contraction)]
     VolumeTooLarge {
         /// Asked volume \[m^3\].
         volume_m3: f64,
-        /// Volume at the contraction limit \[m^3\].
+        /// The largest volume \[m^3\].
         high_m3: f64,
+        /// Where.
+        contraction: f64,
+        /// Why it holds no more.
+        why: &'static str,
     },
-    /// Less than the muscle holds when it is as long as its fibres.
-    #[error("no equilibrium with a volume of {:.4} ml: it must be greater than the {:.4} ml of the muscle drawn out", 1e6 * volume_m3, 1e6 * low_m3)]
+    /// Less than the muscle holds drawn out as far as it goes, or contracted to its limit.
+    #[error("no equilibrium with a volume of {:.4} ml: it must be greater than {:.4} ml, the least that this muscle holds while it pulls", 1e6 * volume_m3, 1e6 * low_m3)]
     VolumeTooSmall {
         /// Asked volume \[m^3\].
         volume_m3: f64,
-        /// Volume of the muscle drawn out as far as it goes \[m^3\].
+        /// The least volume \[m^3\].
         low_m3: f64,
     },
     /// A pull beyond what was found at any length.

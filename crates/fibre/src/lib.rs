@@ -21,6 +21,7 @@ mod shooting;
 mod solve;
 mod start;
 mod unknowns;
+mod volume;
 pub use draw::PleatedNumbers;
 pub use error::FibreError;
 pub use isobars::{Isobar, isobars};

@@ -20,6 +20,9 @@ const BALLOONING: f64 = 0.859;
 /// The same of a long net: its hoop term T q^2 r/((1 + e) sigma), with sigma about 1 + e, carries 2 pi p r up to e/(1 + e)^2 = 1/4 (at e = 1).
 const BURSTING: f64 = 0.25;
 
+/// Contraction below 0 up to which a muscle isn't longer than at rest: rounding of a length makes as much.
+const AT_REST: f64 = 1e-9;
+
 /// Which method computes an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Approach {
@@ -163,7 +166,9 @@ impl Problem {
             {
                 Err(FibreError::TooSoft { group, limit })
             }
-            Ok(outcome) if contraction < 0.0 && self.net.compliance * outcome.tension > MOST_STRAIN => {
+            // Drawn out to many times its length rubber alone holds the pressure.
+            Ok(outcome) if outcome.tension < 0.0 => Err(FibreError::Slack { contraction, limit: None }),
+            Ok(outcome) if contraction < -AT_REST && self.net.compliance * outcome.tension > MOST_STRAIN => {
                 Err(FibreError::Overstretched { contraction, strain: self.net.compliance * outcome.tension })
             }
             other => other,

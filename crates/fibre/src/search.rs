@@ -43,15 +43,23 @@ pub(crate) struct Seen {
     /// The largest force \[N\], and where.
     pub(crate) force: f64,
     pub(crate) contraction: f64,
-    /// The least volume \[m^3\].
+    /// The least volume \[m^3\], the largest, and where that is.
     pub(crate) volume: f64,
+    pub(crate) most_volume: f64,
+    pub(crate) fullest: f64,
     /// The last equilibrium.
     pub(crate) last: Option<Unknowns>,
 }
 
 impl Seen {
-    pub(crate) const NOTHING: Self =
-        Self { force: f64::NEG_INFINITY, contraction: 0.0, volume: f64::INFINITY, last: None };
+    pub(crate) const NOTHING: Self = Self {
+        force: f64::NEG_INFINITY,
+        contraction: 0.0,
+        volume: f64::INFINITY,
+        most_volume: 0.0,
+        fullest: 0.0,
+        last: None,
+    };
 
     fn add(&mut self, found: &Found) {
         let response = &found.response;
@@ -60,6 +68,9 @@ impl Seen {
             (self.force, self.contraction) = (response.force_n, response.contraction);
         }
         self.volume = self.volume.min(response.volume_m3);
+        if response.volume_m3 > self.most_volume {
+            (self.most_volume, self.fullest) = (response.volume_m3, response.contraction);
+        }
     }
 }
 
@@ -92,14 +103,14 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
     }
 
     /// A contraction at which the excess is positive, and where to go on from.
-    fn below(&mut self, start: f64) -> Result<(f64, f64), FibreError> {
+    fn below(&mut self, [start, end]: [f64; 2]) -> Result<(f64, f64), FibreError> {
         if self.problem.is_singular() {
             return Ok((0.0, start));
         }
-        self.below_start(start).or_else(|error| self.drawn_out(start).ok_or(error))
+        self.below_start([start, end]).or_else(|error| self.drawn_out(start).ok_or(error))
     }
 
-    fn below_start(&mut self, start: f64) -> Result<(f64, f64), FibreError> {
+    fn below_start(&mut self, [start, end]: [f64; 2]) -> Result<(f64, f64), FibreError> {
         let mut good = None;
         let mut x = start;
         let mut stride = (0.5 * start.abs()).max(1e-3);
@@ -115,6 +126,11 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
                 (Err(_), Some(_)) if failures < 12 => {
                     failures += 1;
                     stride *= 0.3;
+                }
+                // The start itself is longer than the fibres bear, which isn't asked at rest.
+                (Err(FibreError::Overstretched { .. }), None) if x < end.min(0.0) => {
+                    x = end.min(0.0);
+                    continue;
                 }
                 // The start itself lies beyond the range of a very short muscle.
                 (Err(_), None) if failures < 12 => {
@@ -245,7 +261,10 @@ impl Problem {
         excess: impl Fn(&Found) -> f64,
     ) -> Result<Found, FibreError> {
         let mut walk = Walk { problem: self, method, near: None, seen, excess };
-        let (low, x) = walk.below(start)?;
+        let (low, x) = walk.below([start, end])?;
+        if low > end {
+            return Err(not_converged(low, 0));
+        }
         // The force of straight inextensible fibres is infinite at 0, and large forces belong to tiny contractions.
         let tolerance = if self.is_singular() {
             [0.0, ROOT_TOLERANCE]

@@ -17,9 +17,6 @@ pub const AMBIENT_PRESSURE: f64 = 101_325.0;
 /// Exponent of adiabatic air.
 pub const ADIABATIC: f64 = 1.4;
 
-/// Part of the largest volume within which it can't be told how far from the limit it belongs.
-const FLAT: f64 = 1e-13;
-
 /// What is given besides the pressure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Given {
@@ -124,7 +121,7 @@ impl Problem {
     }
 
     /// The equilibrium at a contraction, step by step from where one is found, or from a path.
-    fn walked(&self, method: Method, contraction: f64, must_pull: bool) -> Option<Found> {
+    pub(crate) fn walked(&self, method: Method, contraction: f64, must_pull: bool) -> Option<Found> {
         let start = self.contraction_start().min(contraction);
         let mut seen = Seen::NOTHING;
         let walked =
@@ -138,7 +135,7 @@ impl Problem {
     /// # Errors
     /// [`FibreError::NotConverged`], or [`FibreError::Slack`] with its limit where the fibres become slack before.
     pub fn contraction_limit(&self, approach: Approach) -> Result<f64, FibreError> {
-        self.at_limit(self.method(approach)?).map(|found| found.response.contraction)
+        self.at_limit(self.method(approach)?, &mut { Seen::NOTHING }).map(|found| found.response.contraction)
     }
 
     /// Where the equilibria that pull end as the muscle contracts: the one limit that every message and table names.
@@ -154,13 +151,12 @@ impl Problem {
     }
 
     /// The equilibrium at which the force vanishes.
-    fn at_limit(&self, method: Method) -> Result<Found, FibreError> {
+    pub(crate) fn at_limit(&self, method: Method, seen: &mut Seen) -> Result<Found, FibreError> {
         let way = [self.contraction_start(), FAR];
-        let mut seen = Seen::NOTHING;
-        match self.root(method, way, &mut seen, |found| found.response.force_n) {
+        match self.root(method, way, seen, |found| found.response.force_n) {
             Err(error @ FibreError::NotConverged { contraction, .. }) => {
                 let slack = |limit| FibreError::Slack { contraction, limit: Some(limit) };
-                self.limit_on_a_path(method, &seen).map_or(Err(error), |end| end.map_err(slack))
+                self.limit_on_a_path(method, seen).map_or(Err(error), |end| end.map_err(slack))
             }
             other => other,
         }
@@ -255,7 +251,7 @@ impl Problem {
                     return Err(FibreError::ForceTooLarge { force_n: force, high_n, contraction });
                 }
                 self.on_a_path(method, Goal::Force(force), true, &seen).map_or_else(
-                    || match self.at_limit(method) {
+                    || match self.at_limit(method, &mut { Seen::NOTHING }) {
                         // Less than where the fibres slacken.
                         Err(slack @ FibreError::Slack { limit: Some(_), .. }) => Err(slack),
                         _ => Err(error),
@@ -264,44 +260,6 @@ impl Problem {
                 )
             }
             other => other,
-        }
-    }
-
-    fn with_volume(&self, method: Method, volume: f64) -> Result<Found, FibreError> {
-        if volume <= 0.0 {
-            return Err(FibreError::NotPositive { what: "volume", value: volume });
-        }
-        if !volume.is_finite() {
-            return Err(FibreError::NotFinite { what: "volume", value: volume });
-        }
-        let (end, radius) = (self.net.acting_at(1.0), self.muscle.radius().si());
-        let least = end.volume_section(1.0, &end.section(1.0)) * radius.powi(2) * self.muscle.length().si();
-        if self.is_singular() && volume <= least {
-            return Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: least });
-        }
-        // F = -p dV/dl: where nothing stores energy, and nearly where something does, the volume is largest where the force vanishes.
-        let most = self.at_limit(method)?;
-        let (limit, high) = (most.response.contraction, most.response.volume_m3);
-        if volume > high * (1.0 + FLAT) {
-            return Err(FibreError::VolumeTooLarge { volume_m3: volume, high_m3: high });
-        }
-        // Next to the limit the volume is flat: within rounding of the largest one it is that of the limit.
-        if volume > high * (1.0 - FLAT) {
-            return Ok(most);
-        }
-        let mut seen = Seen::NOTHING;
-        let start = self.contraction_start().min(limit - 0.05 * limit.abs());
-        // Beyond the limit it falls again.
-        match self.root(method, [start, limit], &mut seen, |found| volume - found.response.volume_m3) {
-            Ok(found) if self.pulls(&found.response) => Ok(found),
-            Err(error @ FibreError::Slack { .. }) => Err(error),
-            _ => self.on_a_path(method, Goal::Volume(volume), true, &seen).ok_or(
-                if seen.volume.is_finite() && seen.volume > volume {
-                    FibreError::VolumeTooSmall { volume_m3: volume, low_m3: seen.volume }
-                } else {
-                    FibreError::VolumeNotFound { volume_m3: volume }
-                },
-            ),
         }
     }
 

@@ -2,8 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
-use bulge_fibre::{Approach, FibreError, Given, Problem};
-use bulge_muscles::{Muscle, Pressure, from_toml};
+use bulge_fibre::{Approach, FibreError, Given, Problem, RangeEnd};
+use bulge_muscles::{
+    Angle, Bladder, Braided, Construction, Fibre, Force, Length, LineStiffness, Muscle, Pressure, Unfolding,
+    from_toml, preset,
+};
 
 #[test]
 fn rubber_that_carries_the_pressure_leaves_the_fibres_slack() {
@@ -61,4 +64,70 @@ fn fibres_become_slack_where_the_rubber_carries_all() {
         let named = matches!(error, FibreError::BeyondLimit { limit: named, .. } if named.to_bits() == limit.to_bits());
         assert!(named, "{error}");
     }
+}
+
+/// A braid of 60 fibres: length, radius and that of the fittings in mm, degrees.
+fn braid(length: f64, radius: f64, fitting: f64, degrees: f64) -> Muscle {
+    let braid = Braided::new(Length::mm(radius), Angle::deg(degrees)).unwrap().with_fibres(60).unwrap();
+    let braid = braid.with_fitting_radius(Length::mm(fitting)).unwrap();
+    Muscle::new("braid", Length::mm(length), Construction::Braided(braid)).unwrap()
+}
+
+fn rubber(muscle: &Muscle, c10_kpa: f64, c01_kpa: f64, wall: f64) -> Muscle {
+    let bladder = Bladder::new(Pressure::kpa(c10_kpa), Pressure::kpa(c01_kpa), Length::mm(wall)).unwrap();
+    muscle.clone().with_bladder(bladder).unwrap()
+}
+
+fn elastic(muscle: &Muscle, newton: f64) -> Muscle {
+    muscle.clone().with_fibre(Fibre::new(Force::n(newton)).unwrap()).unwrap()
+}
+
+/// What a muscle holds at a contraction at which it pulls is answered with an equilibrium, and more than it holds anywhere with the limit: where its fibres become slack before
+/// the force vanishes (stiff rubber on wide fittings, gas far inside), where stretched fibres give way and the volume falls before the limit, and
+/// where a short muscle that is drawn out holds more again.
+#[test]
+fn a_volume_that_a_muscle_holds_is_found() {
+    let wide = rubber(&braid(972.0, 11.58, 22.33, 15.4), 87.0, 0.0, 2.96);
+    let inside = rubber(&elastic(&braid(46.9, 2.017, 2.017, 15.9), 16.2), 1328.0, 498.0, 0.0435);
+    let inside = inside.with_gas_wall(Some(Length::mm(0.516))).unwrap();
+    let soft = elastic(&preset("ppam-2-r16").unwrap(), 600.0);
+    let short = elastic(&braid(20.0, 15.0, 15.0, 30.0), 300.0);
+    for (muscle, kpa, ends_slack) in
+        [(wide, 4.75, true), (inside, 16.3, true), (soft, 200.0, false), (short, 300.0, false)]
+    {
+        let problem = Problem::new(&muscle, Pressure::kpa(kpa)).unwrap();
+        let end = problem.range_end(Approach::Auto).unwrap();
+        assert_eq!(matches!(end, RangeEnd::FibresSlacken(_)), ends_slack, "{end:?}: {muscle:?}");
+        let mut most: f64 = 0.0;
+        for part in [1e-7, 1e-3, 3e-3, 0.01, 0.02, 0.05, 0.1] {
+            let at = Given::Contraction(end.contraction() - part);
+            let Ok(held) = problem.solve(at, Approach::Auto) else { continue };
+            let found = problem.solve(Given::Volume(held.volume_m3), Approach::Auto);
+            let found = found.unwrap_or_else(|error| panic!("{part} before {end:?}: {error}"));
+            assert!((found.volume_m3 / held.volume_m3 - 1.0).abs() < 1e-9 && found.force_n > -1e-9);
+            most = most.max(held.volume_m3);
+        }
+        let error = problem.solve(Given::Volume(2.0 * most), Approach::Auto).unwrap_err();
+        let FibreError::VolumeTooLarge { high_m3, contraction, .. } = error else { panic!("{error}") };
+        assert!(high_m3 >= most * (1.0 - 1e-9) && contraction <= end.contraction(), "{error}: {most}");
+    }
+}
+
+/// Fibres that stiff rubber on narrow fittings stretches by 30.4 % at the muscle's length at rest, more than the 30 % that drawing out may: rounding of the
+/// length doesn't refuse that, and the range ends where the force vanishes.
+#[test]
+fn stretched_at_rest_is_not_drawn_out() {
+    let cloth = Unfolding::new(LineStiffness::n_per_m(401.0), Length::mm(7.026)).unwrap();
+    let muscle = rubber(&elastic(&braid(160.73, 12.3614, 6.0022, 33.244), 64.483), 25_790.0, 0.0, 1.3977);
+    let problem = Problem::new(&muscle.with_unfolding(cloth), Pressure::kpa(31.103)).unwrap();
+    let at_rest = problem.solve(Given::Contraction(0.0), Approach::Auto).unwrap();
+    assert!(at_rest.fibre_strain > bulge_fibre::MOST_STRAIN, "{}", at_rest.fibre_strain);
+    let beside = problem.solve(Given::Length(0.160_73 * (1.0 + 1e-15)), Approach::Auto).unwrap();
+    assert!((beside.force_n / at_rest.force_n - 1.0).abs() < 1e-9);
+    let drawn = problem.solve(Given::Contraction(-1e-6), Approach::Auto).unwrap_err();
+    assert!(matches!(drawn, FibreError::Overstretched { .. }), "{drawn}");
+    let limit = problem.contraction_limit(Approach::Auto).unwrap();
+    assert!(limit > 0.05 && limit < 0.06, "{limit}");
+    let beyond = problem.solve(Given::Contraction(0.34), Approach::Auto).unwrap_err();
+    assert!(matches!(beyond, FibreError::BeyondLimit { .. }), "{beyond}");
 }

@@ -75,9 +75,9 @@ macro_rules! raised {
 }
 
 raised!(
-    FileError, PresetError, MuscleError, MeasurementError, CatalogueError, EffectFileError, SweepError, FamilyError, TableError,
+    FileError, PresetError, MuscleError, MeasurementError, CatalogueError, EffectFileError, SweepError, TableError,
     TabulateError, VtkError, PlotError, serde_json::Error, std::io::Error;
-    FibreError, ModelError, ExtendedError, InferenceError, HideError, LearningError
+    FibreError, ModelError, ExtendedError, FamilyError, InferenceError, HideError, LearningError
 );
 
 /// `?` for errors of the crates.

@@ -4,12 +4,12 @@ use bulge_effects::known;
 use bulge_fibre::Approach;
 use bulge_muscles::Parameter;
 use bulge_sweep::plan::Quantity;
-use bulge_sweep::{Family, Output, Points, Values, evaluate as at_points};
+use bulge_sweep::{Family, Output, Points, Reason, Values, evaluate as at_points};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::error::{OrRaise, input};
+use crate::error::{OrRaise, input, of_fault};
 use crate::muscle::{Muscle, catalogue};
 use crate::task::beside;
 
@@ -31,8 +31,8 @@ enum Owned {
     Each(Vec<f64>),
 }
 
-/// Arrays in the order of the outputs, the number of points without equilibrium, and the first of these with their reasons.
-pub(crate) type Found<'py> = (Vec<Bound<'py, PyArray1<f64>>>, usize, Vec<(usize, String)>);
+/// Arrays in the order of the outputs, the number of points without equilibrium, and the first of these with the exceptions that their reasons are.
+pub(crate) type Found<'py> = (Vec<Bound<'py, PyArray1<f64>>>, usize, Vec<(usize, Py<PyAny>)>);
 
 /// Outputs at `count` points.
 #[expect(clippy::too_many_arguments, reason = "called from one place, by the names of the Python part")]
@@ -92,7 +92,8 @@ pub(crate) fn evaluate<'py>(
         })?
     };
     let arrays = outputs.into_iter().map(|values| PyArray1::from_vec(py, values)).collect();
-    Ok((arrays, infeasible, reasons))
+    let raised = |reason: Reason| (reason.row, of_fault(reason.fault, reason.says).into_value(py).into_any());
+    Ok((arrays, infeasible, reasons.into_iter().map(raised).collect()))
 }
 
 /// Whether the dimensionless shape of a muscle depends on the pressure: where something stretches, or effects act.

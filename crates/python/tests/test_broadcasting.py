@@ -203,8 +203,9 @@ def test_shapes_that_do_not_fit_are_value_errors(ppam):
 
 def test_pressure_must_push(ppam):
     for pressure in [0.0, -BAR]:
-        with pytest.raises(bulge.BulgeError, match="greater than 0"):
-            ppam.force(0.1, pressure=pressure)
+        for call in [ppam.force, ppam.shape]:
+            with pytest.raises(bulge.InputError, match="greater than 0"):
+                call(contraction=0.1, pressure=pressure)
 
 
 @pytest.mark.parametrize("contraction", [1.0, "120 %"])
@@ -215,9 +216,9 @@ def test_a_muscle_that_contracts_by_its_length_has_none(ppam, braid, cylinder, c
             lambda: muscle.evaluate(["force", "volume"], contraction, pressure=[BAR, 2 * BAR]),  # noqa: B023
             lambda: muscle.shape(contraction=contraction, pressure=BAR),  # noqa: B023
         ]
-        # A point of an array without an answer is one kind of exception, whatever the reason.
-        for call, kind in zip(calls, [bulge.NoSolutionError, bulge.NoSolutionError, bulge.InputError], strict=True):
-            with pytest.raises(kind, match="contracts by 100 % has no length") as caught:
+        # One input is one exception, whatever asks.
+        for call in calls:
+            with pytest.raises(bulge.InputError, match="contracts by 100 % has no length") as caught:
                 call()
             assert "\n" not in str(caught.value)
     found = ppam.force([0.1, 1.0, 1.2], pressure=BAR, errors="coerce")

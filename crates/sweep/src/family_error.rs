@@ -2,7 +2,7 @@
 
 use bulge_fibre::FibreError;
 use bulge_model::{ExtendedError, ModelError};
-use bulge_muscles::{FileError, MuscleError};
+use bulge_muscles::{Fault, FileError, MuscleError};
 
 /// Why a point has no equilibrium, or a plan no family.
 #[derive(Debug, thiserror::Error)]
@@ -47,4 +47,17 @@ pub enum FamilyError {
         /// The number.
         found: f64,
     },
+}
+
+impl FamilyError {
+    /// Whose fault it is: that of an equilibrium the same as of one shape.
+    #[must_use]
+    pub fn fault(&self) -> Fault {
+        match self {
+            Self::Equilibrium(error) => error.fault(),
+            Self::Extended(error) => error.fault(),
+            Self::Model(error) => error.fault(),
+            _ => Fault::Input,
+        }
+    }
 }

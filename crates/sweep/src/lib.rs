@@ -33,7 +33,7 @@ pub use joint::{
 pub use muscle_field::MuscleField;
 pub use output::Output;
 pub use plan::Plan;
-pub use points::{Points, Values, evaluate};
+pub use points::{Points, Reason, Values, evaluate};
 pub use run::{Piece, Progress, RunOptions, Summary, SweepError, begin, complete, manifest, piece, run};
 pub use tabulate::{
     AxisDescription, OutputDescription, TableDescription, TabulateError, table_text, tabulate,

@@ -1,5 +1,6 @@
 //! A family at any points that somebody has: on all cores, in their order, each either with its outputs or with the reason why it has none.
 
+use bulge_muscles::Fault;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -28,6 +29,17 @@ impl Values<'_> {
     }
 }
 
+/// Why a point has no outputs.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Reason {
+    /// Its place.
+    pub row: usize,
+    /// Whose fault it is.
+    pub fault: Fault,
+    /// In a sentence.
+    pub says: String,
+}
+
 /// Outputs at points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
@@ -35,8 +47,8 @@ pub struct Points {
     pub outputs: Vec<Vec<f64>>,
     /// Points that have no equilibrium at which the muscle pulls.
     pub infeasible: usize,
-    /// Why, for the first of them, by their places, in rising order.
-    pub reasons: Vec<(usize, String)>,
+    /// Why, for the first of them, in the order of their places.
+    pub reasons: Vec<Reason>,
 }
 
 impl Points {
@@ -101,19 +113,20 @@ fn block(
         };
         before.copy_from_slice(&point);
         let is_told = points.reasons.len() < most;
-        let says = |error: &FamilyError| if is_told { error.to_string() } else { String::new() };
+        let says =
+            |error: &FamilyError| (error.fault(), if is_told { error.to_string() } else { String::new() });
         let found = match &now {
             Ok(member) => member
                 .pulling(family.contraction(&point), None, outputs, &mut values)
                 .map_err(|error| says(&error))
-                .and_then(|()| finite(&values, outputs)),
+                .and_then(|()| finite(&values, outputs).map_err(|says| (Fault::NoSolution, says))),
             Err(error) => Err(says(error)),
         };
-        if let Err(reason) = found {
+        if let Err((fault, says)) = found {
             values.fill(f64::NAN);
             points.infeasible += 1;
             if is_told {
-                points.reasons.push((row, reason));
+                points.reasons.push(Reason { row, fault, says });
             }
         }
         for (column, value) in points.outputs.iter_mut().zip(&values) {
@@ -170,18 +183,23 @@ mod tests {
 
     #[test]
     fn points_without_equilibrium_say_why() {
+        let axes = [Values::Each(&[0.2, 0.6, 1.2, 0.1]), Values::Same(6.875)];
+        let points = evaluate(&family(), &axes, 4, &[Output::Force], 20, &|_| ());
+        // As of one shape: beyond the limit there is none, and no muscle contracts by more than its length.
+        let faults: Vec<Fault> = points.reasons.iter().map(|reason| reason.fault).collect();
+        assert_eq!(faults, [Fault::NoSolution, Fault::Input]);
         let axes = [Values::Each(&[0.2, 0.6, f64::NAN, 0.1]), Values::Same(6.875)];
         let points = evaluate(&family(), &axes, 4, &[Output::Force], 20, &|_| ());
-        let places: Vec<usize> = points.reasons.iter().map(|(row, _)| *row).collect();
+        let places: Vec<usize> = points.reasons.iter().map(|reason| reason.row).collect();
         assert_eq!((places, points.infeasible), (vec![1, 2], 2));
-        assert!(points.reasons[0].1.contains("limit"), "{:?}", points.reasons);
+        assert!(points.reasons[0].says.contains("limit"), "{:?}", points.reasons);
         assert!(points.outputs[0][1].is_nan() && points.outputs[0][2].is_nan());
         assert!((points.outputs[0][0] - 544.0).abs() < 0.1);
         assert!(evaluate(&family(), &axes, 0, &[Output::Force], 20, &|_| ()).outputs[0].is_empty());
         let far = vec![0.6; 3 * BLOCK];
         let axes = [Values::Each(&far), Values::Same(6.875)];
         let points = evaluate(&family(), &axes, far.len(), &[Output::Force], 3, &|_| ());
-        let places: Vec<usize> = points.reasons.iter().map(|(row, _)| *row).collect();
+        let places: Vec<usize> = points.reasons.iter().map(|reason| reason.row).collect();
         assert_eq!((places, points.infeasible), (vec![0, 1, 2], far.len()));
     }
 }

@@ -1,6 +1,8 @@
-//! The domain map as a table: `cargo run --release -p bulge-validation --bin domain -- 100000 [SEED]`, with what went wrong beneath.
+//! The domain map as a table: `cargo run --release -p bulge-validation --bin domain -- 100000 [SEED]`, with what went wrong beneath;
+//! or some of its questions one by one: `domain 51553..51554 [SEED]`.
 
-use bulge_validation::domain::{Count, found_by_integrals, map};
+use bulge_validation::domain::{Count, found_by_integrals, listed, map};
+use std::ops::Range;
 use std::process::ExitCode;
 
 /// Questions where none are stated.
@@ -10,13 +12,21 @@ const SEARCHED: usize = 150;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let Some((range, seed)) = asked_one_by_one(&arguments) {
+        for line in listed(seed, range) {
+            println!("{line}");
+        }
+        return ExitCode::SUCCESS;
+    }
     let numbers: Option<Vec<u64>> = arguments.iter().map(|text| text.parse().ok()).collect();
     let (count, seed) = match numbers.as_deref() {
         Some([]) => (COUNT, 1),
         Some([count]) => (usize::try_from(*count).unwrap_or(COUNT), 1),
         Some([count, seed]) => (usize::try_from(*count).unwrap_or(COUNT), *seed),
         _ => {
-            eprintln!("write the number of questions, and the seed if it isn't to be 1: `domain 100000 1`");
+            eprintln!(
+                "write the number of questions, or some of them as a range, and the seed if it isn't to be 1: `domain 100000 1`, `domain 25318..25319`"
+            );
             return ExitCode::from(2);
         }
     };
@@ -55,6 +65,17 @@ fn main() -> ExitCode {
         }
     }
     ExitCode::SUCCESS
+}
+
+/// A range of questions, with the seed.
+fn asked_one_by_one(arguments: &[String]) -> Option<(Range<usize>, u64)> {
+    let (range, seed) = match arguments {
+        [range] => (range, 1),
+        [range, seed] => (range, seed.parse().ok()?),
+        _ => return None,
+    };
+    let (from, to) = range.split_once("..")?;
+    Some((from.parse().ok()?..to.parse().ok()?, seed))
 }
 
 fn print(one: &Count) {

@@ -77,7 +77,7 @@ class Muscle:
         pressure: float | None,
         method: str,
         progress: _Told,
-    ) -> tuple[list[_Array], int, list[tuple[int, str]]]: ...
+    ) -> tuple[list[_Array], int, list[tuple[int, BulgeError]]]: ...
 
 @final
 class Shape:

@@ -217,8 +217,8 @@ class Muscle:
         ``numbers={"bladder-elasticity.c10": ...}``. Effects of a history (friction, creep) act as at rest.
 
         One name gives an array (a float for floats), a list gives a dict. Dimensionless outputs of muscles that don't depend on the pressure need
-        none. Where there is no equilibrium at which the muscle pulls, :class:`bulge.NoSolutionError` names the first such point;
-        ``errors="coerce"`` gives NaN there. ``progress`` is True for a bar, or a function of (share, what).
+        none. Where there is no equilibrium at which the muscle pulls, the first such point is named by the exception that :meth:`shape` raises for
+        it (beyond the limit :class:`bulge.NoSolutionError`); ``errors="coerce"`` gives NaN there. ``progress`` is True for a bar, or a function of (share, what).
         """
         if errors not in ("raise", "coerce"):
             raise _bulge.InputError(f"errors: {errors!r} is neither \"raise\" nor \"coerce\"")
@@ -253,7 +253,7 @@ class Muscle:
             where = f" at index {tuple(int(i) for i in np.unravel_index(row, shape))}" if shape else ""
             many = f"{failed} of {count} points; the first{where}: " if count > 1 else ""
             hint = "; errors=\"coerce\" gives NaN at such points" if count > 1 else ""
-            raise _bulge.NoSolutionError(f"{self.name}: {many}{why}{hint}")
+            raise type(why)(f"{self.name}: {many}{why}{hint}")
         found = [array.reshape(shape) if shape else float(array[0]) for array in arrays]
         return found[0] if isinstance(outputs, str) else dict(zip(names, found))
 

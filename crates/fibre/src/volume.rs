@@ -1,0 +1,160 @@
+//! The equilibrium with a volume: on the way up to the largest one, beyond it where it falls, or drawn out.
+//!
+//! `F = -p dV/dl` where nothing stores energy: the volume rises with the contraction as long as the muscle pulls. Rubber and fibres that stretch give energy
+//! back, and it may fall before the range ends; and a short muscle of elastic fibres that is drawn out far holds more again.
+
+use bulge_muscles::Quantity;
+
+use crate::FibreError;
+use crate::problem::Problem;
+use crate::search::{Goal, Seen};
+use crate::shape::Method;
+use crate::solve::Found;
+
+/// Part of the largest volume within which it can't be told how far from there it belongs.
+const FLAT: f64 = 1e-13;
+/// Part of the volume at the end of the range that rounding of the contraction there makes.
+const END: f64 = 1e-9;
+/// Steps of the contraction back from where fibres are slack.
+const SHORT_OF: [f64; 3] = [0.0, 1e-9, 1e-6];
+
+/// The equilibrium with the largest volume of some, and why there is no larger one.
+#[derive(Clone, Copy)]
+struct Most {
+    found: Found,
+    why: &'static str,
+}
+
+impl Most {
+    fn volume(&self) -> f64 {
+        self.found.response.volume_m3
+    }
+
+    fn contraction(&self) -> f64 {
+        self.found.response.contraction
+    }
+}
+
+impl Problem {
+    pub(crate) fn with_volume(&self, method: Method, volume: f64) -> Result<Found, FibreError> {
+        if volume <= 0.0 {
+            return Err(FibreError::NotPositive { what: "volume", value: volume });
+        }
+        if !volume.is_finite() {
+            return Err(FibreError::NotFinite { what: "volume", value: volume });
+        }
+        let (end, radius) = (self.net.acting_at(1.0), self.muscle.radius().si());
+        let least = end.volume_section(1.0, &end.section(1.0)) * radius.powi(2) * self.muscle.length().si();
+        if self.is_singular() && volume <= least {
+            return Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: least });
+        }
+        let end = self.range_end_with(method)?;
+        let most = if volume > end.volume() { self.fullest(method, &end) } else { end };
+        let mut seen = Seen::NOTHING;
+        if volume > most.volume() * (1.0 + FLAT) {
+            let found = self.drawn_out(method, volume, most.contraction(), &mut seen);
+            return found.ok_or_else(|| {
+                let drawn = seen.most_volume > most.volume();
+                FibreError::VolumeTooLarge {
+                    volume_m3: volume,
+                    high_m3: most.volume().max(seen.most_volume),
+                    contraction: if drawn { seen.fullest } else { most.contraction() },
+                    why: if drawn { "drawn out as far as its fibres bear" } else { most.why },
+                }
+            });
+        }
+        // Where it is largest the volume is flat: within rounding of the largest one it is that.
+        if volume > most.volume() * (1.0 - FLAT) {
+            return Ok(most.found);
+        }
+        let found = self.rising(method, volume, self.way_to(most.contraction()), &mut seen);
+        let found = found.or_else(|| {
+            let beyond = [most.contraction(), end.contraction()];
+            (volume > end.volume() * (1.0 - END))
+                .then(|| self.falling(method, volume, beyond, &mut seen))
+                .flatten()
+        });
+        let found = found.or_else(|| self.beside_least(method, volume, most.contraction(), &mut seen));
+        let found = found.or_else(|| ((volume / end.volume() - 1.0).abs() <= FLAT).then_some(end.found));
+        found.or_else(|| self.on_a_path(method, Goal::Volume(volume), true, &seen)).ok_or({
+            let least = seen.volume.min(end.volume());
+            if seen.volume.is_finite() && least > volume {
+                FibreError::VolumeTooSmall { volume_m3: volume, low_m3: least }
+            } else {
+                FibreError::VolumeNotFound { volume_m3: volume }
+            }
+        })
+    }
+
+    /// From a start in the range to a contraction.
+    fn way_to(&self, contraction: f64) -> [f64; 2] {
+        [self.contraction_start().min(contraction - 0.05 * contraction.abs()), contraction]
+    }
+
+    /// The equilibrium with a volume on a way on which that rises.
+    fn rising(&self, method: Method, volume: f64, way: [f64; 2], seen: &mut Seen) -> Option<Found> {
+        let found = self.root(method, way, seen, |found| volume - found.response.volume_m3);
+        found.ok().filter(|found| self.pulls(&found.response))
+    }
+
+    /// The same where it falls.
+    fn falling(&self, method: Method, volume: f64, way: [f64; 2], seen: &mut Seen) -> Option<Found> {
+        let found = self.root(method, way, seen, |found| found.response.volume_m3 - volume);
+        found.ok().filter(|found| self.pulls(&found.response))
+    }
+
+    /// The equilibrium of elastic fibres that are drawn out to more than the largest volume, that at a contraction `peak`.
+    fn drawn_out(&self, method: Method, volume: f64, peak: f64, seen: &mut Seen) -> Option<Found> {
+        if self.net.compliance == 0.0 {
+            return None;
+        }
+        let found = self.falling(method, volume, self.way_to(peak), seen);
+        found.or_else(|| self.on_a_path(method, Goal::Volume(volume), true, seen))
+    }
+
+    /// The same little above the least volume, beyond which they hold more again: the steps of a search pass over it.
+    fn beside_least(&self, method: Method, volume: f64, peak: f64, seen: &mut Seen) -> Option<Found> {
+        if self.net.compliance == 0.0 {
+            return None;
+        }
+        let [start, _] = self.way_to(peak);
+        let least = self.root(method, [start, start], seen, |found| found.response.volume_slope_m2).ok()?;
+        let way = [least.response.contraction, peak];
+        (least.response.volume_m3 < volume).then(|| self.rising(method, volume, way, seen)).flatten()
+    }
+
+    /// The last equilibrium that pulls with taut fibres.
+    fn range_end_with(&self, method: Method) -> Result<Most, FibreError> {
+        let mut seen = Seen::NOTHING;
+        match self.at_limit(method, &mut seen) {
+            Ok(found) => Ok(Most { found, why: "where its force vanishes" }),
+            Err(FibreError::Slack { contraction, limit: Some(limit) }) => {
+                // Just before it, where rounding makes them slack.
+                let places = SHORT_OF.map(|step| limit - step);
+                let near = places.iter().find_map(|place| self.at(method, *place, seen.last).ok());
+                let found =
+                    near.or_else(|| places.iter().find_map(|place| self.walked(method, *place, false)));
+                let slack = FibreError::Slack { contraction, limit: Some(limit) };
+                found.map(|found| Most { found, why: "where its fibres slacken" }).ok_or(slack)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The equilibrium with the largest volume up to the end of the range.
+    fn fullest(&self, method: Method, end: &Most) -> Most {
+        let rising = |found: &Found| -found.response.volume_slope_m2;
+        if self.is_scale_free() || rising(&end.found) >= 0.0 {
+            return *end;
+        }
+        let mut seen = Seen::NOTHING;
+        let peak = self.root(method, self.way_to(end.contraction()), &mut seen, rising);
+        // It falls from where the fibres can't be drawn out farther.
+        match peak.or_else(|_| self.at(method, seen.fullest, None)) {
+            Ok(found) if found.response.volume_m3 > end.volume() => {
+                Most { found, why: "and less if it contracts more" }
+            }
+            _ => *end,
+        }
+    }
+}
