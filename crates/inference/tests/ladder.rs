@@ -40,6 +40,22 @@ fn climbed(data: &Data, muscle: &Muscle, with: &[&str]) -> Comparison {
     compare(data, muscle, &Options::new(catalogue, effects)).unwrap()
 }
 
+/// Rows at turning points on the other branch count less, and the error of the others is told beside that of all.
+#[test]
+fn the_error_of_rows_whose_direction_is_known_is_told() {
+    let on = |data: &Data| {
+        climbed(data, &muscle("[instruments]\nforce = { noise = \"2 N\" }"), &["coulomb-friction"])
+    };
+    let clean = loops(|row, direction| -7.0 * direction + alternating(row));
+    assert_eq!(on(&clean).ladder[1].directed_rmse_n, None);
+    let doubtful = clean.direction_in_doubt();
+    let side = |row: usize| if doubtful.binary_search(&row).is_ok() { 7.0 } else { -7.0 };
+    let found = on(&loops(|row, direction| side(row) * direction + alternating(row)));
+    assert!(doubtful.len() >= 6 && found.ladder[1].rmse_n > 4.0, "{doubtful:?} {}", found.ladder[1].rmse_n);
+    let directed = found.ladder[1].directed_rmse_n.unwrap();
+    assert!((directed - 2.0).abs() < 0.04, "{directed}");
+}
+
 /// Whatever was asked before, the answer is that of a comparison with these effects.
 #[test]
 fn asked_again_with_other_effects_the_answer_is_the_same() {

@@ -152,5 +152,14 @@ mod tests {
         assert!(space.len() == 2 && norm(&space.outside(&sum)) < 1e-10);
         assert!((c[0] - (2.0 * ca[0] - cb[0])).abs() < 1e-12);
         assert!(norm(&space.enter(&tangents[1])) < 1e-12);
+        // What is nearly within has a direction that is orthogonal to all others.
+        let nearly: Vec<f64> = (0..50).map(|i| sum[i] + 1e-5 * column(5)[i]).collect();
+        space.enter(&nearly);
+        let last = &space.frame[2];
+        let others = space.tangents.iter().chain(&space.frame[..2]);
+        assert!(
+            others.map(|unit| dot(unit, last).abs()).fold(0.0, f64::max) < 1e-15
+                && (norm(last) - 1.0).abs() < 1e-15
+        );
     }
 }
