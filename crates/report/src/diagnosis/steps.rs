@@ -68,15 +68,19 @@ pub(super) fn says(diagnosis: &Diagnosis) -> String {
         Verdict::CannotTell => "these data can't tell whether structure is left",
         _ => "structure is left",
     };
+    let directed = diagnosis.comparison.ladder.last().and_then(|rung| rung.directed_rmse_n);
+    let directed = directed.map_or_else(String::new, |error| {
+        format!(" ({} without the readings whose direction is in doubt, which count less)", newton(error))
+    });
     if diagnosis.ladder.len() == 1 {
         return format!(
-            "The model misses the measurement by {}, single readings scatter by {floor}: {}.",
+            "The model misses the measurement by {}{directed}, single readings scatter by {floor}: {}.",
             newton(first.rmse_n),
             enough(first)
         );
     }
     format!(
-        "The error goes from {} to {}, single readings scatter by {floor}: {}.",
+        "The error goes from {} to {}{directed}, single readings scatter by {floor}: {}.",
         newton(first.rmse_n),
         newton(last.rmse_n),
         enough(last)
