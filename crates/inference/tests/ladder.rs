@@ -40,6 +40,25 @@ fn climbed(data: &Data, muscle: &Muscle, with: &[&str]) -> Comparison {
     compare(data, muscle, &Options::new(catalogue, effects)).unwrap()
 }
 
+/// A disturbed reading is left out, and its size is that of nothing.
+#[test]
+fn a_spike_is_no_full_scale() {
+    let clean = loops(|row, _| alternating(row));
+    let spiked = loops(|row, _| if row == 50 { 1e7 } else { alternating(row) });
+    let [clean, spiked] = [clean, spiked].map(|data| climbed(&data, &muscle(""), &[]));
+    assert_eq!(
+        spiked.data.left_out.iter().map(|left| left.rows).sum::<usize>(),
+        1,
+        "{:?}",
+        spiked.data.left_out
+    );
+    assert_eq!(spiked.data.force_n[1].to_bits(), clean.data.force_n[1].to_bits());
+    assert_eq!(spiked.data.full_scale_n.to_bits(), clean.data.full_scale_n.to_bits());
+    let has_zeros =
+        |comparison: &Comparison| comparison.quality.iter().any(|f| f.says.contains("zero force"));
+    assert!(!has_zeros(&spiked) && !has_zeros(&clean), "{:?}", spiked.quality);
+}
+
 /// Rows at turning points on the other branch count less, and the error of the others is told beside that of all.
 #[test]
 fn the_error_of_rows_whose_direction_is_known_is_told() {

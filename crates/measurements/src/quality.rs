@@ -226,7 +226,7 @@ impl<'a> Gate<'a> {
     fn new(data: &'a Data, options: &'a QualityOptions) -> Self {
         let sweeps: Vec<Range<usize>> = data.sweeps().iter().map(|sweep| sweep.rows.clone()).collect();
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        Self {
+        let mut gate = Self {
             data,
             options,
             motion: data.columns().motion.values(),
@@ -234,7 +234,14 @@ impl<'a> Gate<'a> {
             force: Resolution::of(data.force(), &sweeps),
             largest_force: largest(data.force()),
             largest_pressure: largest(data.pressure()),
+        };
+        // A disturbed reading is no size of anything.
+        let spikes = spikes::of_force(&gate);
+        if !spikes.is_empty() {
+            let kept = (0..data.len()).filter(|row| spikes.binary_search(row).is_err());
+            gate.largest_force = kept.map(|row| data.force()[row].abs()).fold(0.0, f64::max);
         }
+        gate
     }
 
     fn motion_resolution(&self) -> &Resolution {

@@ -57,8 +57,9 @@ impl Effect for PressurePresliding {
             )
             .prior(0.0, 3.0)
             .plausible(0.0, 30.0),
+            // At held length a clamped braid's strands turn by some 0.06 %/bar: 0.2 bar of presliding is 0.012 %.
             ParameterCard::new("distance", PERCENT, (0.01, 10.0), 0.3, "contraction over which it builds up")
-                .plausible(0.02, 3.0)
+                .plausible(0.01, 3.0)
                 .off_at(0.3)
                 .logarithmic(),
         ]

@@ -12,7 +12,6 @@ use std::sync::Arc;
 use crate::comparison::buckled::buckled;
 use crate::comparison::document::{DataSummary, LeftOut, Mismatch, NoiseFloor, Rung};
 use crate::comparison::doubt::doubtful_sd;
-use crate::comparison::floor::noise_floor;
 use crate::comparison::levels::{Folds, Levels};
 use crate::comparison::loops::branches;
 use crate::comparison::mismatch::questions;
@@ -118,7 +117,7 @@ impl<'a> Analysis<'a> {
             check_needs(effect, &record)?;
         }
         check_size(&data, muscle, &record, &used.mask)?;
-        let full_scale = full_scale(data.force());
+        let full_scale = full_scale(data.force(), used.rows());
         let levels = Levels::of(&record, &used.mask);
         let folds = Folds::of(&record, &levels, &used.mask);
         let noise = unknown_noise(muscle, full_scale);
@@ -348,14 +347,6 @@ impl<'a> Analysis<'a> {
         self.slack = Some(rows);
     }
 
-    /// What no model can go below, as the residuals of a rung show it.
-    pub(crate) fn noise_floor(&self, climbed: &Climbed) -> Option<NoiseFloor> {
-        let (measured, force) = (self.record.force(), &climbed.force);
-        let counts = |row: usize| self.used.mask[row] && force[row].is_finite();
-        let residual = |row: usize| measured[row] - force[row];
-        noise_floor(self.pure_error.as_ref(), &self.record, &counts, &residual, self.muscle)
-    }
-
     /// The noise of the force from here on, and the floor for people. What the residuals show to be a disturbed reading doesn't count from here on, and rows whose
     /// direction is in doubt count by how much that matters.
     pub(crate) fn measure_noise(&mut self, first: &Climbed) -> Option<NoiseFloor> {
@@ -365,9 +356,8 @@ impl<'a> Analysis<'a> {
         if sd > 0.0 {
             self.noise.force_n = sd;
         }
-        let residuals: Vec<f64> =
-            self.record.force().iter().zip(&first.force).map(|(measured, model)| measured - model).collect();
-        self.used.leave_out_spikes(&self.data, &residuals);
+        self.used.leave_out_spikes(&self.data, self.residuals(first));
+        let residuals = self.residuals(first);
         self.used.leave_out_shifted(&self.data, &self.record, &residuals, self.noise.force_n);
         let sd = doubtful_sd(
             &self.record,
@@ -377,7 +367,8 @@ impl<'a> Analysis<'a> {
             &residuals,
             self.noise.force_n,
         );
-        if let Some((rows, sd)) = sd {
+        // An analysis whose record another one shares has them already.
+        if let Some((rows, sd)) = sd.filter(|(_, sd)| self.record.force_sd() != Some(&sd[..])) {
             self.record = Arc::new(Record::clone(&self.record).with_force_sd(sd));
             self.doubtful = rows;
         }
@@ -471,9 +462,7 @@ impl<'a> Analysis<'a> {
 
     pub(crate) fn summary(&self) -> DataSummary {
         let range = |value: &dyn Fn(usize) -> f64| {
-            (0..self.record.len())
-                .map(value)
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
+            self.rows().map(value).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
         };
         let moments = self.record.moments();
         DataSummary {

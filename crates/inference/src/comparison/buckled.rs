@@ -21,7 +21,7 @@ pub(crate) fn buckled(model: &Model, record: &Record, used: &[bool]) -> Vec<usiz
         return Vec::new();
     };
     let moments = record.moments();
-    let weak = WEAK * full_scale(record.force());
+    let weak = WEAK * full_scale(record.force(), (0..record.len()).filter(|row| used[*row]));
     let is_held = |row: usize| moments[row].direction == 0.0 && moments[row].pressure_direction != 0.0;
     let force = &found.prediction.force;
     let is_slack = |row: &usize| force[*row].is_nan() || (force[*row] < 0.0 && is_held(*row));

@@ -9,6 +9,7 @@ use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
 use crate::chebyshev::chebyshev;
+use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::document::NoiseFloor;
 use crate::comparison::levels::sweep_of;
 
@@ -20,6 +21,16 @@ const MOST_ROWS: usize = 5_000;
 const MOST_READINGS: usize = 100_000;
 /// Part of the sum of squares below which what a promised decrease leaves may be rounding.
 const LEFT: f64 = 1e-9;
+
+impl Analysis<'_> {
+    /// What no model can go below, as the residuals of a rung show it.
+    pub(crate) fn noise_floor(&self, climbed: &Climbed) -> Option<NoiseFloor> {
+        let (measured, force) = (self.record.force(), &climbed.force);
+        let counts = |row: usize| self.used.mask[row] && force[row].is_finite();
+        let residual = |row: usize| measured[row] - force[row];
+        noise_floor(self.pure_error.as_ref(), &self.record, &counts, &residual, self.muscle)
+    }
+}
 
 /// From repeats, else from what a smooth surface leaves of the residuals of the rows that count, else from the data sheet.
 pub(crate) fn noise_floor(

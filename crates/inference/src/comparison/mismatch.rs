@@ -116,7 +116,8 @@ pub(crate) fn questions(
     let first = Trial { model, record: &few, used: &counting, answered: ANSWERED_OF_FEW };
     let Some((before, force)) = trial.error(&|read| read) else { return Vec::new() };
     let may_help = |meaning: &Meaning| first.error(&*meaning.of).is_some_and(|(after, _)| after <= before);
-    let full = full_scale(data.force());
+    let counted = (0..data.len()).filter(|row| used[*row]);
+    let full = full_scale(data.force(), counted);
     let mut found: Vec<Mismatch> = clock::question(data, record, before).into_iter().collect();
     if before <= LARGE * full {
         return found;

@@ -1,6 +1,6 @@
 //! Where the error lies: by each variable, on maps, along curves.
 
-use crate::comparison::analysis::Analysis;
+use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::document::{Bin, Breakdown, Curve, CurvePoint, ResidualMap};
 use crate::comparison::levels::sweep_of;
 use crate::comparison::loops::branches;
@@ -22,6 +22,13 @@ pub(crate) struct Errors {
     pub(crate) bias: f64,
     pub(crate) largest: f64,
     pub(crate) r_squared: f64,
+}
+
+impl Analysis<'_> {
+    /// Measured less modelled force of all rows \[N\].
+    pub(crate) fn residuals(&self, climbed: &Climbed) -> Vec<f64> {
+        self.record.force().iter().zip(&climbed.force).map(|(measured, model)| measured - model).collect()
+    }
 }
 
 /// Over all rows that count and have a state. If none has one, the error is the measured force: what says nothing predicts none.

@@ -37,6 +37,11 @@ impl Used {
     }
 
     /// Leaves out rows whose gauge pressure is 0 or, by the noise of a zero, below: nothing balances the fibres there.
+    /// The rows that count.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.mask.len()).filter(|row| self.mask[*row])
+    }
+
     fn leave_out_unpressurised(&mut self, data: &Data) {
         let pressure = data.pressure();
         let rows: Vec<usize> = (0..pressure.len()).filter(|row| pressure[*row] <= 0.0).collect();
@@ -57,9 +62,9 @@ impl Used {
     }
 
     /// Leaves out spikes that only show when the model's force is taken off.
-    pub(crate) fn leave_out_spikes(&mut self, data: &Data, residuals: &[f64]) {
+    pub(crate) fn leave_out_spikes(&mut self, data: &Data, residuals: Vec<f64>) {
+        let mut values = residuals;
         // Rows that don't count may have no prediction: they lie on the line between those that do.
-        let mut values = residuals.to_vec();
         for sweep in data.sweeps() {
             let mut last = None;
             for row in sweep.rows.clone() {
@@ -80,18 +85,21 @@ impl Used {
 /// on at zero force; rows in which the muscle pushed.
 pub(crate) fn used(data: &Data) -> Used {
     let force = data.force();
-    let full = full_scale(force);
-    let lowest = force.iter().copied().fold(f64::INFINITY, f64::min);
-    let is_cut = |row: &usize| force[*row].total_cmp(&lowest).is_eq();
-    let cut: Vec<usize> = (0..force.len()).filter(is_cut).collect();
     let mut used =
         Used { mask: vec![true; force.len()], left_out: Vec::new(), reading: data.reading().clone() };
     used.leave_out_unpressurised(data);
+    let disturbed = data.disturbed();
+    let mut is_disturbed = vec![false; force.len()];
+    disturbed.iter().flat_map(|disturbance| &disturbance.rows).for_each(|row| is_disturbed[*row] = true);
+    let sound = || (0..force.len()).filter(|row| !is_disturbed[*row]);
+    let full = full_scale(force, sound());
+    let lowest = sound().map(|row| force[row]).fold(f64::INFINITY, f64::min);
+    let cut: Vec<usize> = sound().filter(|row| force[*row].total_cmp(&lowest).is_eq()).collect();
     if cut.len() >= 2 && lowest.abs() <= 0.01 * full {
         let why = format!("slack: {lowest} N, the lowest reading, says only that the muscle didn't pull");
         used.leave_out(data, cut, why);
     }
-    for disturbance in data.disturbed() {
+    for disturbance in disturbed {
         used.leave_out(data, disturbance.rows, disturbance.why);
     }
     let between = data.between_isobars().iter().copied();
@@ -108,9 +116,9 @@ pub(crate) fn used(data: &Data) -> Used {
     used
 }
 
-/// Largest force that was measured \[N\].
-pub(crate) fn full_scale(force: &[f64]) -> f64 {
-    force.iter().fold(0.0_f64, |most, f| most.max(f.abs()))
+/// Largest force that was measured in some rows \[N\].
+pub(crate) fn full_scale(force: &[f64], rows: impl Iterator<Item = usize>) -> f64 {
+    rows.map(|row| force[row].abs()).fold(0.0, f64::max)
 }
 
 /// Line numbers of rows: `12, 33-40`, with the names of the files where there are several. Long lists end with a count.

@@ -122,8 +122,7 @@ fn sd_with_tails(
 impl Analysis<'_> {
     /// Bounds what a reading in the tails of the noise does to fits from here on, by its weight. Means of rows, on which a diagnosis stands, bound it themselves.
     pub(crate) fn bound_tails(&mut self, first: &Climbed) {
-        let residuals: Vec<f64> =
-            self.record.force().iter().zip(&first.force).map(|(measured, model)| measured - model).collect();
+        let residuals = self.residuals(first);
         let sd = sd_with_tails(&self.record, &self.levels, &self.used.mask, &residuals, self.noise.force_n);
         if let Some(sd) = sd {
             self.record = Arc::new(Record::clone(&self.record).with_force_sd(sd));

@@ -95,7 +95,7 @@ fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
         pressure_pa: range(data.pressure()),
         contraction: range(&data.contraction(muscle.length().si())),
         force_n: range(data.force()),
-        full_scale_n: full_scale(data.force()),
+        full_scale_n: full_scale(data.force(), 0..data.len()),
     };
     Comparison {
         schema: "bulge.comparison/1",

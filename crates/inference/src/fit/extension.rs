@@ -46,7 +46,7 @@ pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
             (0..model.parameters().len()).filter(|i| model.parameters()[*i].effect == name).collect();
         let fitted: Vec<Option<&Fitted>> = places.iter().map(|i| fitted(model, fit, *i)).collect();
         if fitted.iter().flatten().any(|f| f.nuisance) {
-            extension.left_out.push((name, "it was fitted as noise of the rig, within its data sheets"));
+            extension.left_out.push((name, "it is an error of the rig, which the next data set has anew"));
             continue;
         }
         let numbers: Vec<f64> = places

@@ -458,7 +458,10 @@ fn warnings(fit: &Fit) -> Vec<String> {
     }
     for p in &fit.parameters {
         let value = format!("{} {}", significant(p.value, 3), p.unit);
-        if !p.plausible {
+        let [least, most] = p.plausible_range;
+        // An error of the rig that may be within its data sheet is that of the rig.
+        let may_be_within = p.nuisance && p.low <= most && p.high >= least;
+        if !p.plausible && !may_be_within {
             let [low, high] = p.plausible_range.map(|end| significant(end, 3));
             let (label, unit) = (label(p), &p.unit);
             warnings.push(if p.nuisance {

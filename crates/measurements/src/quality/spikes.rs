@@ -26,6 +26,15 @@ const COMES_BACK: usize = 5;
 /// More than one row in so many is the way this quantity scatters.
 const MOST: usize = 20;
 
+/// Spikes of the force.
+pub(super) fn of_force(gate: &Gate) -> Vec<usize> {
+    along(gate.data, gate.data.force(), &gate.force, RANGE, &paths(gate.data))
+}
+
+fn paths(data: &Data) -> Vec<Range<usize>> {
+    data.paths().map(|(sweep, _)| sweep.rows.clone()).collect()
+}
+
 /// Spikes of each column.
 pub(super) fn in_columns<'a>(gate: &Gate<'a>) -> Vec<(&'static str, Vec<usize>)> {
     let columns: [(&'static str, &'a [f64], &Resolution); 3] = [
@@ -33,7 +42,7 @@ pub(super) fn in_columns<'a>(gate: &Gate<'a>) -> Vec<(&'static str, Vec<usize>)>
         (gate.motion_name(), gate.motion, gate.motion_resolution()),
         ("pressure", gate.data.pressure(), &gate.pressure),
     ];
-    let paths: Vec<Range<usize>> = gate.data.paths().map(|(sweep, _)| sweep.rows.clone()).collect();
+    let paths = paths(gate.data);
     columns
         .map(|(name, values, resolution)| (name, along(gate.data, values, resolution, RANGE, &paths)))
         .to_vec()
