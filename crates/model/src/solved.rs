@@ -10,8 +10,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::lattice::Lattice;
 
-/// Lattices that are kept, some 100 kB each.
-const KEPT: usize = 32;
+/// Lattices that are kept, some 500 kB each with where their searches ended: what the candidates of one step start from.
+const KEPT: usize = 12;
 
 /// Where the searches for the nodes of a lattice ended.
 pub(crate) type Starts = Arc<HashMap<[i64; 2], Start>>;
