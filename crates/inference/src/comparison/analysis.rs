@@ -367,8 +367,7 @@ impl<'a> Analysis<'a> {
             &residuals,
             self.noise.force_n,
         );
-        // An analysis whose record another one shares has them already.
-        if let Some((rows, sd)) = sd.filter(|(_, sd)| self.record.force_sd() != Some(&sd[..])) {
+        if let Some((rows, sd)) = sd {
             self.record = Arc::new(Record::clone(&self.record).with_force_sd(sd));
             self.doubtful = rows;
         }
@@ -400,7 +399,7 @@ impl<'a> Analysis<'a> {
             held_out_by: held_out.and(self.folds.as_ref().map(|folds| folds.by)),
             r_squared: error.r_squared,
             fitted: free(&climbed.prepared.model).len(),
-            directed_rmse_n: self.directed_rmse(&climbed.force),
+            directed_rmse_n: self.directed_rmse(&climbed.force, error.rmse),
             half_gap_rmse_n: loops::half_gap_error(self, &climbed.force),
             fit: climbed.fit.clone(),
             without_state: self.without_state(climbed),

@@ -6,7 +6,6 @@ use bulge_model::Record;
 use crate::comparison::analysis::Analysis;
 use crate::comparison::floor::every;
 use crate::comparison::levels::Levels;
-use crate::comparison::residuals::rmse;
 
 /// The error of the other rows is told beside that of all where it is lower than this part of it.
 const WORTH_TELLING: f64 = 0.9;
@@ -65,13 +64,16 @@ fn gap(branches: [Vec<f64>; 2]) -> f64 {
 }
 
 impl Analysis<'_> {
-    /// RMS error \[N\] of the rows whose direction is known; none where rows in doubt count like the others, or where the error is about that of all rows.
-    pub(crate) fn directed_rmse(&self, force: &[f64]) -> Option<f64> {
+    /// RMS error \[N\] of the rows whose direction is known; none where rows in doubt count like the others, or where the error is about that of all rows, `all_n`.
+    pub(crate) fn directed_rmse(&self, force: &[f64], all_n: f64) -> Option<f64> {
         if self.doubtful.is_empty() {
             return None;
         }
-        let is_known = |row: usize| self.doubtful.binary_search(&row).is_err();
-        let [directed, all] = [rmse(self, force, &is_known)?, rmse(self, force, &|_| true)?];
-        (directed < WORTH_TELLING * all).then_some(directed)
+        let is_known = |row: &usize| self.doubtful.binary_search(row).is_err();
+        let known = self.rows().filter(is_known).filter(|row| force[*row].is_finite());
+        let error = |row: usize| self.record.force()[row] - force[row];
+        let (rows, square) = known.fold((0_usize, 0.0), |(n, sum), row| (n + 1, sum + error(row).powi(2)));
+        let directed_n = (square / rows.max(1) as f64).sqrt();
+        (rows > 0 && directed_n < WORTH_TELLING * all_n).then_some(directed_n)
     }
 }

@@ -52,15 +52,6 @@ pub(crate) fn summary(analysis: &Analysis<'_>, force: &Vec<f64>) -> Errors {
     Errors { rmse: (sums[1] / n).sqrt(), bias: sums[0] / n, largest, r_squared }
 }
 
-/// RMS error \[N\] of the rows that count, have a state and are asked for; none if there are none.
-pub(crate) fn rmse(analysis: &Analysis<'_>, force: &[f64], asked: &dyn Fn(usize) -> bool) -> Option<f64> {
-    let measured = analysis.record.force();
-    let errors = analysis.rows().filter(|row| force[*row].is_finite() && asked(*row));
-    let (rows, square) =
-        errors.fold((0_usize, 0.0), |(n, sum), row| (n + 1, sum + (measured[row] - force[row]).powi(2)));
-    (rows > 0).then(|| (square / rows as f64).sqrt())
-}
-
 /// A variable cut into groups: name and unit, group of each row, label and middle of each group.
 struct Groups<'a> {
     variable: &'static str,
