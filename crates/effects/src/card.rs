@@ -3,6 +3,8 @@
 use bulge_muscles::{Kind, Muscle, Parameter};
 use serde::Serialize;
 
+use crate::mechanism::{Form, Mechanism};
+
 /// Where in the chain from reading to reading an effect acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -119,6 +121,10 @@ pub struct Card<'a> {
     pub name: &'a str,
     /// The family it counts under; its own name if it is the family's first member.
     pub family: &'a str,
+    /// What happens physically, above the family: all members of a family share it.
+    pub mechanism: Mechanism,
+    /// How exact the formula can be.
+    pub form: Form,
     /// A heading.
     pub title: &'a str,
     /// What happens physically, in two or three sentences.

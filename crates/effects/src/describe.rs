@@ -7,6 +7,7 @@ use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature
 use crate::catalogue::Catalogue;
 use crate::effect::Effect;
 use crate::law::PAPERS;
+use crate::mechanism::{Form, Mechanism};
 
 /// Widest line.
 const WIDTH: usize = 100;
@@ -47,6 +48,8 @@ pub fn describe(effect: &dyn Effect) -> String {
     }
     page.item("separate", card.separate);
     page.item("needs", card.needs.says());
+    page.item("mechanism", card.mechanism.name());
+    page.item("form", card.form.says());
     page.item("source", &format!("{} ({})", card.source, card.evidence.says()));
     let cites = |key: &str| [card.about, card.equation, card.source].iter().any(|text| has_word(text, key));
     for paper in PAPERS.iter().filter(|paper| cites(paper.key)) {
@@ -95,6 +98,10 @@ pub struct CardDocument {
     pub name: String,
     /// The family it counts under.
     pub family: String,
+    /// What happens physically, above the family.
+    pub mechanism: Mechanism,
+    /// How exact the formula can be.
+    pub form: Form,
     /// A heading.
     pub title: String,
     /// What happens physically.
@@ -185,6 +192,8 @@ impl CardDocument {
         Self {
             name: card.name.to_owned(),
             family: card.family.to_owned(),
+            mechanism: card.mechanism,
+            form: card.form,
             title: card.title.to_owned(),
             about: card.about.to_owned(),
             equation: card.equation.to_owned(),

@@ -227,7 +227,7 @@ impl Reshaped {
 /// ([`crate::Catalogue::with`]), so that help, fits, rankings and reports treat it alike.
 ///
 /// ```
-/// use bulge_effects::{Card, Catalogue, Effect, Evidence, Group, Jet, Moment, Needs, ParameterCard, Parity, Place, Setting, Signature, Stage};
+/// use bulge_effects::{Card, Catalogue, Effect, Evidence, Form, Group, Jet, Mechanism, Moment, Needs, ParameterCard, Parity, Place, Setting, Signature, Stage};
 ///
 /// /// A hose that pulls like a spring.
 /// #[derive(Debug)]
@@ -238,6 +238,8 @@ impl Reshaped {
 ///         Card {
 ///             name: "hose",
 ///             family: "hose",
+///             mechanism: Mechanism::GiveOfTheRig,
+///             form: Form::Loose,
 ///             title: "A hose that pulls like a spring",
 ///             about: "The supply hose is stretched when the muscle shortens.",
 ///             equation: "dF = -k eps",

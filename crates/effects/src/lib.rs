@@ -16,6 +16,7 @@ pub mod law;
 mod learnt;
 mod load;
 mod material;
+mod mechanism;
 #[cfg(test)]
 mod probe;
 mod rig;
@@ -28,3 +29,4 @@ pub use catalogue::{Catalogue, CatalogueError};
 pub use describe::{CardDocument, ParameterDocument, SignatureDocument, TwinDocument, describe, overview};
 pub use effect::{Balance, Effect, Input, Jet, LANES, Moment, Place, Reshaped, Setting};
 pub use learnt::{Known, known, learnt};
+pub use mechanism::{Form, Mechanism};

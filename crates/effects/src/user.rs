@@ -6,6 +6,7 @@ mod reader;
 mod value;
 
 use crate::expression::Expression;
+use crate::mechanism::{Form, Mechanism};
 use bulge_muscles::{Dimension, FileError};
 use std::fs::File;
 use std::io::{ErrorKind, Read};
@@ -41,6 +42,10 @@ pub struct UserEffect {
     pub source: Option<String>,
     /// The group of effects that it belongs to.
     pub family: Option<String>,
+    /// What happens physically: as stated, else that of the family if the catalogue has it, else [`Mechanism::User`].
+    pub mechanism: Mechanism,
+    /// How exact the formula can be: loose if not stated.
+    pub form: Form,
     /// Names of effects that a measurement may confuse with it.
     pub twins: Vec<String>,
     /// The force (N), over the variables of [`crate::expression::VARIABLES`] and the parameters in their order.

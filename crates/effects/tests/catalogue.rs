@@ -1,12 +1,12 @@
 //! The whole catalogue: names, cards, what `off` means, and every derivative against differences.
 
 use bulge_effects::{
-    Balance, CardDocument, Catalogue, Effect, Input, Jet, Moment, ParameterCard, Place, Setting, Stage,
-    describe, overview,
+    Balance, Card, CardDocument, Catalogue, Effect, Form, Input, Jet, Mechanism, Moment, ParameterCard,
+    Place, Setting, Stage, describe, overview,
 };
 use bulge_muscles::{Muscle, PRESETS, Parameter, preset, units};
 use bulge_numerics::Real;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Names that files, scripts and reports rely on; the catalogue may hold more.
@@ -208,6 +208,26 @@ fn families_and_twins_are_effects() {
             assert!(find(twin).is_some() && twin != card.name, "{}: twin {twin}", card.name);
         }
     }
+}
+
+#[test]
+fn families_have_a_mechanism_and_instruments_are_exact() {
+    let all = effects();
+    let of: BTreeMap<&str, Mechanism> =
+        all.iter().map(|effect| effect.card()).map(|card| (card.name, card.mechanism)).collect();
+    for effect in &all {
+        let card = effect.card();
+        assert_ne!(card.mechanism, Mechanism::User, "{}", card.name);
+        assert_eq!(card.mechanism, of[card.family], "{}: another mechanism than {}", card.name, card.family);
+        let is_zero_or_gain = ["-offset", "-gain", "-zero-error"].iter().any(|end| card.name.ends_with(end));
+        if is_zero_or_gain || card.mechanism == Mechanism::FibreGeometry {
+            assert_eq!(card.form, Form::Exact, "{}", card.name);
+        }
+    }
+    let found: BTreeSet<Mechanism> = of.values().copied().collect();
+    assert_eq!(found, Mechanism::ALL.into(), "every mechanism has an effect");
+    let is_friction = |card: &Card<'_>| card.mechanism == Mechanism::DryFriction;
+    assert!(all.iter().map(|effect| effect.card()).filter(is_friction).all(|card| card.form == Form::Loose));
 }
 
 #[test]
@@ -427,7 +447,7 @@ fn pages_hold_the_whole_card_in_100_columns() {
         let joined = page.split_whitespace().collect::<Vec<_>>().join(" ");
         let mut texts = vec![card.title, card.about, card.separate, card.source, card.evidence.says()];
         texts.extend(card.twins.iter().flat_map(|twin| [twin.name, twin.how]));
-        texts.extend([card.signature.shape, card.needs.says()]);
+        texts.extend([card.signature.shape, card.needs.says(), card.mechanism.name(), card.form.says()]);
         let parameters = effect.parameters();
         texts.extend(parameters.iter().flat_map(|p| [p.name, p.unit, p.about]));
         for text in texts.into_iter().chain(card.equation.split_whitespace()) {
@@ -471,4 +491,5 @@ fn documents_hold_numbers_in_shown_units() {
     assert_eq!((angle.parameters[0].low, angle.parameters[0].high), (-12.0, 12.0));
     let text = toml::to_string(&angle).unwrap();
     assert!(text.contains("stage = \"shape\"") && text.contains("kind = \"braided\""), "{text}");
+    assert!(text.contains("mechanism = \"fibre-geometry\"") && text.contains("form = \"exact\""), "{text}");
 }

@@ -7,8 +7,8 @@
 )]
 
 use bulge_effects::{
-    Card, Catalogue, Effect, Evidence, Group, Jet, Moment, Needs, ParameterCard, Parity, Place, Setting,
-    Signature, Stage,
+    Card, Catalogue, Effect, Evidence, Form, Group, Jet, Mechanism, Moment, Needs, ParameterCard, Parity,
+    Place, Setting, Signature, Stage,
 };
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
 use bulge_muscles::{Muscle, Parameter, preset};
@@ -255,6 +255,8 @@ impl Effect for Turns {
         Card {
             name: "turns",
             family: "turns",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "",
             about: "",
             equation: "",

@@ -82,7 +82,8 @@ HOSE = {"k": bulge.Parameter("N", typical=50, low=0, high=500), "eps_free": bulg
 
 @pytest.fixture(scope="module")
 def effect():
-    return bulge.Effect("hose-stiffness", hose, parameters=HOSE, title="Hose pulls", about="a hose", source="here", family="own", twins="membrane-axial")
+    return bulge.Effect("hose-stiffness", hose, parameters=HOSE, title="Hose pulls", about="a hose", source="here", family="own", twins="membrane-axial",
+        mechanism="give-of-the-rig", form="near")
 
 
 def test_an_effect_as_a_file(effect, tmp_path):
@@ -95,6 +96,7 @@ def test_an_effect_as_a_file(effect, tmp_path):
     for own in [effect, path, str(path), [effect], [path], text]:
         assert "hose-stiffness" in bulge.effects(own=own) and "hose-stiffness" not in bulge.effects()
         card = bulge.effects("hose-stiffness", own=own)
+        assert (card.mechanism, card.form) == ("give-of-the-rig", "near")
         assert card.title == "Hose pulls" and "a hose" in repr(card)
     with pytest.raises(bulge.InputError, match="none.toml"):
         bulge.read_effects(tmp_path / "none.toml")

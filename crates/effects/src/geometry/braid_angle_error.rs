@@ -4,6 +4,7 @@ use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::DEGREE;
 
 /// `alpha0 -> alpha0 + error` in the equilibrium of the net.
@@ -15,6 +16,8 @@ impl Effect for BraidAngleError {
         Card {
             name: "braid-angle-error",
             family: "braid-angle-error",
+            mechanism: Mechanism::FibreGeometry,
+            form: Form::Exact,
             title: "Angle of the braid",
             about: "The fibres run at another angle to the axis than stated. Half a degree too steep costs 5 % of the force at full length \
                     and moves the contraction at which the muscle stops pulling.",

@@ -4,6 +4,7 @@ use bulge_muscles::Kind;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
 
 /// `1 - eps -> 1 - k eps` in the equilibrium.
@@ -15,6 +16,8 @@ impl Effect for EndFactor {
         Card {
             name: "end-factor",
             family: "end-taper",
+            mechanism: Mechanism::Ends,
+            form: Form::Near,
             title: "Taper at the ends, as a factor",
             about: "Because the ends taper, the middle of the muscle is more contracted than the whole. Tondu and Lopez put a constant \
                     factor on the contraction for it. It is an empirical stand-in: the exact taper gives 1.24 at 2 % and 1.09 at 20 % for a \

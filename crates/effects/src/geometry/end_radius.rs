@@ -4,6 +4,7 @@ use bulge_muscles::{Muscle, MuscleError, Parameter};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
 /// `R -> radius` in the end condition r = R of the equilibrium.
@@ -15,6 +16,8 @@ impl Effect for EndRadius {
         Card {
             name: "end-radius",
             family: "end-radius",
+            mechanism: Mechanism::Section,
+            form: Form::Exact,
             title: "Radius at the end fittings",
             about: "Under pressure the fibres are held at another radius than the drawing says. In the second-generation PPAM the epoxy \
                     ends a centimetre inside the fitting, and the fibres move from 11.5 mm out to the rim of the basin at 16 mm.",

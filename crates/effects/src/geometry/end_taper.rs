@@ -4,6 +4,7 @@ use bulge_muscles::{Ends, Kind, Muscle, MuscleError};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 
 /// `ends = "cylinder"` becomes `ends = "clamped"`: the exact shape of the net; no parameter.
 #[derive(Debug)]
@@ -14,6 +15,8 @@ impl Effect for EndTaper {
         Card {
             name: "end-taper",
             family: "end-taper",
+            mechanism: Mechanism::Ends,
+            form: Form::Exact,
             title: "Taper at the clamped ends",
             about: "The textbook formula takes the muscle for a cylinder up to its fittings. Really the braid is clamped there and swells over \
                     a length of some radii, so that the middle is more contracted than the muscle as a whole. A muscle of 25 radii loses an \

@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
 
 /// Fewer fibres than this enclose nothing.
@@ -25,6 +26,8 @@ impl Effect for FibreCount {
         Card {
             name: "fibre-count",
             family: "fibre-count",
+            mechanism: Mechanism::FibreGeometry,
+            form: Form::Exact,
             title: "Number of fibres",
             about: "Between n fibres the cloth is flat, so the gas acts on a polygon instead of a circle: 0.4 % less area with 40 fibres, \
                     2.9 % with 15. A muscle with another number of fibres than stated is a little stronger or weaker at every contraction. \

@@ -4,6 +4,7 @@ use bulge_muscles::{Muscle, MuscleError, Parameter};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
 /// `l0 -> l0 (1 + delta)` at the same distance of the fittings: `eps -> (eps + delta)/(1 + delta)`.
@@ -15,6 +16,8 @@ impl Effect for FibreLength {
         Card {
             name: "fibre-length",
             family: "fibre-length",
+            mechanism: Mechanism::FibreGeometry,
+            form: Form::Exact,
             title: "Length of the fibres",
             about: "The fibres are a little longer or shorter than the stated length: they are clamped deeper in the fitting than the drawing \
                     says, or the length was measured over something else. The distance of the fittings is read rightly, so the muscle is more \

@@ -4,6 +4,7 @@ use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::DEGREE;
 
 /// `sin(theta) = r sin(gamma)/R` in the equilibrium of the net.
@@ -15,6 +16,8 @@ impl Effect for FibreMisalignment {
         Card {
             name: "fibre-misalignment",
             family: "fibre-misalignment",
+            mechanism: Mechanism::FibreGeometry,
+            form: Form::Exact,
             title: "Fibres laid at an angle",
             about: "The fibres don't run along the meridians but as a slight helix, a braid of very small angle. The further out they get, the \
                     more of their length goes around the muscle, and the force falls. One sense of the helix twists the muscle; the force is \

@@ -4,6 +4,7 @@ use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
 /// Cloth of circumference `C_f` stands in n circular lobes outside the polygon of the fibres.
@@ -15,6 +16,8 @@ impl Effect for Lobes {
         Card {
             name: "lobes",
             family: "lobes",
+            mechanism: Mechanism::Section,
+            form: Form::Near,
             title: "Lobes of cloth between the fibres",
             about: "The cloth between two fibres is longer than their distance and bulges into a lobe, which adds up to 12 % of area to the \
                     polygon. As the muscle swells the lobes flatten, so the area grows less than without them and the force falls short at \

@@ -4,6 +4,7 @@ use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
 /// `A = (n/2) sin(2 pi/n) (r + h)^2` instead of `r^2`.
@@ -15,6 +16,8 @@ impl Effect for PleatDepth {
         Card {
             name: "pleat-depth",
             family: "pleat-depth",
+            mechanism: Mechanism::Section,
+            form: Form::Exact,
             title: "Depth of the pleats under pressure",
             about: "The crests of the pleats stand outside the fibres and enclose gas there too, so the pressure acts out to r + h. In force \
                     this is exactly a muscle with fittings of radius R + h: another reading of why the second-generation PPAM, with fibres laid \

@@ -4,6 +4,7 @@ use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
 /// `r0 -> radius` in the equilibrium of the net; fittings that are not stated separately follow.
@@ -15,6 +16,8 @@ impl Effect for RadiusError {
         Card {
             name: "radius-error",
             family: "radius-error",
+            mechanism: Mechanism::FibreGeometry,
+            form: Form::Exact,
             title: "Radius of the braid",
             about: "The braid lies at another radius than stated: the nominal diameter of a hose is that of its bore, the braid is embedded in \
                     the wall. In a muscle of 20 mm it was found at 10.7 mm, between a bore of 9.75 and an outside of 11.75 mm; the force goes \

@@ -4,6 +4,7 @@ use bulge_muscles::Kind;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
 /// The force is averaged over contractions `eps + sigma z`, z a standard normal number.
@@ -15,6 +16,8 @@ impl Effect for UnevenFibres {
         Card {
             name: "uneven-fibres",
             family: "uneven-fibres",
+            mechanism: Mechanism::ClothAndFibres,
+            form: Form::Loose,
             title: "Fibres of different lengths",
             about: "In a handmade muscle some fibres are a little longer than others. The short ones pull more than the long ones pull less, \
                     because the force rises ever more steeply towards small contractions: on the average the muscle is stronger there.",

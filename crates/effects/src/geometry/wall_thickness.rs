@@ -4,6 +4,7 @@ use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
 /// `A = pi (r - t)^2` instead of `pi r^2` in the equilibrium of the net.
@@ -15,6 +16,8 @@ impl Effect for WallThickness {
         Card {
             name: "wall-thickness",
             family: "wall-thickness",
+            mechanism: Mechanism::FibreGeometry,
+            form: Form::Exact,
             title: "Thickness of the wall",
             about: "The gas acts on the inner face of the wall, at a smaller radius than the braid. This is the correction for a wall that keeps \
                     its thickness. Rubber keeps its volume instead: where the stated radius is that of the braid, nothing is to correct, and a \

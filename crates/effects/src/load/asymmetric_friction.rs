@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
 /// `dF = -F_up` while shortening, `+F_down` while lengthening.
@@ -13,6 +14,8 @@ impl Effect for AsymmetricFriction {
         Card {
             name: "asymmetric-friction",
             family: "coulomb-friction",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "Constant friction that differs with the direction",
             about: "Friction takes one force while the muscle shortens and gives another while it lengthens: a guide that tilts, strands that \
                     open more easily than they close. Half the sum widens the loop, half the difference shifts it like a wrong zero.",

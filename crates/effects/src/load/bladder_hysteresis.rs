@@ -6,6 +6,7 @@ use bulge_numerics::Real;
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
 use crate::load::filled_bladder::filled;
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
 /// `z -> s + (z - s) exp(-|db|/delta)`, `dF = -w b z`, b the force of the filled bladder over its largest ([`filled`]).
@@ -17,6 +18,8 @@ impl Effect for BladderHysteresis {
         Card {
             name: "bladder-hysteresis",
             family: "bladder-hysteresis",
+            mechanism: Mechanism::Rubber,
+            form: Form::Loose,
             title: "Rubber of the bladder that loses work",
             about: "Rubber gives back less than it took. In filling at held length the bladder is stretched until the net is taut, and the muscle \
                     pulls less than while it is vented; above that pressure the loop is closed. At rest length the bladder isn't stretched, and \

@@ -7,6 +7,7 @@ use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
 use crate::load::filled_bladder::filled;
 use crate::load::standard_linear_solid::mean_decay;
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, SECOND};
 
 /// `dQ/dt = g db/dt - Q/tau`, `dF = -Q`, b the force of the filled bladder over its largest ([`filled`]).
@@ -18,6 +19,8 @@ impl Effect for BladderRelaxation {
         Card {
             name: "bladder-relaxation",
             family: "bladder-hysteresis",
+            mechanism: Mechanism::Rubber,
+            form: Form::Loose,
             title: "Rubber of the bladder that relaxes",
             about: "The bladder answers a quick stretch stiffly and yields within a time tau. After filling at held length the muscle gains force by \
                     itself, and while it is vented it pulls more than while it was filled, most at low pressure.",

@@ -4,6 +4,7 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
 /// `dz/d eps = (1 - z^2 (1 + sign(z d eps))/2)/delta`, `dF = -w z`.
@@ -25,6 +26,8 @@ impl Effect for BoucWen {
         Card {
             name: "bouc-wen",
             family: "presliding-hysteresis",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "Hysteresis after Bouc and Wen",
             about: "Contacts give before they slide. After a reversal the friction first falls in a straight line, elastically, and then bends \
                     over smoothly into its value of the other sign.",

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
 
 /// Least sin^2 of the braid angle: a braid drawn straight has no radius left to rub on.
@@ -22,6 +23,8 @@ impl Effect for ContactFriction {
         Card {
             name: "contact-friction",
             family: "pressure-friction",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "Friction on the contact area of the braid",
             about: "The strands slide on what they touch, pressed on by the gas. The area grows with the muscle's length and radius, so a \
                     muscle twice as long loses twice the force; other friction in proportion to the pressure doesn't know the length.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
 /// `dF = -s F_c`, s = +1 while shortening, -1 while lengthening.
@@ -13,6 +14,8 @@ impl Effect for CoulombFriction {
         Card {
             name: "coulomb-friction",
             family: "coulomb-friction",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "Constant friction",
             about: "A force against the motion that doesn't depend on pressure, contraction or speed: guides of the rig, rubber that loses a \
                     constant part of its work. It shifts the two branches of a loop apart by twice its size.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 
 /// `dF = -A log10(1 + t/1 s)`, t since the sweep began.
 #[derive(Debug)]
@@ -12,6 +13,8 @@ impl Effect for Creep {
         Card {
             name: "creep",
             family: "creep",
+            mechanism: Mechanism::Relaxation,
+            form: Form::Loose,
             title: "Creep and relaxation with the logarithm of time",
             about: "Held in one place, a muscle loses a little force: as much from 1 to 10 s as from 10 to 100 s. Rubber and fibres \
                     rearrange, and never quite stop.",

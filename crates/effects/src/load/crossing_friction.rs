@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
 /// `dF = -s 4 pi (mu rho_e) (r0/sin a0) cos a0 p (1 - eps)`.
@@ -20,6 +21,8 @@ impl Effect for CrossingFriction {
         Card {
             name: "crossing-friction",
             family: "pressure-friction",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "Strands that turn on each other",
             about: "At every crossing two strands lie on each other, pressed together by the gas, and turn like the blades of scissors when \
                     the muscle moves. The friction is in proportion to the pressure and falls a little as the muscle gets shorter.",

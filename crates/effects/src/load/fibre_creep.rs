@@ -4,6 +4,7 @@ use bulge_muscles::Kind;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 
 /// `e_f = c T log10(1 + t/1 s)`, T the tension of all fibres together; the contraction seen from the longer fibre grows by `e_f (1 - eps)`.
 ///
@@ -18,6 +19,8 @@ impl Effect for FibreCreep {
         Card {
             name: "fibre-creep",
             family: "creep",
+            mechanism: Mechanism::Relaxation,
+            form: Form::Loose,
             title: "Fibres that get longer under tension",
             about: "Fibres creep: under tension they get longer, by the same strain in each decade of time. At the same length the muscle is \
                     then a little more contracted than it seems, which counts most at small contractions and high pressure.",

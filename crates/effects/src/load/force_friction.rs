@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
 /// `dF = -s eta F`, s = +1 while shortening, -1 while lengthening.
@@ -13,6 +14,8 @@ impl Effect for ForceFriction {
         Card {
             name: "force-friction",
             family: "force-friction",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "Friction in proportion to the force",
             about: "Something rubs in the path of the force: a pulley, a hinge, fibres that slide over the rim of the fitting. A fixed part \
                     of the force is lost while shortening and added while lengthening.",

@@ -4,6 +4,7 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
 /// `reading = F + a F_c ln(1 + exp(-F/F_c))`.
@@ -18,6 +19,8 @@ impl Effect for LowLoadSlack {
         Card {
             name: "low-load-slack",
             family: "low-load-slack",
+            mechanism: Mechanism::ClothAndFibres,
+            form: Form::Loose,
             title: "Slack at low load",
             about: "Near its shortest length a muscle doesn't push: it buckles or goes slack, or the rig can't transmit a push. Readings level \
                     off towards zero where the model's force goes on falling through it.",

@@ -4,6 +4,7 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
 /// Where each of the four elements begins to slip, over the distance of the last.
@@ -21,6 +22,8 @@ impl Effect for MaxwellSlip {
         Card {
             name: "maxwell-slip",
             family: "presliding-hysteresis",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "Friction of elements that slip one after the other",
             about: "Contacts between strands and rubber stick, give elastically and let go, one sort after the other. After a reversal the \
                     friction goes over in straight pieces, and an inner loop that closes leaves no trace.",

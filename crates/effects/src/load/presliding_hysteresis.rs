@@ -4,6 +4,7 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
 /// Dahl's law of exponent 1, exact between two rows: `z -> s + (z - s) exp(-|d eps|/delta)`, `dF = -w z`.
@@ -15,6 +16,8 @@ impl Effect for PreslidingHysteresis {
         Card {
             name: "presliding-hysteresis",
             family: "presliding-hysteresis",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "Friction that builds up after a reversal",
             about: "Fibres stick and give before they slide: after a reversal the friction goes over from one sign to the other within a \
                     distance delta instead of at once, and inner loops are thinner than the outer one.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 
 /// `dF = -a p log10(1 + t/1 s)`, t since the sweep began.
 #[derive(Debug)]
@@ -12,6 +13,8 @@ impl Effect for PressureCreep {
         Card {
             name: "pressure-creep",
             family: "creep",
+            mechanism: Mechanism::Relaxation,
+            form: Form::Loose,
             title: "Creep in proportion to the pressure",
             about: "The walls yield to the gas with the logarithm of time, the more the higher the pressure: the muscle loses the same part \
                     of its pressure force in each decade.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON_PER_BAR;
 
 /// `dF = -s mu_p p`, s = +1 while shortening, -1 while lengthening.
@@ -13,6 +14,8 @@ impl Effect for PressureFriction {
         Card {
             name: "pressure-friction",
             family: "pressure-friction",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "Friction in proportion to the pressure",
             about: "The gas presses the strands of the braid (or the folds of the cloth) onto each other, and they rub when the muscle moves. \
                     The loop is wider at high pressure, by the same amount at every contraction.",

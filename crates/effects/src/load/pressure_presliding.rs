@@ -4,6 +4,7 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON_PER_BAR, PERCENT};
 
 /// `h -> clamp(s w + (h - s w) exp(-|dx|/delta), -w, w)`, `w = mu p`, `dF = -h`, x the turn of the strands.
@@ -18,6 +19,8 @@ impl Effect for PressurePresliding {
         Card {
             name: "pressure-presliding",
             family: "pressure-friction",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "Friction in proportion to the pressure that builds up after a reversal",
             about: "The gas presses the strands onto each other. They stick, give within a distance delta and then slide, at a friction in \
                     proportion to the pressure. In a test at held length the strands turn only as far as fibres and bladder give: the loop is \

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
 
@@ -14,6 +15,8 @@ impl Effect for PressureThreshold {
         Card {
             name: "pressure-threshold",
             family: "pressure-threshold",
+            mechanism: Mechanism::PressureChain,
+            form: Form::Near,
             title: "Pressure that is needed to begin",
             about: "The gas must first press the bladder against the braid, or open the folds of the cloth, before it loads the fibres. That \
                     much pressure is missing ever after. Below it the muscle does nothing.",

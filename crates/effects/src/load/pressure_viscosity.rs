@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 
 /// `dF = -c1 p d eps/dt`.
 #[derive(Debug)]
@@ -12,6 +13,8 @@ impl Effect for PressureViscosity {
         Card {
             name: "pressure-viscosity",
             family: "viscous-damping",
+            mechanism: Mechanism::Rate,
+            form: Form::Loose,
             title: "Damping in proportion to speed and pressure",
             about: "Strands that the gas presses into the rubber drag it along: the higher the pressure, the more of it is sheared. The loop \
                     widens with the speed and with the pressure.",

@@ -4,6 +4,7 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::{PERCENT, SECOND};
 
 /// `modulus -> modulus (1 + a (1 - exp(-t/tau)))`, t since the first row; without a bladder the whole force.
@@ -16,7 +17,9 @@ impl Effect for SelfHeating {
     fn card(&self) -> Card<'_> {
         Card {
             name: "self-heating",
-            family: "temperature",
+            family: "self-heating",
+            mechanism: Mechanism::SofteningAndHeat,
+            form: Form::Loose,
             title: "Warming up by work",
             about: "Gas that is pumped in and out and rubber that is kneaded warm the muscle up, most at its closed end, until it gives off as \
                     much heat as it gets. Its rubber gets stiffer meanwhile: 10 K are 3.4 %. Where there is no bladder the whole force changes.",

@@ -4,6 +4,7 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, SECOND};
 
 /// `q' = k eps' - q/tau`, `dF = -q`, q = 0 when a sweep begins.
@@ -18,6 +19,8 @@ impl Effect for StandardLinearSolid {
         Card {
             name: "standard-linear-solid",
             family: "creep",
+            mechanism: Mechanism::Relaxation,
+            form: Form::Loose,
             title: "Rubber that relaxes",
             about: "Rubber answers a quick motion stiffly and then yields within a time tau. Slow loops don't show it, fast ones see a \
                     spring, and in between the loop opens; in a hold the force comes back by itself.",

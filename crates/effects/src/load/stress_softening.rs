@@ -4,6 +4,7 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NUMBER, PERCENT};
 
 /// `factor = 1 + D exp(-N/N0)`, N the number of the cycle from 0: on the modulus of the bladder, or on the whole force where there is none.
@@ -18,6 +19,8 @@ impl Effect for StressSoftening {
         Card {
             name: "stress-softening",
             family: "stress-softening",
+            mechanism: Mechanism::SofteningAndHeat,
+            form: Form::Loose,
             title: "Softening in the first cycles",
             about: "New rubber is stiffer: the first cycles break up its filler, and it settles down to its later stiffness within a few. \
                     Where the muscle has no bladder, all of its force settles in the same way.",

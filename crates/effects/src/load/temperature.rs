@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 
 /// `F -> F (1 + alpha dT)`; with a bladder also `modulus -> modulus (1 + alpha_b dT)`, dT above the first row.
 #[derive(Debug)]
@@ -12,6 +13,8 @@ impl Effect for Temperature {
         Card {
             name: "temperature",
             family: "temperature",
+            mechanism: Mechanism::SofteningAndHeat,
+            form: Form::Loose,
             title: "Temperature of muscle and rig",
             about: "Warm rubber is stiffer: its elasticity comes from the motion of its molecules, which grows by a three-hundredth per \
                     degree. Everything else that warmth does to force and load cell is a relative change of the force. At a regulated \

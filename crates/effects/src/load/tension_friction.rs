@@ -4,6 +4,7 @@ use bulge_muscles::Kind;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
 /// `dF = -s eta N`, N = F + p A(r) the force along the fibres.
@@ -15,6 +16,8 @@ impl Effect for TensionFriction {
         Card {
             name: "tension-friction",
             family: "force-friction",
+            mechanism: Mechanism::DryFriction,
+            form: Form::Loose,
             title: "Friction in proportion to the fibre tension",
             about: "The fibres of a pleated muscle are bent over the rim of the fitting and rub there. What presses them on is their tension, \
                     not the force of the muscle: the loss stays where the force has gone to zero.",

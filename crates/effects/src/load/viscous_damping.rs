@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 
 /// `dF = -c d eps/dt`.
 #[derive(Debug)]
@@ -12,6 +13,8 @@ impl Effect for ViscousDamping {
         Card {
             name: "viscous-damping",
             family: "viscous-damping",
+            mechanism: Mechanism::Rate,
+            form: Form::Loose,
             title: "Damping in proportion to the speed",
             about: "Rubber and gas resist fast motion more than slow motion. The loop is widest in the middle, where the muscle moves \
                     fastest, and closed at its ends; at a tenth of the speed it is a tenth as wide.",

@@ -4,6 +4,7 @@ use bulge_muscles::Kind;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
 /// `dF = -k eps`, k = A_b E_a.
@@ -15,6 +16,8 @@ impl Effect for BladderAxial {
         Card {
             name: "bladder-axial",
             family: "membrane-axial",
+            mechanism: Mechanism::Rubber,
+            form: Form::Loose,
             title: "Axial stiffness of the bladder, linear",
             about: "The bladder is a spring along the axis: it pushes when the muscle shortens and pulls when it is drawn out. A tube of 20 mm \
                     with 2 mm of rubber of 1 MPa has about 126 N per unit contraction. The widening of the tube is another effect.",

@@ -4,6 +4,7 @@ use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::MEGAPASCAL;
 
 /// Stored energy W = c01 (I2 - 3) of the rubber, beside its c10 if it has one.
@@ -15,6 +16,8 @@ impl Effect for BladderC01 {
         Card {
             name: "bladder-c01",
             family: "bladder-elasticity",
+            mechanism: Mechanism::Rubber,
+            form: Form::Loose,
             title: "Second constant of the rubber bladder",
             about: "Rubber that is stretched in two directions is stiffer than the simplest law says. The second constant of Mooney and Rivlin \
                     stands for that. In a force map it looks nearly like the first: fit one of the two, or test the rubber by itself.",

@@ -4,6 +4,7 @@ use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::MEGAPASCAL;
 
 /// Stored energy W = c10 (I1 - 3) of the rubber in the equilibrium of the net; c01 of the muscle, if any, stays.
@@ -15,6 +16,8 @@ impl Effect for BladderElasticity {
         Card {
             name: "bladder-elasticity",
             family: "bladder-elasticity",
+            mechanism: Mechanism::Rubber,
+            form: Form::Loose,
             title: "Elasticity of the rubber bladder",
             about: "Part of the work of the gas goes into stretching the rubber tube inside the braid. It follows the net point by point, so \
                     it acts in the equilibrium. In Festo's muscles it is the largest missing effect (180 to 220 N of 1300 N).",

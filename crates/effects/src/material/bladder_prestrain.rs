@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use super::tube::Tube;
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON_PER_METRE;
 
 /// `dF = 2 pi r0 tau (2 l2 - 1) dl2/dl1`: a linear tube, to first order in its pre-strain.
@@ -17,7 +18,9 @@ impl Effect for BladderPrestrain {
     fn card(&self) -> Card<'_> {
         Card {
             name: "bladder-prestrain",
-            family: "force-offset",
+            family: "bladder-prestrain",
+            mechanism: Mechanism::Rubber,
+            form: Form::Loose,
             title: "Bladder stretched on assembly",
             about: "A bladder narrower than the braid is stretched already when the muscle hangs there at rest, and pushes the ends apart; a \
                     wider one does the opposite. Between 0 and 25 % that force is constant to within 7 %, so a force map takes it for the zero \

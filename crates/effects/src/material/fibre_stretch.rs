@@ -4,6 +4,7 @@ use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT_PER_KILONEWTON;
 
 /// Fibres that a braid is taken to have if it doesn't say: only their stiffness all together counts in a force.
@@ -18,6 +19,8 @@ impl Effect for FibreStretch {
         Card {
             name: "fibre-stretch",
             family: "fibre-stretch",
+            mechanism: Mechanism::ClothAndFibres,
+            form: Form::Loose,
             title: "Stretch of the fibres",
             about: "Loaded fibres get longer, by a per cent or so, which shifts the force curve towards larger contractions. A pleated muscle \
                     feels it at small contractions, where the force would rise without bound and now ends at a finite value; in a braid it acts \

@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use super::tube::Tube;
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::KILONEWTON_PER_METRE;
 
 /// `dF = 2 pi r0 E_h t (l2 - 1) dl2/dl1` on the kinematics of a cylinder.
@@ -17,6 +18,8 @@ impl Effect for HoopElasticity {
         Card {
             name: "hoop-elasticity",
             family: "bladder-elasticity",
+            mechanism: Mechanism::Rubber,
+            form: Form::Loose,
             title: "Hoop stiffness of the bladder, linear",
             about: "The wall is stretched around the muscle as that swells, like a ring of linear rubber. This is the simplest bladder: one \
                     line stiffness for modulus times thickness, on a cylinder. It needs no wall thickness, but rubber is linear only for \

@@ -4,6 +4,7 @@ use bulge_muscles::{Kind, Length, LineStiffness, Muscle, MuscleError, Parameter,
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::{KILONEWTON_PER_METRE, MILLIMETRE};
 
 /// Hoop energy `u(r) = K (2 pi (r - r_u))^2/(2 * 2 pi r_u)` of the cloth beyond r_u, in the equilibrium.
@@ -15,6 +16,8 @@ impl Effect for LimitedUnfolding {
         Card {
             name: "limited-unfolding",
             family: "limited-unfolding",
+            mechanism: Mechanism::ClothAndFibres,
+            form: Form::Loose,
             title: "Cloth that stops unfolding",
             about: "The pleats hold only so much cloth. Beyond the radius at which they are flat the cloth is stretched around the muscle and \
                     holds it back, so the force falls short at large contractions. A test that ends before that radius is reached shows nothing: \

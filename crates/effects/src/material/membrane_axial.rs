@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
 /// `dF = -k_a eps`.
@@ -13,6 +14,8 @@ impl Effect for MembraneAxial {
         Card {
             name: "membrane-axial",
             family: "membrane-axial",
+            mechanism: Mechanism::Rubber,
+            form: Form::Loose,
             title: "Axial stiffness of the membrane",
             about: "The model lets the fibres alone carry the axial load. Cloth, coating and bladder are springs beside them: they have to be \
                     pushed together as the muscle shortens, which takes a force proportional to the contraction, at any pressure.",

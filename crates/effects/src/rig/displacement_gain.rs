@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
 /// `true contraction = measured x (1 + g)`.
@@ -13,6 +14,8 @@ impl Effect for DisplacementGain {
         Card {
             name: "displacement-gain",
             family: "displacement-gain",
+            mechanism: Mechanism::LengthChain,
+            form: Form::Exact,
             title: "Gain of the displacement sensor",
             about: "The displacement sensor, or the rope and drum before it, counts a fixed part too little or too much of every way. At \
                     contraction 0 nothing is wrong; the error grows from there.",

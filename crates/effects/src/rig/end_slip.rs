@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 
 /// `true contraction = measured + N/(k l0)`, N = F + p A(r).
 #[derive(Debug)]
@@ -12,6 +13,8 @@ impl Effect for EndSlip {
         Card {
             name: "end-slip",
             family: "end-slip",
+            mechanism: Mechanism::GiveOfTheRig,
+            form: Form::Loose,
             title: "Fibres that give in their fittings",
             about: "The fibres slip a little in epoxy or clamp, elastically, pulled by their whole tension: by the force and by the gas that \
                     acts on the cross-section. Unlike a soft frame it gives also where the muscle doesn't pull.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 
 /// `reading = F + a t`, t since the first row.
 #[derive(Debug)]
@@ -12,6 +13,8 @@ impl Effect for ForceDrift {
         Card {
             name: "force-drift",
             family: "force-drift",
+            mechanism: Mechanism::ForceChain,
+            form: Form::Near,
             title: "Drift of the load cell",
             about: "The zero of load cell or amplifier moves steadily while the test runs, as it warms up. Loops are measured one above \
                     the other.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
 /// `reading = F (1 + g)`.
@@ -13,6 +14,8 @@ impl Effect for ForceGain {
         Card {
             name: "force-gain",
             family: "force-gain",
+            mechanism: Mechanism::ForceChain,
+            form: Form::Exact,
             title: "Gain of the load cell",
             about: "The load cell or its amplifier reads a fixed part too much or too little.",
             equation: "reading = F (1 + g)",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::SECOND;
 
@@ -16,6 +17,8 @@ impl Effect for ForceLag {
         Card {
             name: "force-lag",
             family: "force-lag",
+            mechanism: Mechanism::LateReading,
+            form: Form::Loose,
             title: "Force late against displacement",
             about: "The filter of the load cell or a second clock makes the force late (negative: early). While the muscle moves, the force \
                     belongs to where it was a moment ago: the loop opens, in proportion to the speed.",

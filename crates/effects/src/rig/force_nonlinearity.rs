@@ -4,6 +4,7 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 
 /// `reading = F + q F^2`.
 #[derive(Debug)]
@@ -14,6 +15,8 @@ impl Effect for ForceNonlinearity {
         Card {
             name: "force-nonlinearity",
             family: "force-nonlinearity",
+            mechanism: Mechanism::ForceChain,
+            form: Form::Loose,
             title: "Bent characteristic of the load cell",
             about: "The load cell reads right at small loads and a little too much or too little at large ones.",
             equation: "reading = F + q F^2",

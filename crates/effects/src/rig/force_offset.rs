@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
 /// `reading = F + F_z`.
@@ -13,6 +14,8 @@ impl Effect for ForceOffset {
         Card {
             name: "force-offset",
             family: "force-offset",
+            mechanism: Mechanism::ForceChain,
+            form: Form::Exact,
             title: "Zero of the load cell",
             about: "The load cell reads something without load, or was set to zero with something hanging from it.",
             equation: "reading = F + F_z",

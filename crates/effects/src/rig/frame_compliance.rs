@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 
 /// `true contraction = measured + F/(k l0)`.
 #[derive(Debug)]
@@ -12,6 +13,8 @@ impl Effect for FrameCompliance {
         Card {
             name: "frame-compliance",
             family: "frame-compliance",
+            mechanism: Mechanism::GiveOfTheRig,
+            form: Form::Loose,
             title: "Compliance of frame and load train",
             about: "Frame, load cell and fittings give under the force. The muscle is then shorter than the displacement sensor says.",
             equation: "true contraction = measured + F/(k l0)",

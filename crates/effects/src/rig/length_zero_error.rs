@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
 /// `true contraction = measured + offset/l0`.
@@ -13,6 +14,8 @@ impl Effect for LengthZeroError {
         Card {
             name: "length-zero-error",
             family: "length-zero-error",
+            mechanism: Mechanism::LengthChain,
+            form: Form::Exact,
             title: "Zero of the length",
             about: "The muscle is shorter than the reading says, by the same amount everywhere: the sensor was set to zero at another \
                     length. It counts most at small contractions, where the force changes fastest.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
 /// `p = reading (1 - phi)`.
@@ -13,6 +14,8 @@ impl Effect for LineDrop {
         Card {
             name: "line-drop",
             family: "pressure-gain",
+            mechanism: Mechanism::PressureChain,
+            form: Form::Loose,
             title: "Leak behind a thin line",
             about: "A small leak in the muscle is fed through the line, and the flow costs pressure on the way. Leak and drop grow with the \
                     pressure, so the muscle always has the same part less than the sensor at the other end says.",

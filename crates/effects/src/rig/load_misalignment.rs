@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
 /// `reading = F (1 - loss)`, loss = 1 - cos(psi).
@@ -15,6 +16,8 @@ impl Effect for LoadMisalignment {
         Card {
             name: "load-misalignment",
             family: "force-gain",
+            mechanism: Mechanism::ForceChain,
+            form: Form::Exact,
             title: "Load cell at an angle",
             about: "The muscle pulls at an angle psi to the axis of the load cell, which sees only its part along the axis. A loss of 0.4 % is \
                     an angle of 5 degrees, 1.5 % are 10, 3.4 % are 15.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::rig::ideal_volume::IdealVolume;
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
@@ -15,6 +16,8 @@ impl Effect for PressureDroop {
         Card {
             name: "pressure-droop",
             family: "regulator-lag",
+            mechanism: Mechanism::Regulator,
+            form: Form::Loose,
             title: "Droop of the pressure with the volume",
             about: "A simple regulator holds its pressure less well the more gas flows or leaks behind it, and a bulging muscle has more wall \
                     to leak through. The pressure falls as the volume grows, seen by a sensor before the regulator only.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
 /// `reading = p (1 + g)`, so that the muscle has `p = reading/(1 + g)`.
@@ -13,6 +14,8 @@ impl Effect for PressureGain {
         Card {
             name: "pressure-gain",
             family: "pressure-gain",
+            mechanism: Mechanism::PressureChain,
+            form: Form::Exact,
             title: "Gain of the pressure sensor",
             about: "The pressure sensor reads a fixed part too much or too little.",
             equation: "reading = p (1 + g)",

@@ -4,6 +4,7 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
 
@@ -16,6 +17,8 @@ impl Effect for PressureHysteresis {
         Card {
             name: "pressure-hysteresis",
             family: "pressure-hysteresis",
+            mechanism: Mechanism::PressureChain,
+            form: Form::Loose,
             title: "Hysteresis of the pressure reading",
             about: "While the pressure rises the sensor reads a little less than there is, while it falls a little more. Filling and venting at \
                     held length, the muscle then seems to pull more while it is filled, by the same few hundredths of a bar at any pressure.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::SECOND;
 
@@ -14,6 +15,8 @@ impl Effect for PressureLag {
         Card {
             name: "pressure-lag",
             family: "pressure-lag",
+            mechanism: Mechanism::LateReading,
+            form: Form::Loose,
             title: "Pressure reading late",
             about: "A filter or a long thin line makes the pressure reading late. While the muscle is filled there is more pressure in it than the \
                     sensor says, while it is vented less: the loop opens in proportion to the speed.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
 
@@ -14,6 +15,8 @@ impl Effect for PressureOffset {
         Card {
             name: "pressure-offset",
             family: "pressure-offset",
+            mechanism: Mechanism::PressureChain,
+            form: Form::Exact,
             title: "Zero of the pressure sensor",
             about: "The pressure sensor reads something when it is vented: its zero has drifted, or an absolute sensor was corrected by \
                     another day's air pressure. The force is off by the same amount at every pressure.",

@@ -4,6 +4,7 @@ use bulge_fibre::AMBIENT_PRESSURE;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::rig::ideal_volume::IdealVolume;
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::SECOND;
@@ -22,6 +23,8 @@ impl Effect for RegulatorLag {
         Card {
             name: "regulator-lag",
             family: "regulator-lag",
+            mechanism: Mechanism::Regulator,
+            form: Form::Loose,
             title: "Lag of the pressure behind the regulator",
             about: "The pressure is measured at the regulator, and the gas reaches the muscle through a line. While the muscle shortens it \
                     takes in gas and has less pressure than the sensor says, while it lengthens more. The faster, the more.",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
 
@@ -14,6 +15,8 @@ impl Effect for ValveHysteresis {
         Card {
             name: "valve-hysteresis",
             family: "regulator-lag",
+            mechanism: Mechanism::Regulator,
+            form: Form::Loose,
             title: "Dead band of the pressure valve",
             about: "The valve acts only when the pressure has left a band. A muscle that shortens draws the pressure to the lower edge of the \
                     band, one that lengthens pushes it to the upper one, whatever the speed.",

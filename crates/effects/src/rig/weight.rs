@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
 /// `reading = F + W`.
@@ -13,6 +14,8 @@ impl Effect for Weight {
         Card {
             name: "weight",
             family: "force-offset",
+            mechanism: Mechanism::ForceChain,
+            form: Form::Exact,
             title: "Weight that hangs from the load cell",
             about: "Muscle and fittings hang from the load cell, and it was set to zero without them.",
             equation: "reading = F + W",

@@ -2,6 +2,7 @@
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
 /// `F -> F (1 + g_s)` with one number per specimen s, drawn from N(0, 1 %).
@@ -13,6 +14,8 @@ impl Effect for SpecimenSpread {
         Card {
             name: "specimen-spread",
             family: "specimen-spread",
+            mechanism: Mechanism::Specimens,
+            form: Form::Exact,
             title: "Spread between specimens",
             about: "Handmade muscles differ: each specimen has its own factor of force, which stands for small differences in radius, \
                     length and rubber. What all specimens have in common is physics; what differs is this.",

@@ -52,6 +52,8 @@ impl Effect for UserEffect {
         Card {
             name: &self.name,
             family: self.family.as_deref().unwrap_or(&self.name),
+            mechanism: self.mechanism,
+            form: self.form,
             title: &self.title,
             about: self.about.as_deref().unwrap_or("An effect of your own."),
             equation: self.force.text(),

@@ -3,18 +3,23 @@
 use super::quantity::Quantity;
 use super::value::{Entry, Table};
 use super::{EXAMPLE, EffectFileError, MAX_PARAMETERS, UserEffect, UserParameter};
-use crate::expression::{Expression, VARIABLES, check_name, quoted};
+use crate::catalogue::Catalogue;
+use crate::expression::{Expression, VARIABLES, check_name, nearest, quoted};
+use crate::mechanism::{Form, Mechanism};
 use bulge_muscles::Dimension;
 use bulge_muscles::units;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 /// Keys of an effect, and of a parameter.
-const EFFECT_KEYS: [&str; 7] = ["title", "force", "about", "source", "family", "twins", "parameters"];
+const EFFECT_KEYS: [&str; 9] =
+    ["title", "force", "about", "source", "family", "mechanism", "form", "twins", "parameters"];
 const PARAMETER_KEYS: [&str; 6] = ["unit", "typical", "low", "high", "prior", "about"];
 
 const TITLE: &str = "title = \"Hose pulls on the muscle\"";
 const FORCE: &str = "force = \"-k * (eps - eps_free)\"";
+const MECHANISM: &str = "mechanism = \"give-of-the-rig\"";
+const FORM: &str = "form = \"loose\"";
 const TWINS: &str = "twins = [\"force-offset\"]";
 const PARAMETER: &str =
     "parameters.k = { unit = \"N\", typical = \"50 N\", low = \"0 N\", high = \"500 N\" }";
@@ -60,6 +65,8 @@ fn effect(all: &Table<'_>, entry: &Entry<'_>) -> Result<UserEffect, EffectFileEr
     let about = words(&table, "about", "about = \"what happens\"", MAX_WORDS)?;
     let source = words(&table, "source", "source = \"author, title, year, equation\"", MAX_WORDS)?;
     let family = words(&table, "family", "family = \"mounting\"", MAX_TITLE)?;
+    let mechanism = mechanism(&table, family.as_deref())?;
+    let form = form(&table)?;
     let twins = twins(&table, name)?;
     let title = title.ok_or_else(|| table.missing("title", TITLE))?;
     let Some((force, force_place)) = table.words("force", FORCE)? else {
@@ -87,6 +94,8 @@ fn effect(all: &Table<'_>, entry: &Entry<'_>) -> Result<UserEffect, EffectFileEr
         about,
         source,
         family,
+        mechanism,
+        form,
         twins,
         force: formula,
         parameters,
@@ -113,6 +122,46 @@ fn words(
         return Err(table.error(place, what, "shorten it, or write the rest behind a `#`"));
     }
     Ok(Some(text.trim().to_owned()))
+}
+
+/// What happens physically: as stated, else as in the family, else the user's own.
+fn mechanism(table: &Table<'_>, family: Option<&str>) -> Result<Mechanism, EffectFileError> {
+    let catalogue = Catalogue::builtin();
+    let of_family = catalogue
+        .iter()
+        .map(|effect| effect.card())
+        .find(|card| Some(card.family) == family)
+        .map(|card| (card.family, card.mechanism));
+    let Some((stated, place)) = table.words("mechanism", MECHANISM)? else {
+        return Ok(of_family.map_or(Mechanism::User, |(_, mechanism)| mechanism));
+    };
+    let key = |mechanism: Mechanism| mechanism.name().replace(' ', "-");
+    let Some(mechanism) = Mechanism::ALL.into_iter().find(|mechanism| key(*mechanism) == stated.trim())
+    else {
+        let keys = Mechanism::ALL.map(key);
+        let instead = match nearest(stated, keys.iter().map(String::as_str)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("write one of {}, or leave it out", keys.join(", ")),
+        };
+        return Err(table.error(place, format!("there is no mechanism `{}`", quoted(stated)), instead));
+    };
+    match of_family {
+        Some((family, other)) if other != mechanism => {
+            let what =
+                format!("`{family}` is a family of the mechanism `{}`, not `{}`", key(other), key(mechanism));
+            Err(table.error(place, what, "leave the mechanism out, or give the effect a family of its own"))
+        }
+        _ => Ok(mechanism),
+    }
+}
+
+/// How exact the formula can be: loose if not stated.
+fn form(table: &Table<'_>) -> Result<Form, EffectFileError> {
+    let Some((stated, place)) = table.words("form", FORM)? else { return Ok(Form::Loose) };
+    Form::ALL.into_iter().find(|form| form.name() == stated.trim()).ok_or_else(|| {
+        let instead = "write `exact` (only its numbers can be wrong), `near` (to 5 %) or `loose` (to 40 %)";
+        table.error(place, format!("there is no form `{}`", quoted(stated)), instead)
+    })
 }
 
 fn twins(table: &Table<'_>, own: &str) -> Result<Vec<String>, EffectFileError> {

@@ -26,6 +26,7 @@ fn the_example() {
     let effect = &effects[0];
     assert_eq!((effect.name.as_str(), effect.title.as_str()), ("hose-stiffness", "Hose pulls on the muscle"));
     assert_eq!((&effect.about, &effect.source, &effect.family, effect.twins.len()), (&None, &None, &None, 0));
+    assert_eq!((effect.mechanism, effect.form), (Mechanism::User, Form::Loose));
     assert_eq!(effect.force.text(), "-k * (eps - eps_free)");
     assert_eq!(effect.force.parameters(), ["k", "eps_free"]);
     let expected =
@@ -130,6 +131,45 @@ fn what_an_effect_needs() {
     );
     refused("[effects.a\n", (1, 11), &["not TOML", "each line is"]);
     refused(&with("\"Hose pulls on the muscle\"", "Hose"), (2, 9), &["not TOML", "text stands in quotes"]);
+}
+
+#[test]
+fn mechanism_and_form() {
+    let read = |lines: &str| {
+        let effects = from_toml(&with("force =", &format!("{lines}\nforce =")), "e.toml").unwrap();
+        (effects[0].mechanism, effects[0].form)
+    };
+    assert_eq!(
+        read("mechanism = \"give-of-the-rig\"\nform = \"near\""),
+        (Mechanism::GiveOfTheRig, Form::Near)
+    );
+    // A family of the catalogue has its mechanism; another is the user's own.
+    assert_eq!(read("family = \"membrane-axial\""), (Mechanism::Rubber, Form::Loose));
+    assert_eq!(read("family = \"hoses\"\nform = \"exact\""), (Mechanism::User, Form::Exact));
+    let card = from_toml(&with("force =", "form = \"exact\"\nforce ="), "e.toml").unwrap();
+    assert_eq!(crate::Effect::card(&card[0]).form, Form::Exact);
+
+    refused(
+        &with("force =", "mechanism = \"dry-fricton\"\nforce ="),
+        (3, 13),
+        &["there is no mechanism `dry-fricton`", "did you mean `dry-friction`?"],
+    );
+    refused(
+        &with("force =", "mechanism = \"magnetism\"\nforce ="),
+        (3, 13),
+        &["write one of dry-friction, "],
+    );
+    refused(
+        &with("force =", "family = \"creep\"\nmechanism = \"rubber\"\nforce ="),
+        (4, 13),
+        &["`creep` is a family of the mechanism `relaxation`, not `rubber`", "leave the mechanism out"],
+    );
+    refused(
+        &with("force =", "form = \"good\"\nforce ="),
+        (3, 8),
+        &["there is no form `good`", "`near` (to 5 %)"],
+    );
+    refused(&with("force =", "form = 1\nforce ="), (3, 8), &["`form` is a number", "form = \"loose\""]);
 }
 
 #[test]

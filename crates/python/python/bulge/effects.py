@@ -83,6 +83,9 @@ class Effect:
     A function is called once, with symbols; what it does with them becomes an expression, so that it is differentiated exactly, has its units
     checked, runs on all cores, and travels to other machines. It may use arithmetic, NumPy's ``abs sign sqrt exp log log10 sin cos tan arcsin arctan
     sinh cosh tanh minimum maximum clip where`` and constants with a unit (:func:`quantity`); with arrays it is an ordinary vectorised function.
+
+    ``mechanism`` is one of the catalogue's (``"dry-friction"``, ``"rubber"``, ...), by default that of the family; ``form`` says how exact the
+    formula can be: ``"exact"``, ``"near"`` (to 5 %) or ``"loose"`` (to 40 %), by default loose.
     """
 
     name: str
@@ -93,6 +96,8 @@ class Effect:
     source: str = ""
     family: str = ""
     twins: tuple[str, ...] = ()
+    mechanism: str = ""
+    form: str = ""
 
     def __post_init__(self) -> None:
         if isinstance(self.twins, str):
@@ -110,7 +115,8 @@ class Effect:
     def to_toml(self) -> str:
         """The effect as part of an effect file: what ``--effects FILE`` of the command line reads."""
         lines = [f"[effects.{_key(self.name)}]", f"title = {_quoted(self.title or self.name)}", f"force = {_quoted(self.expression)}"]
-        lines += [f"{key} = {_quoted(value)}" for key, value in [("about", self.about), ("source", self.source), ("family", self.family)] if value]
+        texts = {"about": self.about, "source": self.source, "family": self.family, "mechanism": self.mechanism, "form": self.form}
+        lines += [f"{key} = {_quoted(value)}" for key, value in texts.items() if value]
         if self.twins:
             lines.append(f"twins = [{', '.join(_quoted(twin) for twin in self.twins)}]")
         lines += [f"parameters.{_key(name)} = {parameter._toml()}" for name, parameter in self.parameters.items()]
@@ -124,7 +130,7 @@ class Effect:
 
     def __reduce__(self) -> Any:
         # A function may be of a notebook; its expression goes anywhere.
-        own = (self.name, self.expression, dict(self.parameters), self.title, self.about, self.source, self.family, self.twins)
+        own = (self.name, self.expression, dict(self.parameters), self.title, self.about, self.source, self.family, self.twins, self.mechanism, self.form)
         return (Effect, own)
 
 
