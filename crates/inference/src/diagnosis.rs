@@ -2,6 +2,7 @@
 
 pub(crate) mod as_set;
 pub(crate) mod averaged;
+pub(crate) mod bending;
 pub(crate) mod candidates;
 pub(crate) mod classes;
 pub(crate) mod confidence;
@@ -10,6 +11,7 @@ pub(crate) mod diagnose;
 pub(crate) mod document;
 mod either;
 pub(crate) mod explained;
+pub(crate) mod form_error;
 pub(crate) mod ground;
 pub(crate) mod hints;
 pub(crate) mod misfit;
@@ -22,6 +24,7 @@ pub(crate) mod scene;
 pub(crate) mod search;
 pub(crate) mod showing;
 pub(crate) mod smooth;
+pub(crate) mod something_else;
 pub(crate) mod space;
 pub(crate) mod tangents;
 mod unanswered;

@@ -74,6 +74,11 @@ impl Candidate {
         all
     }
 
+    /// The same in other coordinates.
+    pub(crate) fn with_columns(&self, columns: Vec<Vec<f64>>) -> Self {
+        Self { columns, ..self.clone() }
+    }
+
     #[cfg(test)]
     pub(crate) fn for_test(columns: Vec<Vec<f64>>, size: Size) -> Self {
         let sizes = vec![size; columns.len()];

@@ -9,13 +9,17 @@ use bulge_model::{Model, ModelError, Wanted, Warm};
 use rayon::prelude::*;
 use std::sync::Arc;
 
+use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::scene::{Given, Scene};
 use crate::diagnosis::search::{Hypothesis, Stage, Tried, WORTH, singles, tempered};
+use crate::diagnosis::space::Space;
 use crate::dot::dot;
 
 /// Rivals whose log evidence is less than this below stay in the class.
 pub(crate) const EVIDENCE: f64 = 3.0;
+/// Part of the log evidence of the form errors that is as much as nothing between rivals.
+const BENT: f64 = 0.02;
 /// Effects that differ by less than this many sigmas are the same on these data.
 pub(crate) const SAME: f64 = 1.0;
 /// Unless the data have decided after all: this far below they are out.
@@ -96,13 +100,15 @@ impl Given<'_> {
             &*made.insert(self.stage(others, fitted).ok()?)
         };
         let signal = self.signal(&stage.confirmed, &without.scene).ok()?;
+        let bent: Vec<&Vec<f64>> = stage.scene.bent.iter().collect();
         let name = effect.card().name;
         let own = without.scene.showings.effects.iter().position(|s| s.effect.card().name == name);
         let ticket = own.map_or(0.0, |own| crate::diagnosis::search::ticket(&without.scene, own));
         let scatter = stage.scatter();
-        let gain = without.confirmed.cost() - stage.confirmed.cost();
+        let gain = without.confirmed.bent_cost() - stage.confirmed.bent_cost();
         let log_evidence =
             tempered(stage.confirmed.log_evidence - without.confirmed.log_evidence + ticket, gain, scatter);
+        let margin = EVIDENCE.max(BENT * stage.confirmed.form.log_evidence);
         let list = singles(&without.scene, &without.confirmed.prepared.model);
         let best = list.iter().map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let mut fitted = 0;
@@ -110,7 +116,7 @@ impl Given<'_> {
             .into_iter()
             .filter(|h| Some(h.effects[0]) != own)
             .map(|h| {
-                let separation = separation(&without.scene, h.effects[0], &signal) / scatter.sqrt();
+                let separation = self.separation(&without.scene, h.effects[0], &signal, &bent) / scatter.sqrt();
                 let near =
                     (h.log_evidence > best - FITTED * scatter || separation < SEPARATION) && fitted < MOST;
                 fitted += usize::from(near);
@@ -125,6 +131,15 @@ impl Given<'_> {
                 let known = without.tried.iter().find(|tried| tried.hypothesis.effects == [place]);
                 let tried = near
                     .then(|| known.cloned().unwrap_or_else(|| self.fitted(base, without, hypothesis, None)));
+                let fit = tried.as_ref().and_then(|tried| tried.confirmed.as_ref());
+                let own = fit.filter(|fit| fit.form.log_evidence > 0.0);
+                let own = own.map_or(Vec::new(), |fit| self.form_directions(&fit.prepared, &fit.theta));
+                let separation = if own.is_empty() {
+                    separation
+                } else {
+                    let both: Vec<&Vec<f64>> = bent.iter().copied().chain(&own).collect();
+                    self.separation(&without.scene, place, &signal, &both) / scatter.sqrt()
+                };
                 Self::rival(
                     without,
                     place,
@@ -132,10 +147,12 @@ impl Given<'_> {
                     separation,
                     tried,
                     (log_evidence, scatter),
+                    margin,
                 )
             })
             .collect();
-        let detectability = dot(&signal, &signal).sqrt() / scatter.sqrt();
+        let seen = without.scene.space.coordinates(&self.white(&signal, without.scene.priors));
+        let detectability = dot(&seen, &seen).sqrt() / scatter.sqrt();
         let is_further = stage.added.len() > 1;
         Some((Class { effect, log_evidence, detectability, scatter, is_further, rivals }, made))
     }
@@ -203,14 +220,15 @@ impl Given<'_> {
         separation: f64,
         tried: Option<Tried>,
         (named, scatter): (f64, f64),
+        margin: f64,
     ) -> Rival {
         let log_evidence = tried.as_ref().map_or(linear, |tried| {
-            let gain = tried.confirmed.as_ref().map_or(0.0, |c| without.confirmed.cost() - c.cost());
+            let gain = tried.confirmed.as_ref().map_or(0.0, |c| without.confirmed.bent_cost() - c.bent_cost());
             tempered(tried.log_evidence, gain, scatter)
         });
         // What is the same on these data stays, however unlikely its numbers are: priors may be wrong.
-        let undecided = log_evidence > named - EVIDENCE
-            || separation < SEPARATION && log_evidence > named - DECIDED
+        let undecided = log_evidence > named - margin
+            || separation < SEPARATION && log_evidence > named - DECIDED.max(margin)
             || separation < SAME;
         let worth = WORTH[usize::from(!without.added.is_empty())];
         let in_class = tried.is_some() && log_evidence.is_finite() && log_evidence > worth && undecided;
@@ -218,29 +236,49 @@ impl Given<'_> {
         Rival { effect, log_evidence, separation, in_class, fit: tried.and_then(|tried| tried.confirmed) }
     }
 
-    /// What an effect changes, in the coordinates of the scene without it.
+    /// What an effect changes \[N\], beside the scene without it.
     pub(crate) fn signal(&self, with: &Confirmed, without: &Scene) -> Result<Vec<f64>, ModelError> {
         let model = &with.prepared.model;
         let force = model.evaluate_warm(self.record, &with.theta, &Wanted::default(), &Warm::new())?.force;
-        let mut change: Vec<f64> =
-            force.iter().zip(&without.force).map(|(with, without)| with - without).collect();
-        // The law was made for this record.
-        let _ = self.whitening.apply(&mut change);
-        change.resize(self.record.len() + without.priors, 0.0);
-        Ok(without.space.coordinates(&change))
+        Ok(force.iter().zip(&without.force).map(|(with, without)| with - without).collect())
+    }
+
+    /// What is left of a signal \[N\] when an effect does its best to stand in for it, in sigmas; what form errors `bent` of one standard deviation make of the two is no
+    /// difference between them.
+    pub(crate) fn separation(&self, scene: &Scene, effect: usize, signal: &[f64], bent: &[&Vec<f64>]) -> f64 {
+        let whiten = |column: &[f64]| self.white(column, scene.priors);
+        let candidates = scene.candidates.iter().filter(|c| c.effect == effect);
+        if bent.is_empty() {
+            return left_of(&scene.space.coordinates(&whiten(signal)), candidates);
+        }
+        let mut space = scene.space.clone();
+        let columns: Vec<Vec<f64>> = bent.iter().map(|column| space.enter(&whiten(column))).collect();
+        let signal = space.coordinates(&whiten(signal));
+        let length = space.len();
+        let prior = |place: usize, mut column: Vec<f64>| {
+            column.resize(length + columns.len(), 0.0);
+            column[length + place] = 1.0;
+            column
+        };
+        let bent: Vec<Vec<f64>> = columns.iter().cloned().enumerate().map(|(i, c)| prior(i, c)).collect();
+        let mut beside = Space::without(&bent);
+        let mut enter = |column: &[f64]| {
+            let mut column = column.to_vec();
+            column.resize(length + columns.len(), 0.0);
+            beside.enter(&column)
+        };
+        let signal = enter(&signal);
+        let moved: Vec<Candidate> = candidates
+            .map(|c| c.with_columns(c.columns.iter().map(|column| enter(column)).collect()))
+            .collect();
+        left_of(&signal, moved.iter())
     }
 }
 
-/// What is left of a signal when an effect does its best to stand in for it, in sigmas.
-pub(crate) fn separation(scene: &Scene, effect: usize, signal: &[f64]) -> f64 {
-    let whole = dot(signal, signal);
-    let most = scene
-        .candidates
-        .iter()
-        .filter(|c| c.effect == effect)
-        .map(|c| c.explains(signal).gain)
-        .fold(0.0, f64::max);
-    (whole - most).max(0.0).sqrt()
+/// What is left of a signal in coordinates when the best of these candidates is taken away.
+fn left_of<'c>(signal: &[f64], candidates: impl Iterator<Item = &'c Candidate>) -> f64 {
+    let most = candidates.map(|c| c.explains(signal).gain).fold(0.0, f64::max);
+    (dot(signal, signal) - most).max(0.0).sqrt()
 }
 
 #[cfg(test)]

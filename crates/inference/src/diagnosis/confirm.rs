@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::diagnosis::candidates::log_prior;
+use crate::diagnosis::form_error::FormError;
 use crate::diagnosis::scene::Given;
 use crate::diagnosis::showing::{Showing, Sign, Size, sizes};
 use crate::fit::carry_over::carry_over;
@@ -33,8 +34,12 @@ pub(crate) struct Confirmed {
     pub(crate) prepared: Prepared,
     pub(crate) theta: Vec<f64>,
     pub(crate) minimum: Minimum,
-    /// Log evidence, up to a constant of the data.
+    /// Log evidence, up to a constant of the data, with that of the form errors.
     pub(crate) log_evidence: f64,
+    /// What of it implausible numbers cost.
+    pub(crate) penalty: f64,
+    /// How much the formulas of its effects are bent.
+    pub(crate) form: FormError,
     /// Whether the best search ended in a minimum.
     pub(crate) converged: bool,
 }
@@ -71,6 +76,11 @@ impl Confirmed {
     /// The sum of squares of whitened residuals and priors.
     pub(crate) fn cost(&self) -> f64 {
         self.minimum.cost
+    }
+
+    /// The same beside the form errors.
+    pub(crate) fn bent_cost(&self) -> f64 {
+        self.minimum.cost - self.form.fall
     }
 }
 
@@ -219,10 +229,12 @@ impl Given<'_> {
         let Some((minimum, theta)) = best else {
             return Err(first_error.unwrap_or(ModelError::Values { given: 0, expected: 1 }));
         };
-        let log_evidence = log_evidence(&prepared, &theta, &minimum);
+        let form = self.form_error(&prepared, &theta)?;
+        let penalty = penalty(&prepared, &theta);
+        let log_evidence = log_evidence(&prepared, &theta, &minimum) + form.log_evidence - penalty;
         // At a kink as at a stationary point: lower by what counts it doesn't get.
         let converged = minimum.certificate.converged || minimum.certificate.reason == Reason::Kink;
-        Ok(Confirmed { prepared, theta, minimum, log_evidence, converged })
+        Ok(Confirmed { prepared, theta, minimum, log_evidence, penalty, form, converged })
     }
 }
 
@@ -274,7 +286,6 @@ fn log_evidence(prepared: &Prepared, theta: &[f64], minimum: &Minimum) -> f64 {
             curvature[column] = 1.0 / (wide * wide);
             let sd = 1.0 / (column_square(minimum, k, column).max(curvature[column])).sqrt() * jacobian;
             log += log_prior(&size, deviation.abs().max(sd)) + jacobian.ln();
-            log -= IMPLAUSIBLE * (deviation.abs() / size.plausible - 1.0).max(0.0);
         } else {
             let (low, high) = (p.plausible.0.max(p.low), p.plausible.1.min(p.high));
             let width = if p.logarithmic { (high / low.max(f64::MIN_POSITIVE)).ln() } else { high - low };
@@ -289,6 +300,18 @@ fn log_evidence(prepared: &Prepared, theta: &[f64], minimum: &Minimum) -> f64 {
     let active: Vec<usize> = (0..k).filter(|column| !held[*column]).collect();
     log -= 0.5 * (k - active.len()) as f64 * std::f64::consts::TAU.ln();
     log - 0.5 * log_determinant(minimum, k, &active, &curvature)
+}
+
+/// What sizes cost that no muscle has.
+fn penalty(prepared: &Prepared, theta: &[f64]) -> f64 {
+    let beyond = |(index, size): (usize, Option<Size>)| {
+        let size = size.filter(|_| !prepared.nuisance[index])?;
+        let deviation = (theta[index] - size.off).abs();
+        (deviation > 0.0).then(|| IMPLAUSIBLE * (deviation / size.plausible - 1.0).max(0.0))
+    };
+    let free = free(&prepared.model);
+    let roles = roles(&prepared.model);
+    roles.into_iter().enumerate().filter(|(index, _)| free.contains(index)).filter_map(beyond).sum()
 }
 
 /// Square of a column of the Jacobian.
@@ -313,7 +336,7 @@ fn log_determinant(minimum: &Minimum, k: usize, active: &[usize], curvature: &[f
 }
 
 /// For each number of a model: how it is a size of its effect, if it is one.
-fn roles(model: &Model) -> Vec<Option<Size>> {
+pub(crate) fn roles(model: &Model) -> Vec<Option<Size>> {
     let mut roles = vec![None; model.parameters().len()];
     for chosen in model.effects() {
         let card = chosen.effect.card();

@@ -6,28 +6,22 @@
 //! ```text
 //! noise:      ln p(y | K_0),                 K_0 the law of what the base leaves
 //! structure:  ln p(y | K) + ln Z,            K the law of what a saturated model leaves, Z the larger of the evidence of named effects and of a smooth misfit
-//! ln Z = ln mean over (A, J) of exp sum_j [-ln(1 + t_j)/2 + z_j^2 t_j/(1 + t_j)/2],    t_j = (A F exp(-j/J)/f_j)^2
 //! ```
-//! with z_j the coordinate of the misfit along the j-th smooth function, f_j the RMS of that function at one standard deviation, F the largest force. What repeats from cycle to cycle is
+//! What repeats from cycle to cycle is
 //! no noise: K_0 is bounded by it, as K is.
 
 use bulge_model::{Model, ModelError};
 
 use crate::diagnosis::ground::Ground;
 use crate::diagnosis::pure_error::BetweenCycles;
-use crate::diagnosis::scene::{Given, Scene};
+use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::Search;
+use crate::diagnosis::something_else::smooth_evidence;
 use crate::diagnosis::tangents::Tangents;
-use crate::dot::dot;
 use crate::median::median;
 use crate::noise::law::{NoiseLaw, NoiseSource};
 use crate::noise::restricted_likelihood::log_likelihood;
 use crate::noise::whitening::Whitening;
-
-/// Sizes of a smooth misfit as parts of the largest force.
-const SIZES: [f64; 6] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
-/// Numbers of functions over which it fades.
-const FADES: [f64; 3] = [4.0, 12.0, 36.0];
 
 /// Where a search took for structure what is chance, or as likely noise of the base, it becomes the search that found nothing: by the law and the whitening that are given back, if
 /// the noise is another.
@@ -53,7 +47,7 @@ pub(crate) fn quieter(
     if !stage.adequate {
         return Ok(None);
     }
-    search.stages = vec![stage];
+    *search = Search { stages: vec![stage], something_else: None };
     Ok(Some((law, whitening)))
 }
 
@@ -89,25 +83,4 @@ fn noise_of_base(
 fn is_chance(search: &Search) -> bool {
     let [only] = &search.stages[..] else { return false };
     !only.adequate && !only.scene.smooth.is_empty() && smooth_evidence(&only.scene) <= 0.0
-}
-
-/// Log evidence of a smooth misfit that the base has and nobody thought of, over that of none.
-fn smooth_evidence(scene: &Scene) -> f64 {
-    let largest = scene.force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
-    let rows = scene.force.len().max(1) as f64;
-    let found: Vec<(f64, f64)> = scene
-        .smooth
-        .iter()
-        .map(|d| (dot(&d.unit, &scene.z), (dot(&d.values, &d.values) / rows).sqrt()))
-        .collect();
-    let of = |size: f64, fade: f64| -> f64 {
-        let term = |(j, (z, rms)): (usize, &(f64, f64))| {
-            let t = (size * largest * (-(j as f64) / fade).exp() / rms.max(f64::MIN_POSITIVE)).powi(2);
-            0.5 * (z * z * t / (1.0 + t) - t.ln_1p())
-        };
-        found.iter().enumerate().map(term).sum()
-    };
-    let all: Vec<f64> = SIZES.iter().flat_map(|size| FADES.map(|fade| of(*size, fade))).collect();
-    let largest = all.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    largest + (all.iter().map(|value| (value - largest).exp()).sum::<f64>() / all.len() as f64).ln()
 }

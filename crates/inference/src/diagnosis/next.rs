@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::sync::Arc;
 
 use crate::comparison::levels::Levels;
-use crate::diagnosis::classes::{Class, SEPARATION, separation};
+use crate::diagnosis::classes::{Class, SEPARATION};
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::document::NextExperiment;
@@ -324,7 +324,7 @@ fn least_separation(
     let is_rival = |effect: &usize| scene.showings.effects[*effect].effect.card().name != named.as_str();
     let least = (0..scene.showings.effects.len())
         .filter(is_rival)
-        .map(|effect| separation(&scene, effect, &signal))
+        .map(|effect| planned.separation(&scene, effect, &signal, &[]))
         .fold(f64::INFINITY, f64::min);
     least.is_finite().then_some(least)
 }

@@ -3,7 +3,9 @@
 use bulge_effects::Catalogue;
 use bulge_model::{ModelError, Record};
 
+use crate::diagnosis::bending::{bendings, may_bend};
 use crate::diagnosis::candidates::Candidate;
+use crate::diagnosis::form_error::{FormDirection, FormError};
 use crate::diagnosis::null::{Chance, Null, Statistics};
 use crate::diagnosis::showing::Showings;
 use crate::diagnosis::smooth::{Variable, smooth};
@@ -53,6 +55,15 @@ pub(crate) struct Direction {
     pub(crate) values: Vec<f64>,
 }
 
+/// A model at its numbers, whitened: its tangents and what it misses. Priors of its numbers are further rows.
+struct Linearised {
+    tangent: Tangents,
+    priors: usize,
+    /// The tangents.
+    white: Vec<Vec<f64>>,
+    misfit: Vec<f64>,
+}
+
 /// The misfit of a model, and all candidates, in coordinates.
 pub(crate) struct Scene {
     pub(crate) showings: Showings,
@@ -60,10 +71,14 @@ pub(crate) struct Scene {
     pub(crate) smooth: Vec<Direction>,
     /// The coordinates.
     pub(crate) space: Space,
-    /// Number of priors, the last rows of every column.
+    /// Number of priors of numbers and form errors, the last rows of every column.
     pub(crate) priors: usize,
     /// One standard deviation of the offset of each sweep, in coordinates; none if the law has no offsets.
     pub(crate) offsets: Vec<Vec<f64>>,
+    /// How much the formulas of the model's effects are bent.
+    pub(crate) form: FormError,
+    /// What form errors of one standard deviation change, in their principal directions \[N\].
+    pub(crate) bent: Vec<Vec<f64>>,
     /// The misfit in coordinates.
     pub(crate) z: Vec<f64>,
     /// Force of the model at the means \[N\].
@@ -86,8 +101,8 @@ impl<'a> Given<'a> {
 }
 
 impl Given<'_> {
-    /// The scene of a model with the numbers `theta`.
-    pub(crate) fn scene(&self, prepared: &Prepared, theta: &[f64]) -> Result<Scene, ModelError> {
+    /// A model at the numbers `theta`, linearised.
+    fn linearised(&self, prepared: &Prepared, theta: &[f64]) -> Result<Linearised, ModelError> {
         let tangent = Tangents::of(prepared, theta, self.record)?;
         let priors: Vec<(usize, f64, f64)> = tangent
             .free
@@ -98,50 +113,84 @@ impl Given<'_> {
                 prepared.priors[*i].map(|(mean, sd)| (column, (mean - theta[*i]) / sd, 1.0 / sd))
             })
             .collect();
-        let whiten = |column: &[f64]| -> Vec<f64> {
-            let mut white = column.to_vec();
-            // The law was made for this record: there is nothing to go wrong.
-            let _ = self.whitening.apply(&mut white);
-            white.resize(column.len() + priors.len(), 0.0);
-            white
-        };
         let rows = self.record.len();
-        let tangents: Vec<Vec<f64>> = tangent
-            .columns
-            .iter()
-            .enumerate()
-            .map(|(j, column)| {
-                let mut white = whiten(column);
-                for (place, prior) in priors.iter().enumerate().filter(|(_, prior)| prior.0 == j) {
-                    white[rows + place] = prior.2;
-                }
-                white
-            })
-            .collect();
-        let mut misfit = whiten(&tangent.residual);
-        for (place, prior) in priors.iter().enumerate() {
-            misfit[rows + place] = prior.1;
+        let mut white: Vec<Vec<f64>> =
+            tangent.columns.iter().map(|column| self.white(column, priors.len())).collect();
+        let mut misfit = self.white(&tangent.residual, priors.len());
+        for (place, (column, misses, slope)) in priors.iter().enumerate() {
+            white[*column][rows + place] = *slope;
+            misfit[rows + place] = *misses;
         }
-        let mut space = Space::without(&tangents);
+        Ok(Linearised { tangent, priors: priors.len(), white, misfit })
+    }
+
+    /// A column whitened, with zeros for so many priors.
+    pub(crate) fn white(&self, column: &[f64], priors: usize) -> Vec<f64> {
+        let mut white = column.to_vec();
+        // The law was made for this record: there is nothing to go wrong.
+        let _ = self.whitening.apply(&mut white);
+        white.resize(column.len() + priors, 0.0);
+        white
+    }
+
+    /// How much the formulas of a model's effects are bent at the numbers `theta`.
+    pub(crate) fn form_error(&self, prepared: &Prepared, theta: &[f64]) -> Result<FormError, ModelError> {
+        if !may_bend(prepared) {
+            return Ok(FormError::default());
+        }
+        let linearised = self.linearised(prepared, theta)?;
+        Ok(self.bent(prepared, theta, &linearised, &Space::without(&linearised.white)).0)
+    }
+
+    /// What form errors of one standard deviation change in a model at the numbers `theta`, in their principal directions \[N\].
+    pub(crate) fn form_directions(&self, prepared: &Prepared, theta: &[f64]) -> Vec<Vec<f64>> {
+        let Ok(linearised) = self.linearised(prepared, theta) else { return Vec::new() };
+        let (_, bent) = self.bent(prepared, theta, &linearised, &Space::without(&linearised.white));
+        bent.into_iter().map(|direction| direction.values).collect()
+    }
+
+    fn bent(
+        &self,
+        prepared: &Prepared,
+        theta: &[f64],
+        linearised: &Linearised,
+        space: &Space,
+    ) -> (FormError, Vec<FormDirection>) {
+        let bendings = bendings(self.catalogue, prepared, theta, &linearised.tangent);
+        let whiten = |column: &[f64]| self.white(column, linearised.priors);
+        FormError::of(&bendings, space, &linearised.misfit, &whiten)
+    }
+
+    /// The scene of a model with the numbers `theta`.
+    pub(crate) fn scene(&self, prepared: &Prepared, theta: &[f64]) -> Result<Scene, ModelError> {
+        let mut linearised = self.linearised(prepared, theta)?;
+        let mut space = Space::without(&linearised.white);
+        let (form, bent) = self.bent(prepared, theta, &linearised, &space);
+        space.leave_out(&bent.iter().map(|direction| &direction.white[..]).collect::<Vec<_>>());
+        let priors = linearised.priors + bent.len();
+        let directions: Vec<Vec<f64>> = bent.iter().map(|direction| direction.values.clone()).collect();
+        let whiten = |column: &[f64]| self.white(column, priors);
+        linearised.misfit.resize(self.record.len() + priors, 0.0);
+        let tangent = linearised.tangent;
         let showings = Showings::of(self.catalogue, self.only, prepared, theta, &tangent);
         let candidates = Candidate::all(&showings, &mut space, &whiten);
         let smooth = if self.only.is_some() {
             Vec::new()
         } else {
-            self.directions(&tangent.columns, &tangents, &mut space, &whiten)
+            let own = tangent.columns.into_iter().zip(linearised.white).map(|(raw, mut white)| {
+                white.resize(self.record.len() + priors, 0.0);
+                (raw, white)
+            });
+            let bent = bent.into_iter().enumerate().map(|(place, direction)| {
+                let mut white = whiten(&direction.values);
+                white[self.record.len() + linearised.priors + place] = 1.0;
+                (direction.values, white)
+            });
+            self.directions(own.chain(bent), &mut space, &whiten)
         };
-        let z = space.coordinates(&misfit);
+        let z = space.coordinates(&linearised.misfit);
         let offsets = self.offsets(&space, &whiten);
-        Ok(Scene {
-            showings,
-            candidates,
-            smooth,
-            space,
-            offsets,
-            priors: priors.len(),
-            z,
-            force: tangent.force,
-        })
+        Ok(Scene { showings, candidates, smooth, space, offsets, priors, form, bent: directions, z, force: tangent.force })
     }
 
     fn offsets(&self, space: &Space, whiten: &dyn Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
@@ -156,12 +205,11 @@ impl Given<'_> {
         self.record.sweeps().iter().map(of).collect()
     }
 
-    /// Smooth functions, the smoothest first, each without those before it and without what the model's own numbers can do; `raw` are the model's tangents
-    /// \[N\], `tangents` the same whitened.
+    /// Smooth functions, the smoothest first, each without those before it and without what the model's own numbers and form errors can do; `own` are the columns of
+    /// those \[N\], and the same whitened.
     fn directions(
         &self,
-        raw: &[Vec<f64>],
-        tangents: &[Vec<f64>],
+        own: impl Iterator<Item = (Vec<f64>, Vec<f64>)>,
         space: &mut Space,
         whiten: &dyn Fn(&[f64]) -> Vec<f64>,
     ) -> Vec<Direction> {
@@ -169,8 +217,8 @@ impl Given<'_> {
         let most = (PART * self.record.len() as f64) as usize;
         // White units with the functions that they are made of.
         let mut known: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
-        for (raw, white) in raw.iter().zip(tangents) {
-            known.extend(orthogonal(raw.clone(), white.clone(), &known));
+        for (raw, white) in own {
+            known.extend(orthogonal(raw, white, &known));
         }
         let mut found: Vec<Direction> = Vec::new();
         let doubtful = self.doubtful();

@@ -5,11 +5,13 @@ use bulge_model::{Model, ModelError};
 use rayon::prelude::*;
 use std::sync::Arc;
 
+use crate::diagnosis::bending::may_bend;
 use crate::diagnosis::candidates::{Candidate, explained, log_evidence};
 use crate::diagnosis::confirm::{Confirmed, starts};
 use crate::diagnosis::misfit::misfit;
 use crate::diagnosis::null::Null;
 use crate::diagnosis::scene::{Given, Scene};
+use crate::diagnosis::something_else::smooth_evidence;
 
 /// Chance with which the screen may raise a false alarm, and the smooth test.
 pub(crate) const ALARM: [f64; 2] = [0.03, 0.006];
@@ -18,6 +20,13 @@ const EXPLAINED: f64 = 0.01;
 /// Log evidence from which the first effect is worth naming: before any data it is seven times as likely that something is missing in a model of a real muscle
 /// as that nothing is. That a second effect is missing too is no more likely than not.
 pub(crate) const WORTH: [f64; 2] = [-2.0, 0.0];
+/// Log evidence of something that nobody thought of, before any data.
+const SOMETHING_ELSE: f64 = -2.0;
+/// Log evidence of form errors from which another effect is looked for that makes them superfluous, and what it must bring.
+const BENT: f64 = 4.0;
+const SUPERFLUOUS: f64 = 3.0;
+/// Part of what a model explains that a further effect must explain where the formulas of the model may be wrong: what explains less mends a formula.
+const MENDS: f64 = 0.01;
 /// Effects that are added at most: a misfit that takes more is one that the catalogue doesn't hold.
 const MOST_EFFECTS: usize = 3;
 /// Hypotheses whose linear evidence is this much below the best are not fitted.
@@ -104,6 +113,22 @@ impl Stage {
         others.map(|(_, effect)| Arc::clone(effect)).collect()
     }
 
+    /// Square of the misfit that smooth functions follow, beyond what chance gives.
+    pub(crate) fn excess(&self) -> f64 {
+        (self.scene.structure() - self.scene.smooth.len() as f64).max(0.0)
+    }
+
+    /// Log evidence of something that nobody thought of on top of the model; 0 where nothing is left to explain.
+    pub(crate) fn something_else(&self) -> f64 {
+        if self.adequate { 0.0 } else { (SOMETHING_ELSE + smooth_evidence(&self.scene)).max(0.0) }
+    }
+
+    /// Log evidence of the model, with or without something else on top, over that of another; implausible numbers cost nothing here.
+    fn value_over(&self, other: &Self) -> f64 {
+        let own = |stage: &Self| stage.confirmed.log_evidence + stage.confirmed.penalty;
+        own(self) - own(other) + self.something_else()
+    }
+
     /// How much more than chance the misfit scatters over the smooth functions, as a ratio of variances: 1 if the model explains the data.
     pub(crate) fn scatter(&self) -> f64 {
         let smooth = &self.scene.smooth;
@@ -122,6 +147,8 @@ pub(crate) fn tempered(log_evidence: f64, gain: f64, scatter: f64) -> f64 {
 /// A whole search: the base first, then each model that was accepted.
 pub(crate) struct Search {
     pub(crate) stages: Vec<Stage>,
+    /// The stage of which something that nobody thought of explains what is left better than the best effect: what was added after it is the nearest, and no claim.
+    pub(crate) something_else: Option<usize>,
 }
 
 /// Names of effects, sorted.
@@ -191,12 +218,12 @@ impl Given<'_> {
         let confirmed = self.confirm(base, &[], Some(near), &[])?;
         let mut stages = vec![self.stage(Vec::new(), confirmed)?];
         let mut again = false;
-        while let Some(stage) = stages.last_mut() {
-            if stage.adequate {
-                break;
-            }
+        let mut something_else = None;
+        while let [.., stage] = &mut stages[..] {
+            // A form error may be another effect.
+            let is_bent = stage.confirmed.form.log_evidence > BENT;
             let room = MOST_EFFECTS - stage.added.len();
-            if room == 0 {
+            if stage.adequate && !is_bent || room == 0 || something_else.is_some() {
                 break;
             }
             stage.tried = self.tried(base, stage, room, before);
@@ -205,20 +232,48 @@ impl Given<'_> {
                 continue;
             }
             again = false;
-            let next = ranked(&stage.tried)
-                .into_iter()
-                .find_map(|(best, confirmed)| self.step(stage, best, confirmed));
+            let ranked = ranked(&stages[stages.len() - 1].tried);
+            if std::env::var_os("TRACE").is_some() {
+                let stage = &stages[stages.len() - 1];
+                eprintln!("STAGE {:?} adequate {} chance {:?} cost {:.1} bent {:.1} form {:.1} excess {:.1} else {:.1}", names(stage.added.iter()), stage.adequate, stage.adequacy.chance, stage.confirmed.cost(), stage.confirmed.bent_cost(), stage.confirmed.form.log_evidence, stage.excess(), stage.something_else());
+                for b in &stage.confirmed.form.effects { eprintln!("   bent {} sd {:?} part {:.3}", b.effect.card().name, b.sd, b.part); }
+                for (t, c) in &ranked {
+                    let n: Vec<_> = t.hypothesis.effects.iter().map(|i| stage.scene.showings.effects[*i].effect.card().name).collect();
+                    eprintln!("   try {:?} lin {:.1} logZ {:.1} cost {:.1} bent {:.1} form {:.1} {}", n, t.hypothesis.log_evidence, t.log_evidence, c.cost(), c.bent_cost(), c.form.log_evidence, c.form.effects.iter().map(|b| format!("{:?} {:.2}", b.sd, b.part)).collect::<Vec<_>>().join("; "));
+                }
+            }
+            let next = ranked.into_iter().find_map(|(best, confirmed)| self.step(&stages, best, confirmed));
+            let stage = &stages[stages.len() - 1];
             let Some((next, stands_out)) = next else {
                 // The screen alone, and no effect that is worth its price: chance.
-                stage.adequate = !stage.adequacy.smooth_fails();
+                let is_chance = !stage.adequacy.smooth_fails();
+                if let Some(stage) = stages.last_mut() {
+                    stage.adequate |= is_chance;
+                }
                 break;
             };
-            if !stands_out {
+            let replaces_bending = || {
+                next.adequate
+                    && next.confirmed.log_evidence > stage.confirmed.log_evidence + SUPERFLUOUS
+                    && next.confirmed.form.log_evidence < stage.confirmed.form.log_evidence
+            };
+            if stage.adequate && !replaces_bending() {
+                break;
+            }
+            if std::env::var_os("TRACE").is_some() {
+                eprintln!(" -> {:?} adequate {} else {:.1} value {:.1} vs else {:.1} stands {}", names(next.added.iter()), next.adequate, next.something_else(), next.value_over(stage), stage.something_else(), stands_out);
+            }
+            if stage.something_else() > next.value_over(stage) {
+                something_else = Some(stages.len() - 1);
+                if !stage.added.is_empty() {
+                    break;
+                }
+            } else if !stands_out {
                 break;
             }
             stages.push(next);
         }
-        Ok(Search { stages })
+        Ok(Search { stages, something_else })
     }
 
     /// The stage at a lower minimum of its model, where a fit with further effects came to one and left them off.
@@ -239,9 +294,10 @@ impl Given<'_> {
             .then(|| self.stage(stage.added.clone(), confirmed).ok())?
     }
 
-    /// The stage that a hypothesis leads to, and whether the step stands out of what remains; none if it isn't worth its price, or nothing can be seen
-    /// from there.
-    fn step(&self, stage: &Stage, tried: &Tried, confirmed: &Confirmed) -> Option<(Stage, bool)> {
+    /// The stage that a hypothesis leads to from the last of `stages`, and whether the step stands out of what remains; none if it isn't worth its price, or nothing
+    /// can be seen from there.
+    fn step(&self, stages: &[Stage], tried: &Tried, confirmed: &Confirmed) -> Option<(Stage, bool)> {
+        let (base, stage) = (stages.first()?, stages.last()?);
         let worth = WORTH[usize::from(!stage.added.is_empty())];
         let effects = &stage.scene.showings.effects;
         let new: Vec<Arc<dyn Effect>> =
@@ -249,9 +305,20 @@ impl Given<'_> {
         if tried.log_evidence <= worth || confirmed.is_absurd(&new) || confirmed.is_idle(&new) {
             return None;
         }
+        let gain = stage.confirmed.bent_cost() - confirmed.bent_cost();
+        let mends = |first: &Confirmed| {
+            let explained = base.confirmed.bent_cost() - first.bent_cost();
+            may_bend(&first.prepared) && first.bent_cost() - confirmed.bent_cost() < MENDS * explained
+        };
+        let member = |one: &&Tried| {
+            matches!(&one.hypothesis.effects[..], [only] if new.len() > 1 && tried.hypothesis.effects.contains(only))
+        };
+        let alone = stage.tried.iter().filter(member).filter_map(|one| one.confirmed.as_ref());
+        if alone.into_iter().any(mends) || !stage.added.is_empty() && mends(&stage.confirmed) {
+            return None;
+        }
         let mut added = stage.added.clone();
         added.extend(new);
-        let gain = stage.confirmed.cost() - confirmed.cost();
         let next = self.stage(added, confirmed.clone()).ok()?;
         // Where something unknown remains, its scatter counts as noise: a step must stand out of that too.
         let stands_out = tempered(tried.log_evidence, gain, next.scatter()) > worth;
@@ -347,8 +414,11 @@ fn lower(one: Option<Confirmed>, other: Option<Confirmed>) -> Option<Confirmed> 
 fn ranked(tried: &[Tried]) -> Vec<(&Tried, &Confirmed)> {
     let mut list: Vec<(&Tried, &Confirmed)> =
         tried.iter().filter_map(|t| Some((t, t.confirmed.as_ref()?))).collect();
-    let worth = |t: &Tried| t.log_evidence - PAIR * (t.hypothesis.effects.len() as f64 - 1.0);
-    list.sort_by(|a, b| worth(b.0).total_cmp(&worth(a.0)));
+    let lambda: f64 = std::env::var("LAMBDA").ok().and_then(|v| v.parse().ok()).unwrap_or(0.1);
+    let worth = |(t, c): &(&Tried, &Confirmed)| {
+        t.log_evidence - PAIR * (t.hypothesis.effects.len() as f64 - 1.0) - lambda * c.form.log_evidence
+    };
+    list.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     list
 }
 

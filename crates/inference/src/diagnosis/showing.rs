@@ -217,7 +217,7 @@ pub(crate) fn forms(cards: &[ParameterCard<'_>], sizes: &[Size]) -> Vec<Vec<f64>
 }
 
 /// Values all over what is plausible for a number, within its bounds.
-fn spread(card: &ParameterCard<'_>, count: usize) -> Vec<f64> {
+pub(crate) fn spread(card: &ParameterCard<'_>, count: usize) -> Vec<f64> {
     let (low, high) = card.plausible.unwrap_or((card.low, card.high));
     let (low, high) = (low.max(card.low), high.min(card.high));
     let at = |i: usize| {

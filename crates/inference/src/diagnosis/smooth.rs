@@ -136,7 +136,7 @@ fn by_direction(record: &Record) -> Vec<Smooth> {
             });
         }
     }
-    let since = since_reversal(record);
+    let [since, ..] = ways_to_reversals(record);
     for (number, length) in REVERSALS.iter().enumerate() {
         let value = |row: usize| moments[row].branch() * (-since[row] / length).exp();
         functions.push(Smooth {
@@ -149,37 +149,62 @@ fn by_direction(record: &Record) -> Vec<Smooth> {
 }
 
 /// Whether the pressure goes to and fro within sweeps.
-fn drives_pressure(record: &Record) -> bool {
+pub(crate) fn drives_pressure(record: &Record) -> bool {
     record.moments().iter().any(|m| m.pressure_step != 0.0)
 }
 
-/// Way since the last reversal, in parts of the range of the contraction, or of the pressure where the length is held; long at the beginning of a sweep.
-fn since_reversal(record: &Record) -> Vec<f64> {
+/// Way since the last reversal, to the next, and since the beginning of the sweep before its first reversal, in parts of the range of the contraction, or of the
+/// pressure where the length is held; long elsewhere.
+pub(crate) fn ways_to_reversals(record: &Record) -> [Vec<f64>; 3] {
     let moments = record.moments();
     let [low, high] = range(moments.iter().map(|m| m.contraction));
     let whole = (high - low).max(f64::MIN_POSITIVE);
     let [low, high] = range(moments.iter().map(|m| m.pressure));
     let whole_pressure = (high - low).max(f64::MIN_POSITIVE);
-    let mut since = Vec::with_capacity(moments.len());
-    let (mut way, mut direction) = (1.0, 0.0);
-    for moment in moments {
-        if moment.begins {
-            (way, direction) = (1.0, moment.branch());
-        }
-        way += if moment.direction == 0.0 && moment.pressure_direction != 0.0 {
+    let step = |row: usize| {
+        let moment = &moments[row];
+        if moment.direction == 0.0 && moment.pressure_direction != 0.0 {
             moment.pressure_step.abs() / whole_pressure
         } else {
             moment.step.abs() / whole
-        };
+        }
+    };
+    let mut since = Vec::with_capacity(moments.len());
+    let mut begun = Vec::with_capacity(moments.len());
+    let (mut way, mut direction, mut first) = (1.0, 0.0, 0.0);
+    for (row, moment) in moments.iter().enumerate() {
+        if moment.begins {
+            (way, direction, first) = (1.0, moment.branch(), 0.0);
+        } else {
+            first += step(row);
+        }
+        way += step(row);
         if moment.branch() * direction < 0.0 {
-            way = 0.0;
+            (way, first) = (0.0, f64::INFINITY);
         }
         if moment.branch() != 0.0 {
             direction = moment.branch();
         }
         since.push(way);
+        begun.push(first);
     }
-    since
+    let mut next = vec![0.0; moments.len()];
+    let (mut way, mut direction) = (1.0, 0.0);
+    for row in (0..moments.len()).rev() {
+        let branch = moments[row].branch();
+        if branch * direction < 0.0 {
+            way = 0.0;
+        }
+        if branch != 0.0 {
+            direction = branch;
+        }
+        next[row] = way;
+        way += step(row);
+        if moments[row].begins {
+            (way, direction) = (1.0, 0.0);
+        }
+    }
+    [since, next, begun]
 }
 
 fn in_time(record: &Record) -> Vec<Smooth> {
@@ -271,11 +296,11 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
 }
 
 /// A quantity over -1 ..= 1.
-fn scaled(record: &Record, of: impl Fn(&bulge_effects::Moment) -> f64) -> Vec<f64> {
+pub(crate) fn scaled(record: &Record, of: impl Fn(&bulge_effects::Moment) -> f64) -> Vec<f64> {
     over_range(&record.moments().iter().map(of).collect::<Vec<_>>())
 }
 
-fn over_range(values: &[f64]) -> Vec<f64> {
+pub(crate) fn over_range(values: &[f64]) -> Vec<f64> {
     let [low, high] = range(values.iter().copied());
     let half = (0.5 * (high - low)).max(f64::MIN_POSITIVE);
     values.iter().map(|v| if high > low { (v - low) / half - 1.0 } else { 0.0 }).collect()

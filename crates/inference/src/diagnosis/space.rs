@@ -37,6 +37,21 @@ impl Space {
         Self { tangents, frame: Vec::new() }
     }
 
+    /// Without further columns, orthogonal to each other and outside of all that was left out before, each with a row of its own for the prior of its number, which has the
+    /// standard deviation 1. Before the first coordinate.
+    pub(crate) fn leave_out(&mut self, columns: &[&[f64]]) {
+        for unit in &mut self.tangents {
+            unit.resize(unit.len() + columns.len(), 0.0);
+        }
+        for (place, column) in columns.iter().enumerate() {
+            let mut unit = column.to_vec();
+            unit.resize(column.len() + columns.len(), 0.0);
+            unit[column.len() + place] = 1.0;
+            let length = norm(&unit);
+            self.tangents.push(scaled(unit, 1.0 / length));
+        }
+    }
+
     /// Number of coordinates.
     pub(crate) fn len(&self) -> usize {
         self.frame.len()

@@ -33,6 +33,9 @@ const SHORT: f64 = 0.025;
 /// Part of the square of the misfit that may be left where effects are named though something remains.
 const FORWARD: f64 = 0.02;
 
+/// Part of the log evidence of the effects that their formulas must bring as they are: with less the claim rests on the form errors.
+const EXACT: f64 = 0.75;
+
 /// Everything that was found.
 pub(crate) struct Findings<'a> {
     pub(crate) given: &'a Given<'a>,
@@ -166,7 +169,8 @@ impl Findings<'_> {
             );
             return (Verdict::Adequate, says);
         }
-        if last.adequate {
+        let bent = self.is_bent();
+        if last.adequate && !bent && self.search.something_else.is_none() {
             return (
                 Verdict::Missing,
                 format!(
@@ -176,7 +180,8 @@ impl Findings<'_> {
                 ),
             );
         }
-        let most = last.scene.structure() < FORWARD * self.search.stages[0].scene.structure();
+        let most = last.excess() < FORWARD * self.search.stages[0].excess();
+        let most = most && !bent && self.search.something_else != Some(0);
         let (sound, odd): (Vec<_>, Vec<_>) =
             last.added.iter().partition(|effect| self.plausible(effect.card().name));
         if !sound.is_empty() && most {
@@ -199,6 +204,13 @@ impl Findings<'_> {
         }
         let says = format!("these data hold a structure of {size} that no effect of the catalogue explains");
         (Verdict::Unknown, says)
+    }
+
+    /// Whether the claim rests on bending the formulas: then they are the nearest, and not what is missing.
+    fn is_bent(&self) -> bool {
+        let (base, last) = (&self.search.stages[0].confirmed, &self.last().confirmed);
+        let (form, base_form) = (last.form.log_evidence, base.form.log_evidence);
+        form - base_form > (1.0 - EXACT) * (last.log_evidence - base.log_evidence)
     }
 
     /// Each step of the search with what it explained.

@@ -1,0 +1,35 @@
+//! A hypothesis of its own: what the model lacks is smooth, and nobody thought of it.
+//!
+//! ```text
+//! ln Z = ln mean over (A, J) of exp sum_j [-ln(1 + t_j)/2 + z_j^2 t_j/(1 + t_j)/2],    t_j = (A F exp(-j/J)/f_j)^2
+//! ```
+//! with z_j the coordinate of the misfit along the j-th smooth function, f_j the RMS of that function at one standard deviation, F the largest force.
+
+use crate::diagnosis::scene::Scene;
+use crate::dot::dot;
+
+/// Sizes of a smooth misfit as parts of the largest force.
+const SIZES: [f64; 6] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
+/// Numbers of functions over which it fades.
+const FADES: [f64; 3] = [4.0, 12.0, 36.0];
+
+/// Log evidence of a smooth misfit that a model has and nobody thought of, over that of none.
+pub(crate) fn smooth_evidence(scene: &Scene) -> f64 {
+    let largest = scene.force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    let rows = scene.force.len().max(1) as f64;
+    let found: Vec<(f64, f64)> = scene
+        .smooth
+        .iter()
+        .map(|d| (dot(&d.unit, &scene.z), (dot(&d.values, &d.values) / rows).sqrt()))
+        .collect();
+    let of = |size: f64, fade: f64| -> f64 {
+        let term = |(j, (z, rms)): (usize, &(f64, f64))| {
+            let t = (size * largest * (-(j as f64) / fade).exp() / rms.max(f64::MIN_POSITIVE)).powi(2);
+            0.5 * (z * z * t / (1.0 + t) - t.ln_1p())
+        };
+        found.iter().enumerate().map(term).sum()
+    };
+    let all: Vec<f64> = SIZES.iter().flat_map(|size| FADES.map(|fade| of(*size, fade))).collect();
+    let largest = all.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    largest + (all.iter().map(|value| (value - largest).exp()).sum::<f64>() / all.len() as f64).ln()
+}
