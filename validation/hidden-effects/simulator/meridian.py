@@ -44,10 +44,21 @@ class Rubber:
     thickness: float
     cosine: float
 
+    def slopes(self, a, g):
+        """First and second derivatives of the energy per fibre length by a and g: W_a, W_g, W_aa, W_gg, W_ag."""
+        volume = 2.0 * np.pi * self.radius * self.thickness * self.cosine
+        k1, k2 = volume * self.c10, volume * self.c01
+        w_a = k1 * (1.0 - 1.0 / (a**2 * g)) + k2 * (g - 1.0 / a**2)
+        w_g = k1 * (1.0 - 1.0 / (a * g**2)) + k2 * (a - 1.0 / g**2)
+        w_aa = 2.0 * k1 / (a**3 * g) + 2.0 * k2 / a**3
+        w_gg = 2.0 * k1 / (a * g**3) + 2.0 * k2 / g**3
+        w_ag = k1 / (a * g) ** 2 + k2
+        return w_a, w_g, w_aa, w_gg, w_ag
+
 
 @dataclass(frozen=True)
 class Body:
-    """All that decides the equilibrium; `stiffness` [N] is EA of all fibres together, None if they do not stretch."""
+    """All that decides the equilibrium; `stiffness` [N] is EA of all fibres together (or an object whose `pull(e)` gives tension and tangent), None if they do not stretch."""
 
     kind: str
     fibre_length: float
@@ -305,8 +316,9 @@ def _density(body, fields, pressure, force):
         "ss": -load * (f2 * q_s**2 - 2.0 * f1),
     }
     if body.stiffness is not None:
-        first["e"] = first["e"] + body.stiffness * e
-        second["ee"] = second["ee"] + body.stiffness
+        pull, tangent = (body.stiffness * e, body.stiffness) if isinstance(body.stiffness, float) else body.stiffness.pull(e)
+        first["e"] = first["e"] + pull
+        second["ee"] = second["ee"] + tangent
     if body.rubber is not None:
         _add_rubber(body.rubber, first, second, r, m, (m_r, m_rr, m_e, m_ee))
     if body.cloth is not None:
@@ -321,13 +333,7 @@ def _add_rubber(rubber, first, second, r, m, chain):
     m_r, m_rr, m_e, m_ee = chain
     a_r, a_rr, a_e, a_ee = m_r / c, m_rr / c, m_e / c, m_ee / c
     g_r, g_rr = 2.0 * r / rubber.radius**2, 2.0 / rubber.radius**2
-    volume = 2.0 * np.pi * rubber.radius * rubber.thickness * rubber.cosine
-    k1, k2 = volume * rubber.c10, volume * rubber.c01
-    w_a = k1 * (1.0 - 1.0 / (a**2 * g)) + k2 * (g - 1.0 / a**2)
-    w_g = k1 * (1.0 - 1.0 / (a * g**2)) + k2 * (a - 1.0 / g**2)
-    w_aa = 2.0 * k1 / (a**3 * g) + 2.0 * k2 / a**3
-    w_gg = 2.0 * k1 / (a * g**3) + 2.0 * k2 / g**3
-    w_ag = k1 / (a * g) ** 2 + k2
+    w_a, w_g, w_aa, w_gg, w_ag = rubber.slopes(a, g)
     first["r"] = first["r"] + w_a * a_r + w_g * g_r
     first["e"] = first["e"] + w_a * a_e
     second["rr"] = second["rr"] + w_aa * a_r**2 + 2.0 * w_ag * a_r * g_r + w_gg * g_r**2 + w_a * a_rr + w_g * g_rr
