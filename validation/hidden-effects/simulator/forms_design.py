@@ -78,6 +78,9 @@ def draw_plan(rng, kind, rig, needs, rows):
     form = ("triangle", "sine", "triangle", "sine", "minor", "stairs")[int(rng.integers(6))]
     loops = (1, 1, 2, 2, 3)[int(rng.integers(5))]
     period = float(round(rng.uniform(20.0, 120.0)))
+    if "long" in needs:
+        # A drift of the zero takes hours.
+        period *= 6.0
     periods = (period,)
     if "dwell" in needs and rng.random() < 0.5:
         form, period = "stairs", 5.0 * period

@@ -120,11 +120,11 @@ EXACT = (
 
 AT_HELD_LENGTH = (
     "creep", "stress-softening", "self-heating", "temperature", "bladder-elasticity", "fibre-stretch", "frame-compliance", "end-slip",
-    "line-drop", "regulator-lag", "force-nonlinearity", "force-lag", "pressure-offset", "pressure-gain", "pressure-threshold", "force-offset",
+    "regulator-lag", "force-nonlinearity", "force-lag", "pressure-offset", "pressure-gain", "pressure-threshold", "force-offset",
     "force-gain", "force-drift", "length-zero-error", "wall-thickness", "radius-error", "braid-angle-error", "fibre-length", "pleat-depth",
 )  # fmt: skip
 """What an isometric test shows."""
-NOT_AT_HELD_LOAD = ("force-lag", "force-nonlinearity", "low-load-slack", "force-gain", "specimen-spread")
+NOT_AT_HELD_LOAD = ("line-drop", "force-lag", "force-nonlinearity", "low-load-slack", "force-gain", "specimen-spread")
 """What an isotonic test doesn't show, or only by its few loads."""
 
 

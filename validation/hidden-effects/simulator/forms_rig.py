@@ -1,7 +1,7 @@
 """Forms of what the rig adds: give of frame and fittings, leaks, regulators, load cells that bend or are late, fibres that go slack.
 
 Give: Hertz 1882, deflection ~ F^(2/3); bolts that stiffen; play that closes. Pressure: losses of a thin line by Poiseuille's law for a gas (squares of
-absolute pressures), by a turbulent leak, by a leak that opens. Regulator: turbulent valve, second order, dead zone. Load cell: cubic, S-shaped,
+absolute pressures), by a turbulent leak, by a leak that opens. Regulator: turbulent valve, second order, dead zone. Load cell: cubic, saturating,
 two slopes. Late force: one and two poles, dead time and a pole, moving average. Slack: mean of max(f, 0) over other distributions than the normal one.
 """
 
@@ -157,12 +157,14 @@ def _draw_force(rng, scales):
     return {"force": scales.force}
 
 
-def _s_shaped(state, amplitude, c):
-    return amplitude * c["force"] ** 2 / np.pi * np.sin(np.pi * state.force / c["force"] * c["span"])
+def _saturating(state, amplitude, c):
+    """A F^2 at small forces, none of it more at large ones: (1 - cos) of the force, to half a wave or nearly."""
+    angle = np.pi * c["span"] * state.force / c["force"]
+    return 2.0 * amplitude * (c["force"] / (np.pi * c["span"])) ** 2 * (1.0 - np.cos(angle))
 
 
-def _draw_s_shaped(rng, scales):
-    return {"force": scales.force, "span": rng.uniform(0.7, 1.2)}
+def _draw_saturating(rng, scales):
+    return {"force": scales.force, "span": rng.uniform(0.5, 0.9)}
 
 
 def _two_slopes(state, amplitude, c):
@@ -257,7 +259,7 @@ FORMS = (
     Form("regulator-lag", "second-order", "pressure", _draw_second_order, _second_order),
     Form("regulator-lag", "dead-zone", "pressure", _draw_dead_zone, _dead_zone),
     Form("force-nonlinearity", "cubic", "reading", _draw_force, _cubic),
-    Form("force-nonlinearity", "s-shaped", "reading", _draw_s_shaped, _s_shaped),
+    Form("force-nonlinearity", "saturating", "reading", _draw_saturating, _saturating),
     Form("force-nonlinearity", "two-slopes", "reading", _draw_two_slopes, _two_slopes),
     Form("force-lag", "one-pole", "reading", _nothing, _one_pole),
     Form("force-lag", "two-poles", "reading", _draw_share(0.5, 0.75), _two_poles),

@@ -205,7 +205,7 @@ def _power_balance(state, amplitude, c):
 
 
 def _draw_power_balance(rng, scales):
-    return {"time": scales.session * rng.uniform(0.1, 0.4)}
+    return {"time": scales.session * rng.uniform(0.6, 1.5)}
 
 
 FORMS = (

@@ -145,7 +145,7 @@ def _draw_stiffening_axial(rng, scales):
     return {"rise": rng.uniform(0.5, 1.5), "stroke": scales.stroke}
 
 
-# Prestrain: dF = 2 pi r0 tau u'(l2) dl2/dl1 and what depends on l1 directly, l2 = sqrt(1 - l1^2 cos^2 a)/sin a.
+# Prestrain: dF = 2 pi r0 tau g(l2) dl2/dl1, l2 = sqrt(1 - l1^2 cos^2 a)/sin a, g(1) = 1.
 
 
 def _hoop(state):
@@ -168,12 +168,14 @@ def _draw_prestrain_power(low, high):
     return draw
 
 
-def _prestrain_rubber(state, amplitude, c):
-    """First order in the prestretch of a neo-Hookean tube: u = (l2^2 - 1/(l1 l2)^2)/4, with its slope by l1."""
-    l1, l2, slope = _hoop(state)
-    along = 0.5 / (l1**3 * l2**2)
-    around = 0.5 * (l2 + 1.0 / (l1**2 * l2**3))
-    return 2.0 * np.pi * state.muscle.radius * amplitude * (around * slope + along)
+def _prestrain_saturating(state, amplitude, c):
+    _, l2, slope = _hoop(state)
+    rise = 2.0 * c["range"] * np.tanh((l2 - 1.0) / c["range"])
+    return 2.0 * np.pi * state.muscle.radius * amplitude * (1.0 + rise) * slope
+
+
+def _draw_prestrain_saturating(rng, scales):
+    return {"range": rng.uniform(0.25, 0.6)}
 
 
 FORMS = (
@@ -186,9 +188,9 @@ FORMS = (
     Form("membrane-axial", "neo-hooke-compressed", "wall", lambda rng, scales: {}, _compressed),
     Form("membrane-axial", "buckling", "wall", _draw_buckling, _buckling),
     Form("membrane-axial", "stiffening", "wall", _draw_stiffening_axial, _stiffening_axial),
-    Form("bladder-prestrain", "power-below-one", "wall", _draw_prestrain_power(-1.0, 0.5), _prestrain_power),
-    Form("bladder-prestrain", "power-above-two", "wall", _draw_prestrain_power(2.0, 3.5), _prestrain_power),
-    Form("bladder-prestrain", "neo-hooke", "wall", lambda rng, scales: {}, _prestrain_rubber),
+    Form("bladder-prestrain", "power-below-two", "wall", _draw_prestrain_power(0.8, 1.3), _prestrain_power),
+    Form("bladder-prestrain", "power-above-two", "wall", _draw_prestrain_power(2.1, 2.8), _prestrain_power),
+    Form("bladder-prestrain", "saturating", "wall", _draw_prestrain_saturating, _prestrain_saturating),
     Form("fibre-stretch", "toe", "shape", _draw_fibre((0.3, 0.9), (0.4, 0.75)), _fibre("toe")),
     Form("fibre-stretch", "stiffening", "shape", _draw_fibre((0.8, 1.2), (0.3, 0.8)), _fibre("stiffening")),
     Form("fibre-stretch", "degressive", "shape", _draw_fibre((0.8, 2.5), (0.0, 1.0)), _fibre("degressive")),

@@ -6,6 +6,7 @@ import numpy as np
 
 from .forms import State
 from .forms_motion import dahl
+from .forms_time import loops
 from .forms_wall import FormedShape
 from .world import World
 
@@ -15,9 +16,16 @@ ALIAS = {"length": "fibre-length", "radius": "radius-error"}
 
 @dataclass
 class FormsWorld(World):
-    """`forms` holds the form that an effect acts in; the others act by the formulas of `World`."""
+    """`forms` holds the form that an effect acts in; the others act by the formulas of `World`.
+
+    `sliding` is "dahl" or "sign", friction without build-up and none at rest; `heating` the time of self-heating over the session; `creep` grows with the
+    "pressure" or with nothing but the logarithm of the time, "alone".
+    """
 
     forms: dict = field(default_factory=dict)
+    sliding: str = "dahl"
+    heating: float = 0.25
+    creep: str = "pressure"
 
     def amplitude(self, name):
         """Amplitude for the usual formula: 0 where the effect has a form."""
@@ -85,7 +93,12 @@ class FormsWorld(World):
         return found
 
     def _wall(self, path, force, pressure, contraction):
-        force = super()._wall(path, force, pressure, contraction)
+        virgin = self.amplitude("stress-softening")
+        if virgin:
+            # By the number of the loop of each run, as the column of the file counts it.
+            number = np.floor(loops(path, pressure) * (1.0 - 1e-9))
+            force = force + virgin * np.exp(-number / self.nature.conditioning_loops) * self._softens(force, pressure, contraction)
+        force = self.changed({"stress-softening": 0.0})._plain_wall(path, force, pressure, contraction)
         state = self._state(path, None, pressure, contraction, force)
         total = 0.0
         for amplitude, one in self._acting("wall"):
@@ -96,6 +109,9 @@ class FormsWorld(World):
             total = total + self._prestrain(contraction)
         return force + total
 
+    def _plain_wall(self, path, force, pressure, contraction):
+        return super()._wall(path, force, pressure, contraction)
+
     def _prestrain(self, contraction):
         """2 pi r0 tau (2 l2 - 1) dl2/dl1 on a cylinder, as the catalogue has it: it is a rival."""
         angle, l1 = self.muscle.braid_angle, 1.0 - contraction
@@ -103,7 +119,11 @@ class FormsWorld(World):
         return self.amplitude("bladder-prestrain") * 2.0 * np.pi * self.muscle.radius * (2.0 * l2 - 1.0) * -l1 / (np.tan(angle) ** 2 * l2)
 
     def _dissipation(self, path, static, force, pressure, contraction):
-        total = super()._dissipation(path, static, force, pressure, contraction)
+        if self.sliding == "sign":
+            a = self.amplitude
+            total = (a("coulomb-friction") + a("pressure-friction") * pressure + a("force-friction") * np.abs(force)) * np.sign(path.rate)
+        else:
+            total = super()._dissipation(path, static, force, pressure, contraction)
         state = self._state(path, static, pressure, contraction, force)
         for amplitude, one in self._acting("motion"):
             total = total - one.act(state, amplitude)
@@ -111,9 +131,12 @@ class FormsWorld(World):
 
     def _later(self, path, force, pressure):
         before = force
-        force = super()._later(path, force, pressure)
+        if self.creep == "alone":
+            force = force - self.amplitude("creep") * np.log10(1.0 + path.since_start)
+        else:
+            force = super()._later(path, force, pressure)
         if self.amplitude("self-heating"):
-            force = force + self.amplitude("self-heating") * before * -np.expm1(-path.time / (0.25 * path.time[-1]))
+            force = force + self.amplitude("self-heating") * before * -np.expm1(-path.time / (self.heating * path.time[-1]))
         for amplitude, one in self._acting("later"):
             force = force + one.act(self._state(path, None, pressure, path.contraction, before), amplitude)
         return force

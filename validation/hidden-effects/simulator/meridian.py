@@ -16,6 +16,7 @@ solved at once by Newton's method on the stationarity conditions. Source: princi
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -105,6 +106,12 @@ class _Basis:
         return np.linalg.lstsq(self.value * root[:, None], (bulge * root).T, rcond=None)[0].T
 
 
+@lru_cache(maxsize=4)
+def _basis(kind, with_stretch):
+    """The functions of a kind of muscle, made once."""
+    return _Basis(kind, with_stretch)
+
+
 def _legendre_even(sigma, count):
     """P_k(2 sigma^2 - 1) and its derivative by sigma for k < count."""
     y = 2.0 * sigma**2 - 1.0
@@ -117,21 +124,21 @@ def _legendre_even(sigma, count):
 def solve(body, pressure, length):
     """Equilibria at gauge pressures [Pa] > 0 and end distances [m], arrays of one shape. Raises NoEquilibrium."""
     pressure, length = np.broadcast_arrays(np.asarray(pressure, float), np.asarray(length, float))
-    basis = _Basis(body.kind, body.stiffness is not None)
+    basis = _basis(body.kind, body.stiffness is not None)
     unknowns = _unknowns(body, basis, pressure.ravel(), length.ravel())
     return _results(body, basis, pressure.ravel(), unknowns, pressure.shape)
 
 
 def profile(body, pressure, length):
     """Radii [m] of the equilibria (points x nodes) and the weights that integrate over the fibre, sum 1. `length` is a vector."""
-    basis = _Basis(body.kind, body.stiffness is not None)
+    basis = _basis(body.kind, body.stiffness is not None)
     unknowns = _unknowns(body, basis, np.full(len(length), pressure), length)
     return _fields(body, basis, unknowns)[0], basis.weights
 
 
 def angles(body, pressure, length, sigma):
     """Angles [rad] between fibre and axis at the places `sigma` along half a fibre, points x places; sin(theta) = kappa r/(1 + e)."""
-    basis = _Basis(body.kind, body.stiffness is not None)
+    basis = _basis(body.kind, body.stiffness is not None)
     unknowns = _unknowns(body, basis, pressure, length)
     count = basis.value.shape[1]
     radius = body.end_radius + unknowns[:, :count] @ ((1.0 - sigma[:, None] ** 2) * _legendre_even(sigma, count)[0]).T
