@@ -229,8 +229,20 @@ def _under_load(setting, world, chosen, strengths):
     if not hasattr(setting.plan, "loads") or not chosen:
         return setting, world
     static = force_map(setting.world.shape(), setting.world.window)
-    path = carried(setting.plan, setting.path, world, static, 5)
-    return replace(setting, path=path, metric=Metric(setting.world, path, setting.law)), world
+    for _ in range(3):
+        path = carried(setting.plan, setting.path, world, static, 5)
+        setting = replace(setting, path=path, metric=Metric(setting.world, path, setting.law))
+        name = chosen[0][0]
+        if len(chosen) > 1 or name not in EFFECTS:
+            break
+        # One effect meets its strength on the new path too, unless its bounds end there.
+        found = setting.metric.norm(world.force(path) - setting.metric.base)
+        if abs(found / strengths[0] - 1.0) < CLOSE:
+            break
+        off, limit = setting.world.amplitudes.get(name, 0.0), _limit(name, setting)
+        change = (strengths[0] / max(found, 1e-9)) ** (1.0 / EFFECTS[name].power)
+        world = world.changed({name: off + float(np.clip((world.size(name) - off) * change, -limit, limit))})
+    return setting, world
 
 
 def _truth(order, setting, world, chosen, strengths):

@@ -56,6 +56,11 @@ class Answer:
             return False
         return any(all(matches(claim, entry, level) for claim, entry in zip(claims, order)) for order in permutations(known))
 
+    def in_class(self):
+        """Whether the class of the first claim holds the hidden family, or one that is identical with it on these data."""
+        names = [self.claims[0]["effect"], *self.claims[0].get("class", [])]
+        return any(matches({"effect": name}, entry, "family") for name in names for entry in self.known)
+
     def found(self, entry, level="family"):
         """Whether some claim names this hidden effect."""
         return any(matches(claim, entry, level) for claim in self.claims)
@@ -134,6 +139,9 @@ def _one(one):
         ("by the catalogue's formula", exact),
     ):
         rows.append(rate_row(f"one effect, {title}: family right and nothing else named", [a.all_right() for a in some]))
+    decided = [a for a in one if len(a.known[0]["class"]) == 1]
+    rows.append(rate_row("one effect, no rival within 3.29 sigma: family right and nothing else named", [a.all_right() for a in decided]))
+    rows.append(rate_row("one effect: one claim, the hidden family in its class", [len(a.claims) == 1 and a.in_class() for a in one]))
     rows.append(rate_row("one effect: found, whatever else is named", [a.found(a.known[0]) for a in one]))
     rows.append(rate_row("one effect: more than one name", [len(a.claims) > 1 for a in one]))
     rows.append(rate_row("one effect: called unknown", [a.verdict == "unknown" for a in one]))
