@@ -22,6 +22,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, default=1, help="another seed gives other muscles, amplitudes and noise")
     parser.add_argument("--suite", choices=("exact", "forms"), default="exact", help="effects as the catalogue has them, or in forms of their own")
+    parser.add_argument("--exact-widths", action="store_true", help="forms suite: state widths of 0 where the geometry has none")
     parser.add_argument("--bulge", default="bulge", help="the program to prove")
     parser.add_argument("--out", type=Path, help="folder of everything that is written [default: out/hidden-effects/seed-SEED, out/hidden-effects/forms-SEED]")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
@@ -33,9 +34,10 @@ def main():
     suite, results, numbers, table = out / "suite", out / "results", out / "score.json", out / "score.md"
     some = ["--only", arguments.only]
     jobs = ["--jobs", str(arguments.jobs)]
+    widths = ["--exact-widths"] if arguments.exact_widths else []
     again = ["--again"] if arguments.again else []
     stages = (
-        ["generate.py", "--seed", str(arguments.seed), "--suite", arguments.suite, "--out", suite, *some, *jobs],
+        ["generate.py", "--seed", str(arguments.seed), "--suite", arguments.suite, "--out", suite, *some, *jobs, *widths],
         # The usual methods know exact signatures alone: they have nothing to say about forms.
         *([] if formed else [["baselines.py", suite, *some, *jobs]]),
         ["run.py", suite, results, "--bulge", arguments.bulge, *some, *jobs, *again],
