@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from itertools import permutations
 
 import numpy as np
+from scipy.special import ndtr
 
 from .forms_effects import FAMILY, MECHANISM, family, mechanism
 from .forms_suite import STRENGTHS
@@ -87,6 +88,12 @@ def confidence(claim, level):
     return float(value) if isinstance(value, (int, float)) else None
 
 
+def at_best(entry):
+    """How often the better of two formulas that are s sigma apart is the true one: Phi(s/2), s to the nearest rival; 1 if that one counts as right."""
+    nearest = entry["nearest"]
+    return 1.0 if nearest["effect"] in entry["acceptable"] else float(ndtr(0.5 * nearest["separation"]))
+
+
 def answers(known, results):
     """Answers of `bulge diagnose --json` to the cases, one file <case>.json each."""
     times_file = results / "times.json"
@@ -128,6 +135,8 @@ def _one(one):
     for level in ("family", "mechanism"):
         for strength in STRENGTHS:
             some = [a for a in one if a.known[0]["strength"] == strength]
+            if level == "family" and some:
+                rows.append(mean_row(f"one effect, d {strength:g}: right at best beside the nearest rival", [at_best(a.known[0]) for a in some]))
             rows.append(rate_row(f"one effect, d {strength:g}: {level} right and nothing else named", [a.all_right(level) for a in some]))
         rows.append(rate_row(f"one effect, all: {level} right and nothing else named", [a.all_right(level) for a in one]))
     loose = [a for a in one if a.known[0]["form"] != "exact"]
