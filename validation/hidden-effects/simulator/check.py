@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipeinc, ellipkinc
 
-from . import history, muscle, protocols, score_check
+from . import forms_check, history, muscle, protocols, score_check
 from . import path as paths
 from .case import build
 from .detectability import Metric
@@ -45,6 +45,7 @@ def run():
         ("score: Wilson's interval against printed numbers", score_check.printed_interval, 5e-5),
         ("score: top-1, class and names that are no claims", score_check.claims, 1e-12),
         ("score: alarms without names where nothing is hidden", score_check.quiet, 1e-12),
+        *forms_check.CHECKS,
     ]
     failed = 0
     for title, check, tolerance in checks:

@@ -16,6 +16,7 @@ solved at once by Newton's method on the stationarity conditions. Source: princi
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -44,10 +45,21 @@ class Rubber:
     thickness: float
     cosine: float
 
+    def slopes(self, a, g):
+        """First and second derivatives of the energy per fibre length by a and g: W_a, W_g, W_aa, W_gg, W_ag."""
+        volume = 2.0 * np.pi * self.radius * self.thickness * self.cosine
+        k1, k2 = volume * self.c10, volume * self.c01
+        w_a = k1 * (1.0 - 1.0 / (a**2 * g)) + k2 * (g - 1.0 / a**2)
+        w_g = k1 * (1.0 - 1.0 / (a * g**2)) + k2 * (a - 1.0 / g**2)
+        w_aa = 2.0 * k1 / (a**3 * g) + 2.0 * k2 / a**3
+        w_gg = 2.0 * k1 / (a * g**3) + 2.0 * k2 / g**3
+        w_ag = k1 / (a * g) ** 2 + k2
+        return w_a, w_g, w_aa, w_gg, w_ag
+
 
 @dataclass(frozen=True)
 class Body:
-    """All that decides the equilibrium; `stiffness` [N] is EA of all fibres together, None if they do not stretch."""
+    """All that decides the equilibrium; `stiffness` [N] is EA of all fibres together (or an object whose `pull(e)` gives tension and tangent), None if they do not stretch."""
 
     kind: str
     fibre_length: float
@@ -94,6 +106,12 @@ class _Basis:
         return np.linalg.lstsq(self.value * root[:, None], (bulge * root).T, rcond=None)[0].T
 
 
+@lru_cache(maxsize=4)
+def _basis(kind, with_stretch):
+    """The functions of a kind of muscle, made once."""
+    return _Basis(kind, with_stretch)
+
+
 def _legendre_even(sigma, count):
     """P_k(2 sigma^2 - 1) and its derivative by sigma for k < count."""
     y = 2.0 * sigma**2 - 1.0
@@ -106,21 +124,21 @@ def _legendre_even(sigma, count):
 def solve(body, pressure, length):
     """Equilibria at gauge pressures [Pa] > 0 and end distances [m], arrays of one shape. Raises NoEquilibrium."""
     pressure, length = np.broadcast_arrays(np.asarray(pressure, float), np.asarray(length, float))
-    basis = _Basis(body.kind, body.stiffness is not None)
+    basis = _basis(body.kind, body.stiffness is not None)
     unknowns = _unknowns(body, basis, pressure.ravel(), length.ravel())
     return _results(body, basis, pressure.ravel(), unknowns, pressure.shape)
 
 
 def profile(body, pressure, length):
     """Radii [m] of the equilibria (points x nodes) and the weights that integrate over the fibre, sum 1. `length` is a vector."""
-    basis = _Basis(body.kind, body.stiffness is not None)
+    basis = _basis(body.kind, body.stiffness is not None)
     unknowns = _unknowns(body, basis, np.full(len(length), pressure), length)
     return _fields(body, basis, unknowns)[0], basis.weights
 
 
 def angles(body, pressure, length, sigma):
     """Angles [rad] between fibre and axis at the places `sigma` along half a fibre, points x places; sin(theta) = kappa r/(1 + e)."""
-    basis = _Basis(body.kind, body.stiffness is not None)
+    basis = _basis(body.kind, body.stiffness is not None)
     unknowns = _unknowns(body, basis, pressure, length)
     count = basis.value.shape[1]
     radius = body.end_radius + unknowns[:, :count] @ ((1.0 - sigma[:, None] ** 2) * _legendre_even(sigma, count)[0]).T
@@ -305,8 +323,9 @@ def _density(body, fields, pressure, force):
         "ss": -load * (f2 * q_s**2 - 2.0 * f1),
     }
     if body.stiffness is not None:
-        first["e"] = first["e"] + body.stiffness * e
-        second["ee"] = second["ee"] + body.stiffness
+        pull, tangent = (body.stiffness * e, body.stiffness) if isinstance(body.stiffness, float) else body.stiffness.pull(e)
+        first["e"] = first["e"] + pull
+        second["ee"] = second["ee"] + tangent
     if body.rubber is not None:
         _add_rubber(body.rubber, first, second, r, m, (m_r, m_rr, m_e, m_ee))
     if body.cloth is not None:
@@ -321,13 +340,7 @@ def _add_rubber(rubber, first, second, r, m, chain):
     m_r, m_rr, m_e, m_ee = chain
     a_r, a_rr, a_e, a_ee = m_r / c, m_rr / c, m_e / c, m_ee / c
     g_r, g_rr = 2.0 * r / rubber.radius**2, 2.0 / rubber.radius**2
-    volume = 2.0 * np.pi * rubber.radius * rubber.thickness * rubber.cosine
-    k1, k2 = volume * rubber.c10, volume * rubber.c01
-    w_a = k1 * (1.0 - 1.0 / (a**2 * g)) + k2 * (g - 1.0 / a**2)
-    w_g = k1 * (1.0 - 1.0 / (a * g**2)) + k2 * (a - 1.0 / g**2)
-    w_aa = 2.0 * k1 / (a**3 * g) + 2.0 * k2 / a**3
-    w_gg = 2.0 * k1 / (a * g**3) + 2.0 * k2 / g**3
-    w_ag = k1 / (a * g) ** 2 + k2
+    w_a, w_g, w_aa, w_gg, w_ag = rubber.slopes(a, g)
     first["r"] = first["r"] + w_a * a_r + w_g * g_r
     first["e"] = first["e"] + w_a * a_e
     second["rr"] = second["rr"] + w_aa * a_r**2 + 2.0 * w_ag * a_r * g_r + w_gg * g_r**2 + w_a * a_rr + w_g * g_rr

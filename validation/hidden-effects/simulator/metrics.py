@@ -17,23 +17,23 @@ def measure(answers):
     """All measures, in the order of the report: a list of {"measure", "value", "low", "high", "n", ...}."""
     answered = [a for a in answers if a.verdict is not None]
     one = [a for a in answered if a.truth["kind"] in ONE_HIDDEN]
-    rows = [_rate("answered", [a.verdict is not None for a in answers])]
+    rows = [rate_row("answered", [a.verdict is not None for a in answers])]
     rows += _quiet(answered)
     for low, high in BINS:
         some = _within(one, low, high)
         span = f"d {low:g} to {high:g}" if np.isfinite(high) else f"d above {low:g}"
-        rows.append(_rate(f"detected, {span}", [a.alarmed for a in some]))
-        rows.append(_rate(f"top-1, {span}", [a.first_is_right() for a in some]))
-        rows.append(_rate(f"class right, {span}", [a.found(a.hidden[0]) for a in some]))
+        rows.append(rate_row(f"detected, {span}", [a.alarmed for a in some]))
+        rows.append(rate_row(f"top-1, {span}", [a.first_is_right() for a in some]))
+        rows.append(rate_row(f"class right, {span}", [a.found(a.hidden[0]) for a in some]))
     rows += _classes(one)
     rows += _several(answered)
     rows += _outside(answered, one)
     rows += _held_out(one)
-    rows.append(_rate("intervals that hold the true parameter", _intervals(one)))
+    rows.append(rate_row("intervals that hold the true parameter", _intervals(one)))
     rows += _calibration(answered)
     times = [a.seconds for a in answered if a.seconds is not None]
     if times:
-        rows.append(_median("seconds per case, median", times))
+        rows.append(median_row("seconds per case, median", times))
         rows.append({"measure": "seconds per case, largest", "value": max(times), "n": len(times)})
     return rows
 
@@ -46,9 +46,9 @@ def _quiet(answered):
     rows = []
     for kind, title in (("null", "false alarms, nothing hidden"), ("rig-within", "false alarms, rig errors within the data sheets")):
         some = [a for a in answered if a.truth["kind"] == kind]
-        rows.append(_rate(title, [a.alarmed for a in some]))
-        rows.append(_rate(title.replace("alarms", "names"), [bool(a.claims) for a in some]))
-        rows.append(_rate(title.replace("false alarms", "called adequate"), [a.verdict == "adequate" for a in some]))
+        rows.append(rate_row(title, [a.alarmed for a in some]))
+        rows.append(rate_row(title.replace("alarms", "names"), [bool(a.claims) for a in some]))
+        rows.append(rate_row(title.replace("false alarms", "called adequate"), [a.verdict == "adequate" for a in some]))
     return rows
 
 
@@ -60,14 +60,14 @@ def _classes(one):
     true_sizes = [len(a.hidden[0]["class"]) for a in clear if a.claims]
     twins = {span: [size for size, true in zip(sizes, true_sizes) if span[0] <= true - 1 <= span[1]] for span in TWINS}
     return [
-        _rate("class right, d >= 4", [a.found(a.hidden[0]) for a in seen]),
-        _rate("top-1, d >= 8, no twin in the data", [a.first_is_right() for a in alone]),
-        _rate("hidden effect in the class reported, d >= 4", [a.covered(a.hidden[0]) for a in seen if a.claims]),
-        _mean("mean class size, d >= 8", sizes),
-        _mean("mean class size by the truth (3.29 sigma), same cases", true_sizes),
-        *(_mean(f"mean class size, d >= 8, {_counted(*span)}", some) for span, some in twins.items()),
-        _rate("more names than effects, d >= 4", [len(a.claims) > 1 for a in seen]),
-        _rate("class right and nothing else named, d >= 4", [a.found(a.hidden[0]) and len(a.claims) == 1 for a in seen]),
+        rate_row("class right, d >= 4", [a.found(a.hidden[0]) for a in seen]),
+        rate_row("top-1, d >= 8, no twin in the data", [a.first_is_right() for a in alone]),
+        rate_row("hidden effect in the class reported, d >= 4", [a.covered(a.hidden[0]) for a in seen if a.claims]),
+        mean_row("mean class size, d >= 8", sizes),
+        mean_row("mean class size by the truth (3.29 sigma), same cases", true_sizes),
+        *(mean_row(f"mean class size, d >= 8, {_counted(*span)}", some) for span, some in twins.items()),
+        rate_row("more names than effects, d >= 4", [len(a.claims) > 1 for a in seen]),
+        rate_row("class right and nothing else named, d >= 4", [a.found(a.hidden[0]) and len(a.claims) == 1 for a in seen]),
     ]
 
 
@@ -82,10 +82,10 @@ def _several(answered):
     for kind in ("pair", "masking"):
         some = [a for a in answered if a.truth["kind"] == kind]
         found = [sum(a.found(entry) for entry in a.hidden) for a in some]
-        rows.append(_rate(f"{kind}s: both in the classes", [count == 2 for count in found]))
-        rows.append(_rate(f"{kind}s: one of two", [count == 1 for count in found]))
+        rows.append(rate_row(f"{kind}s: both in the classes", [count == 2 for count in found]))
+        rows.append(rate_row(f"{kind}s: one of two", [count == 1 for count in found]))
         clear = [count == 2 for count, a in zip(found, some) if a.d >= 4.0]
-        rows.append(_rate(f"{kind}s: both, each with d >= 4 beside the other", clear))
+        rows.append(rate_row(f"{kind}s: both, each with d >= 4 beside the other", clear))
     return rows
 
 
@@ -96,16 +96,16 @@ def _outside(answered, one):
     placed = [a.located[0]["variable"] in VARIABLES[a.hidden[0]["effect"]] for a in out if a.verdict == "unknown" and a.located]
     known = [a for a in one if a.verdict == "unknown"]
     return [
-        _rate("outside the catalogue: called unknown", [a.verdict == "unknown" for a in out]),
-        _rate("outside the catalogue, 8 sigma beyond any two effects: called unknown", [a.verdict == "unknown" for a in clear]),
-        _rate("outside the catalogue: adequate under a wrong name", [a.verdict == "missing" and not a.structured for a in out]),
-        _rate("outside the catalogue: a wrong name, with structure said to remain", [a.verdict == "missing" and a.structured for a in out]),
-        _rate("outside the catalogue: not noticed", [a.verdict in ("adequate", "cannot-tell") for a in out]),
-        _rate("outside the catalogue, called unknown: misfit placed on a variable of the hidden formula", placed),
-        _rate("in the catalogue, called unknown", [a.verdict == "unknown" for a in one]),
-        _rate("called unknown: names beside it, no claims", [bool(a.aside) for a in called]),
-        _mean("called unknown: how many names beside it", [len(a.aside) for a in called]),
-        _rate("in the catalogue, called unknown: hidden effect among the names beside it", [_aside(a) for a in known]),
+        rate_row("outside the catalogue: called unknown", [a.verdict == "unknown" for a in out]),
+        rate_row("outside the catalogue, 8 sigma beyond any two effects: called unknown", [a.verdict == "unknown" for a in clear]),
+        rate_row("outside the catalogue: adequate under a wrong name", [a.verdict == "missing" and not a.structured for a in out]),
+        rate_row("outside the catalogue: a wrong name, with structure said to remain", [a.verdict == "missing" and a.structured for a in out]),
+        rate_row("outside the catalogue: not noticed", [a.verdict in ("adequate", "cannot-tell") for a in out]),
+        rate_row("outside the catalogue, called unknown: misfit placed on a variable of the hidden formula", placed),
+        rate_row("in the catalogue, called unknown", [a.verdict == "unknown" for a in one]),
+        rate_row("called unknown: names beside it, no claims", [bool(a.aside) for a in called]),
+        mean_row("called unknown: how many names beside it", [len(a.aside) for a in called]),
+        rate_row("in the catalogue, called unknown: hidden effect among the names beside it", [_aside(a) for a in known]),
     ]
 
 
@@ -125,9 +125,9 @@ def _held_out(one):
     if not ratios:
         return []
     return [
-        _median("held-out error / noise, before", first),
-        _median("held-out error / noise, after the right class", ratios),
-        _rate("held-out error within 1.1 of the noise", [ratio <= 1.1 for ratio in ratios]),
+        median_row("held-out error / noise, before", first),
+        median_row("held-out error / noise, after the right class", ratios),
+        rate_row("held-out error within 1.1 of the noise", [ratio <= 1.1 for ratio in ratios]),
     ]
 
 
@@ -156,7 +156,7 @@ def _calibration(answered):
         inside = [(c, right) for c, right in pairs if low <= c < high]
         if inside:
             stated = float(np.mean([c for c, _ in inside]))
-            row = _rate(f"right when the confidence is {low:g} to {min(high, 1.0):g} (mean {stated:.3f})", [right for _, right in inside])
+            row = rate_row(f"right when the confidence is {low:g} to {min(high, 1.0):g} (mean {stated:.3f})", [right for _, right in inside])
             gap += len(inside) / len(pairs) * abs(row["value"] - stated)
             rows.append(row)
     if pairs:
@@ -164,13 +164,15 @@ def _calibration(answered):
     return rows
 
 
-def _rate(title, outcomes):
+def rate_row(title, outcomes):
+    """A rate with Wilson's interval."""
     count, good = len(outcomes), int(sum(outcomes))
     low, high = interval(good, count)
     return {"measure": title, "value": good / count if count else None, "low": low, "high": high, "n": count, "rate": True}
 
 
-def _mean(title, values):
+def mean_row(title, values):
+    """A mean with 1.96 standard errors."""
     if not values:
         return {"measure": title, "value": None, "n": 0}
     half = 1.96 * float(np.std(values)) / len(values) ** 0.5
@@ -178,5 +180,6 @@ def _mean(title, values):
     return {"measure": title, "value": mean, "low": mean - half, "high": mean + half, "n": len(values)}
 
 
-def _median(title, values):
+def median_row(title, values):
+    """A median."""
     return {"measure": title, "value": float(np.nanmedian(values)), "n": len(values)}

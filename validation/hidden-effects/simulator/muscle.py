@@ -41,19 +41,19 @@ class Muscle:
         """The same muscle on a rig about which nothing is stated."""
         return replace(self, force=Sheet(), pressure=Sheet(), stroke=Sheet())
 
-    def toml(self):
-        """The muscle file."""
-        lines = [f'name = "{self.name}"', f'kind = "{self.kind}"', f"length = {self._sized('length', 1e-3, 'mm')}"]
-        lines.append(f"radius = {self._sized('radius', 1e-3, 'mm')}")
+    def toml(self, exact=False):
+        """The muscle file; `exact` states widths of 0 where there are none: what is stated is true."""
+        lines = [f'name = "{self.name}"', f'kind = "{self.kind}"', f"length = {self._sized('length', 1e-3, 'mm', exact)}"]
+        lines.append(f"radius = {self._sized('radius', 1e-3, 'mm', exact)}")
         if self.fibres is not None:
             lines.append(f"fibres = {self.fibres}")
         if self.fibre_stiffness is not None:
             lines.append(f'fibre = {{ stiffness = "{self.fibre_stiffness / 1e3:.10g} kN", section = "0.1 mm^2" }}')
         if self.kind == "braided":
-            lines.append(f"braid_angle = {self._sized('braid_angle', np.pi / 180.0, 'deg')}")
+            lines.append(f"braid_angle = {self._sized('braid_angle', np.pi / 180.0, 'deg', exact)}")
             lines.append(f'ends = "{self.ends}"')
             if self.wall is not None:
-                lines.append(f'wall = "{self.wall * 1e3:.10g} mm"')
+                lines.append(f"wall = {self._sized('wall', 1e-3, 'mm', exact)}")
         if self.bladder is not None:
             c10, c01 = (value / 1e6 for value in self.bladder)
             lines += ["", "[effects.bladder-elasticity]", f'c10 = "{c10:.10g} MPa"', f'c01 = "{c01:.10g} MPa"']
@@ -63,10 +63,10 @@ class Muscle:
             lines += ["", "[instruments]", *rows]
         return "\n".join(lines) + "\n"
 
-    def _sized(self, name, size, unit):
+    def _sized(self, name, size, unit, exact=False):
         width = self.widths.get(name, 0.0)
         text = f"{getattr(self, name) / size:.10g} {unit}"
-        return f'"{text} +- {width / size:.6g} {unit}"' if width else f'"{text}"'
+        return f'"{text} +- {width / size:.6g} {unit}"' if width or exact else f'"{text}"'
 
 
 def _sheet(sheet, size, unit):

@@ -59,10 +59,21 @@ class Shape:
             end_radius=self.end_radius,
             turn=turn,
             section=section,
-            stiffness=1.0 / self.compliance if self.compliance else None,
+            stiffness=self._fibre(),
             rubber=self._rubber(),
-            cloth=Cloth(*self.cloth) if self.cloth else None,
+            cloth=self._cloth(),
         )
+
+    def lengths(self):
+        """Relative lengths of uneven fibres in units of their standard deviation, and shares: five Gauss-Hermite nodes."""
+        nodes, weights = np.polynomial.hermite_e.hermegauss(5)
+        return nodes, weights / weights.sum()
+
+    def _fibre(self):
+        return 1.0 / self.compliance if self.compliance else None
+
+    def _cloth(self):
+        return Cloth(*self.cloth) if self.cloth else None
 
     def _rubber(self):
         if self.rubber is None:
@@ -157,11 +168,10 @@ def _solved(body, p, length):
 
 
 def _uneven(shape, p, length):
-    """Mean over normally distributed fibre lengths, five Gauss-Hermite nodes: every fibre bulges as it would among its like."""
-    nodes, weights = np.polynomial.hermite_e.hermegauss(5)
+    """Mean over the fibres' lengths: every fibre bulges as it would among its like."""
+    nodes, weights = shape.lengths()
     plain = replace(shape, unevenness=0.0)
     parts = [_solved(plain.body(excess=shape.unevenness * node), p, length) for node in nodes]
-    weights = weights / weights.sum()
     return tuple(sum(w * part[k] for w, part in zip(weights, parts)) for k in range(3))
 
 

@@ -51,7 +51,7 @@ class World:
 
     def changed(self, changes):
         """The same world with some amplitudes replaced."""
-        return World(self.muscle, self.window, self.nature, {**self.amplitudes, **changes})
+        return replace(self, amplitudes={**self.amplitudes, **changes})
 
     def amplitude(self, name):
         """Amplitude of an effect, 0 if it is off."""
@@ -90,24 +90,39 @@ class World:
 
     def force(self, path):
         """Reading of the force sensor along the path [N], without noise."""
-        a, nature = self.amplitude, self.nature
         static = force_map(self.shape(), self.window)
-        pressure = (path.pressure - a("pressure-offset")) / (1.0 + a("pressure-gain"))
         contraction = self._true_contraction(path)
+        pressure = self._true_pressure(path, static, contraction)
+        contraction = self._yielding(static, pressure, contraction)
+        force = self._wall(path, static(pressure, contraction), pressure, contraction)
+        force = force + self._unknown(path, static, force, pressure, contraction)
+        force = force - self._dissipation(path, static, force, pressure, contraction)
+        force = self._later(path, force, pressure)
+        return self._sensor(path, force)
+
+    def _true_pressure(self, path, static, contraction):
+        """From the reading to the pressure that acts on the wall."""
+        a, nature = self.amplitude, self.nature
+        pressure = (path.pressure - a("pressure-offset")) / (1.0 + a("pressure-gain"))
         if a("regulator-lag"):
             volume = np.log(static.volume(pressure, contraction))
             pressure = history.regulated(path, pressure, volume, a("regulator-lag"), ATMOSPHERE)
         if a("pressure-threshold"):
             pressure = pressure - a("pressure-threshold") * -np.expm1(-pressure / nature.threshold_pressure)
-        contraction = self._yielding(static, pressure, contraction)
-        force = static(pressure, contraction)
+        return pressure
+
+    def _wall(self, path, force, pressure, contraction):
+        """The static force with what the wall bears along the axis, and has more of while it is virgin."""
+        a, nature = self.amplitude, self.nature
         if a("stress-softening"):
             force = force + a("stress-softening") * np.exp(-path.travel / nature.conditioning_loops) * self._softens(
                 force, pressure, contraction
             )
-        force = force + a("membrane-axial") * np.log(np.maximum(1.0 - contraction, 0.1))
-        force = force + self._unknown(path, static, force, pressure, contraction)
-        force = force - self._dissipation(path, force, pressure, contraction)
+        return force + a("membrane-axial") * np.log(np.maximum(1.0 - contraction, 0.1))
+
+    def _later(self, path, force, pressure):
+        """What time, warmth and the specimen change."""
+        a, nature = self.amplitude, self.nature
         if a("creep"):
             given = history.relaxed(path, nature.relaxation_times, nature.relaxation_decades)
             force = force - a("creep") * pressure / nature.reference_pressure * given
@@ -116,7 +131,7 @@ class World:
         if a("specimen-spread"):
             factors = np.array(nature.specimen_factors)[(path.specimen - 1) % len(nature.specimen_factors)]
             force = force * (1.0 + a("specimen-spread") * factors)
-        return self._sensor(path, force)
+        return force
 
     def _true_contraction(self, path):
         """From the reading (based on the stated length, shifted and stretched by the sensor) to the muscle's own."""
@@ -151,7 +166,7 @@ class World:
                 total = total + self.amplitude(name) * function(path, force, static.slope(pressure, contraction), pressure)
         return total
 
-    def _dissipation(self, path, force, pressure, contraction):
+    def _dissipation(self, path, static, force, pressure, contraction):
         """All that resists the motion; shortening is resisted by a smaller force."""
         a, nature = self.amplitude, self.nature
         total = 0.0
