@@ -5,11 +5,12 @@ use bulge_numerics::Real;
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
 use crate::mechanism::{Form, Mechanism};
-use crate::unit::{NEWTON, PERCENT_PER_SECOND};
+use crate::unit::{NEWTON, PERCENT, PERCENT_PER_SECOND};
 
-/// `dF = -s (F_c + F_r exp(-(v/v_s)^2))`, v = d eps/dt, s = +1 while shortening, -1 while lengthening.
+/// `dF = -s F_c (1 + r exp(-(v/v_s)^2))`, v = d eps/dt, s = +1 while shortening, -1 while lengthening.
 ///
-/// F_r = F_s - F_c is by how much the friction at the start of a motion exceeds that of a quick one.
+/// r = F_s/F_c - 1 is by how much static friction F_s exceeds that of quick motion. It is a number of the form and no size of its own: where all
+/// speeds are alike, only the product is in the data, and constant friction says as much with less.
 #[derive(Debug)]
 pub(crate) struct StribeckFriction;
 
@@ -23,7 +24,7 @@ impl Effect for StribeckFriction {
             title: "Friction that is larger in slow motion",
             about: "Lubricated guides and seals, and rubber on cloth, hold harder than they slide: the friction is largest where the motion is \
                     slow and falls to its constant value within a speed v_s. A quick loop is narrower than a slow one, and widest near its turns.",
-            equation: "dF = -s (F_c + F_r exp(-(v/v_s)^2)),   v = d eps/dt,   s = +1 while shortening, -1 while lengthening, 0 at rest",
+            equation: "dF = -s F_c (1 + r exp(-(v/v_s)^2)),   v = d eps/dt,   s = +1 while shortening, -1 while lengthening, 0 at rest",
             source: "Stribeck 1902; Gaussian form of Bo and Pavelescu 1982, in Armstrong-Helouvry, Dupont and Canudas de Wit 1994; seals of \
                      pneumatic cylinders: static friction 1.2 to 2 times sliding friction, below some mm/s",
             evidence: Evidence::Literature,
@@ -40,7 +41,7 @@ impl Effect for StribeckFriction {
                 Twin { name: "asymmetric-friction", how: "0.98" },
                 Twin {
                     name: "viscous-damping",
-                    how: "-0.99 beside constant friction, where all speeds are below v_s",
+                    how: "the rise -0.99 beside constant friction, where all speeds are below v_s",
                 },
             ],
             separate: "the same loop at three speeds a factor of ten apart: this one gets narrower with the speed, viscosity wider",
@@ -52,9 +53,16 @@ impl Effect for StribeckFriction {
         vec![
             ParameterCard::new("force", NEWTON, (0.0, 200.0), 12.0, "friction in quick motion")
                 .prior(0.0, 20.0),
-            ParameterCard::new("rise", NEWTON, (0.0, 200.0), 5.0, "by how much it is larger in slow motion")
-                .prior(0.0, 10.0)
-                .plausible(0.0, 100.0),
+            ParameterCard::new(
+                "rise",
+                PERCENT,
+                (10.0, 300.0),
+                50.0,
+                "by how much it is larger in the slowest motion",
+            )
+            .plausible(20.0, 200.0)
+            .off_at(50.0)
+            .logarithmic(),
             // 1 to 10 mm/s of seals is 0.4 to 4 %/s of a muscle of 250 mm.
             ParameterCard::new(
                 "speed",
@@ -72,7 +80,7 @@ impl Effect for StribeckFriction {
     fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
         if let Place::Load(_, force) = place {
             let slow = (-(Jet::from(moment.rate) / theta[2]).squared()).exp();
-            *force = *force - (theta[0] + theta[1] * slow) * moment.direction;
+            *force = *force - theta[0] * (theta[1] * slow + 1.0) * moment.direction;
         }
     }
 }
@@ -83,7 +91,7 @@ mod tests {
     use crate::load::coulomb_friction::CoulombFriction;
     use crate::probe::load;
 
-    const NUMBERS: [f64; 3] = [12.0, 6.0, 0.01];
+    const NUMBERS: [f64; 3] = [12.0, 0.5, 0.01];
 
     #[test]
     fn it_falls_from_static_to_sliding_friction_within_its_speed() {
