@@ -15,3 +15,4 @@ pub(crate) const SECOND: Unit = ("s", 1.0);
 pub(crate) const KILONEWTON_PER_METRE: Unit = ("kN/m", 1e3);
 pub(crate) const NEWTON_PER_METRE: Unit = ("N/m", 1.0);
 pub(crate) const PERCENT_PER_KILONEWTON: Unit = ("%/kN", 1e-5);
+pub(crate) const PERCENT_PER_SECOND: Unit = ("%/s", 0.01);

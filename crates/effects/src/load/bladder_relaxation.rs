@@ -1,12 +1,11 @@
 //! Bladder relaxation: rubber that was stretched by filling or shortening yields within a time.
 
 use bulge_muscles::Kind;
-use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
 use crate::load::filled_bladder::filled;
-use crate::load::standard_linear_solid::mean_decay;
+use crate::load::relaxed::relaxed;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, SECOND};
 
@@ -66,8 +65,7 @@ impl Effect for BladderRelaxation {
             let now = filled(balance, setting);
             let change = if moment.begins { Jet::from(0.0) } else { now - memory[1] };
             memory[1] = now;
-            let over = Jet::from(moment.since) / theta[1];
-            memory[0] = memory[0] * (-over).exp() + mean_decay(over) * change;
+            memory[0] = relaxed(memory[0], change, moment.since, theta[1]);
             *force = *force - theta[0] * memory[0];
         }
     }
@@ -77,6 +75,7 @@ impl Effect for BladderRelaxation {
 mod tests {
     use super::*;
     use crate::probe::{balance, driven};
+    use bulge_numerics::Real;
 
     #[test]
     fn a_quick_filling_is_forgotten_in_a_hold() {

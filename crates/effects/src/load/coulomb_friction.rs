@@ -30,6 +30,7 @@ impl Effect for CoulombFriction {
                 Twin { name: "presliding-hysteresis", how: "0.88: differs only after reversals" },
                 Twin { name: "viscous-damping", how: "0.90 at one speed" },
                 Twin { name: "asymmetric-friction", how: "0.978" },
+                Twin { name: "stribeck-friction", how: "identical at one speed" },
             ],
             separate: "loops with inner reversals; the same loop at a twenty times different speed",
             needs: Needs::Path,

@@ -34,6 +34,7 @@ impl Effect for Creep {
                 Twin { name: "force-drift", how: "in short tests" },
                 Twin { name: "pressure-creep", how: "at one pressure" },
                 Twin { name: "standard-linear-solid", how: "similar in a hold" },
+                Twin { name: "generalised-maxwell", how: "0.95 in a hold, beside a force-offset" },
             ],
             separate: "a hold of three decades of time; the zero of the load cell after it",
             needs: Needs::Time,

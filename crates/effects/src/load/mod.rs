@@ -13,6 +13,7 @@ mod crossing_friction;
 mod fibre_creep;
 mod filled_bladder;
 mod force_friction;
+mod generalised_maxwell;
 mod low_load_slack;
 mod maxwell_slip;
 mod presliding_hysteresis;
@@ -21,9 +22,11 @@ mod pressure_friction;
 mod pressure_presliding;
 mod pressure_threshold;
 mod pressure_viscosity;
+pub(crate) mod relaxed;
 mod self_heating;
 mod standard_linear_solid;
 mod stress_softening;
+mod stribeck_friction;
 mod temperature;
 mod tension_friction;
 mod viscous_damping;
@@ -36,6 +39,7 @@ pub(crate) fn all() -> Vec<Arc<dyn Effect>> {
     vec![
         Arc::new(coulomb_friction::CoulombFriction),
         Arc::new(asymmetric_friction::AsymmetricFriction),
+        Arc::new(stribeck_friction::StribeckFriction),
         Arc::new(pressure_friction::PressureFriction),
         Arc::new(pressure_presliding::PressurePresliding),
         Arc::new(crossing_friction::CrossingFriction),
@@ -53,6 +57,7 @@ pub(crate) fn all() -> Vec<Arc<dyn Effect>> {
         Arc::new(pressure_creep::PressureCreep),
         Arc::new(fibre_creep::FibreCreep),
         Arc::new(standard_linear_solid::StandardLinearSolid),
+        Arc::new(generalised_maxwell::GeneralisedMaxwell),
         Arc::new(stress_softening::StressSoftening),
         Arc::new(pressure_threshold::PressureThreshold),
         Arc::new(temperature::Temperature),

@@ -35,11 +35,15 @@ impl Effect for SelfHeating {
                 shape: "as the bladder's force, settling with the clock",
             },
             twins: &[
-                Twin { name: "temperature", how: "the same where the temperature is measured" },
+                Twin {
+                    name: "temperature",
+                    how: "0.999 where the measured temperature only rises, 0.2 where it goes up and down",
+                },
                 Twin { name: "force-drift", how: "in tests shorter than tau" },
                 Twin { name: "stress-softening", how: "a change of the modulus with cycles instead of time" },
             ],
-            separate: "a thermometer in the closed end; a pause after which the muscle is cold again",
+            separate: "a thermometer in the closed end, in the column `temperature`: what follows it is temperature, what settles with the clock \
+                       while it doesn't is this; a pause after which the muscle is cold again",
             needs: Needs::Time,
         }
     }
@@ -72,6 +76,7 @@ impl Effect for SelfHeating {
 mod tests {
     use super::*;
     use crate::effect::Input;
+    use crate::load::temperature::Temperature;
     use crate::probe::{SETTING, input};
 
     #[test]
@@ -82,6 +87,39 @@ mod tests {
             assert!((found.wall.value() - expected).abs() < 1e-9, "{clock}");
             assert_eq!(found.wall, found.area);
         }
+    }
+
+    #[test]
+    fn a_column_that_goes_up_and_down_is_another_hypothesis() {
+        // The change of the bladder's modulus by the size of each, along an hour.
+        let setting = Setting { has_bladder: true, ..SETTING };
+        let column = |effect: &dyn Effect, theta: &[f64], size: usize, kelvin: &dyn Fn(f64) -> f64| {
+            let theta: Vec<Jet> = theta.iter().map(|value| Jet::variable(*value, 0)).collect();
+            let lanes = |i: usize| if i == size { theta[i] } else { Jet::from(theta[i].value()) };
+            let theta: Vec<Jet> = (0..theta.len()).map(lanes).collect();
+            let row = |i: u32| {
+                let clock = 6.0 * f64::from(i);
+                let moment = Moment { clock, temperature: kelvin(clock), ..Moment::at_rest(2e5, 0.1) };
+                let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
+                effect.act(&moment, &setting, &theta, &mut [], Place::Input(&mut input));
+                input.wall.gradient()[0]
+            };
+            (0..=600).map(row).collect::<Vec<f64>>()
+        };
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let likeness = |kelvin: &dyn Fn(f64) -> f64| {
+            let measured = column(&Temperature, &[0.0, 0.0], 1, kelvin);
+            let of_time = |time: f64| {
+                let own = column(&SelfHeating, &[0.0, time], 0, kelvin);
+                dot(&measured, &own).abs() / (dot(&measured, &measured) * dot(&own, &own)).sqrt()
+            };
+            [30.0, 100.0, 300.0, 600.0, 2e3, 1e4, 1e5].map(of_time).into_iter().fold(0.0, f64::max)
+        };
+        let room = likeness(&|clock| 5.0 * (std::f64::consts::TAU * 1.3 * clock / 3600.0).sin());
+        assert!(room < 0.25, "{room}");
+        // A thermometer in the closed end sees what heats it: one of the two is enough.
+        let closed_end = likeness(&|clock| 10.0 * (1.0 - (-clock / 600.0).exp()));
+        assert!((closed_end - 1.0).abs() < 1e-12, "{closed_end}");
     }
 
     #[test]

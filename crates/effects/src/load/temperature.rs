@@ -33,13 +33,13 @@ impl Effect for Temperature {
             twins: &[
                 Twin {
                     name: "self-heating",
-                    how: "the same where the temperature rises with time and has no sensor",
+                    how: "0.999 where the measured temperature only rises, 0.2 where it goes up and down",
                 },
                 Twin { name: "force-drift", how: "where the temperature rises steadily" },
                 Twin { name: "bladder-elasticity", how: "at one temperature" },
                 Twin { name: "force-gain", how: "at one temperature" },
             ],
-            separate: "the same loop at two room temperatures",
+            separate: "the same loop at two room temperatures, warm, cold and warm again: the muscle's own heat follows the clock instead",
             needs: Needs::Temperature,
         }
     }

@@ -30,6 +30,7 @@ impl Effect for ForceLag {
             kind: None,
             signature: Signature { pressure: "1", parity: Parity::Odd, shape: "-dF/d eps times the speed" },
             twins: &[
+                Twin { name: "force-filter", how: "0.99 where the time is a hundredth of a loop's" },
                 Twin { name: "pressure-viscosity", how: "0.9975 in sine loops (with the other sign)" },
                 Twin { name: "force-friction", how: "-0.99 (PPAM)" },
                 Twin { name: "valve-hysteresis", how: "-0.93 (PPAM)" },

@@ -3,6 +3,7 @@
 mod displacement_gain;
 mod end_slip;
 mod force_drift;
+mod force_filter;
 mod force_gain;
 mod force_lag;
 mod force_nonlinearity;
@@ -48,5 +49,6 @@ pub(crate) fn all() -> Vec<Arc<dyn Effect>> {
         Arc::new(force_gain::ForceGain),
         Arc::new(force_drift::ForceDrift),
         Arc::new(force_offset::ForceOffset),
+        Arc::new(force_filter::ForceFilter),
     ]
 }
