@@ -4,6 +4,7 @@ pub(crate) mod as_set;
 pub(crate) mod averaged;
 pub(crate) mod bending;
 pub(crate) mod candidates;
+pub(crate) mod claim;
 pub(crate) mod classes;
 pub(crate) mod confidence;
 pub(crate) mod confirm;

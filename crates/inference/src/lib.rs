@@ -35,6 +35,7 @@ pub use diagnosis::diagnose::{DiagnoseOptions, diagnose};
 pub use diagnosis::document::*;
 pub use diagnosis::next::NextLimits;
 pub use diagnosis::plan::{ConfusedPair, Plan, PlannedEffect, plan};
+pub use diagnosis::search::MOST_EFFECTS;
 pub use error::InferenceError;
 pub use fit::document::{Convergence, Fit, Fitted};
 pub use fit::extension::{Extension, extended};

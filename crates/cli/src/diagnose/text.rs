@@ -2,8 +2,8 @@
 
 use bulge_inference::{CandidateResult, Diagnosis, LadderStep, Missing, Verdict};
 use bulge_report::diagnosis::{
-    base_name, chance, forms_says, further, headlines, is_significant, noise_says, once_in, others_in_class,
-    remains_says,
+    base_name, bending_says, chance, forms_says, further, headlines, is_significant, noise_says, once_in,
+    others_in_class, remains_says,
 };
 use std::fmt::Write;
 
@@ -107,7 +107,7 @@ fn found(out: &mut String, missing: &Missing, is_claimed: bool) {
         };
         paragraph(out, "    ", &format!("these data cannot tell it from: {}{right}", others.join(", ")));
     }
-    if let Some(says) = forms_says(missing) {
+    for says in [forms_says(missing), bending_says(missing)].into_iter().flatten() {
         paragraph(out, "    ", &says);
     }
     let width = missing.parameters.keys().map(String::len).max().unwrap_or(0);

@@ -10,7 +10,7 @@
 //! ```
 //! No real effect obeys a formula exactly: rubber has two constants, friction rounds off at a turn. What a formula leaves must not be taken for another effect.
 
-use bulge_effects::{Catalogue, Effect, Form, Mechanism, Needs, ParameterCard};
+use bulge_effects::{Catalogue, Effect, Form, Mechanism, Needs, ParameterCard, Stage};
 use bulge_model::{ModelError, Wanted};
 use std::sync::Arc;
 
@@ -28,6 +28,8 @@ const ALONG: f64 = 1.4;
 const DEGREES: [usize; 2] = [4, 2];
 const HELD_WEIGHT: f64 = 1.5;
 const TOTAL: f64 = 4.0;
+/// How much the two strokes may differ, as a part of what may vary along the state.
+const BY_STROKE: f64 = 0.5;
 /// Highest degree over what drives an effect.
 const DRIVEN: usize = 3;
 /// At a turn friction is anything between -s and s, on few rows.
@@ -35,10 +37,10 @@ const AT_TURNS: f64 = 3.0;
 /// Lengths of transitions at turns, as parts of the stroke, and speeds, as parts of the fastest.
 const LENGTHS: [f64; 4] = [0.003, 0.012, 0.05, 0.15];
 const SPEEDS: [f64; 4] = [0.012, 0.04, 0.12, 0.5];
-/// Values of each number that is no size, over what is plausible.
-const FORMS: usize = 6;
-/// Multiples of the sizes at which an effect is looked at that isn't in proportion to them.
-const MULTIPLES: [f64; 4] = [0.4, 0.7, 1.5, 2.5];
+/// Values of each number that is no size, over what is plausible; fewer where each takes new equilibria.
+const FORMS: [usize; 2] = [6, 3];
+/// Multiples of the sizes at which an effect is looked at that isn't in proportion to them, likewise.
+const MULTIPLES: [&[f64]; 2] = [&[0.4, 0.7, 1.5, 2.5], &[0.5, 2.0]];
 /// A change out of proportion that is smaller than this part of the effect is rounding.
 const OUT_OF_PROPORTION: f64 = 1e-3;
 /// Most columns of another member of the family.
@@ -128,6 +130,7 @@ impl Bent<'_> {
         let mut columns: Vec<(Kind, Vec<f64>)> = Vec::new();
         columns.extend(self.along_state(&change).into_iter().map(|column| (Kind::State, column)));
         columns.extend(self.along_drive(&change).into_iter().map(|column| (Kind::Drive, column)));
+        columns.extend(self.at_another_zero(&change, off.as_deref()).map(|column| (Kind::Drive, column)));
         columns.extend(self.at_turns(&change).into_iter().map(|column| (Kind::Turn, column)));
         columns.extend(self.of_kin(&change, off.as_deref()).into_iter().map(|column| (Kind::Kin, column)));
         columns.retain(|(_, column)| column.iter().all(|c| c.is_finite()) && dot(column, column) > 0.0);
@@ -202,6 +205,11 @@ impl Bent<'_> {
                 times(&|row| weight * chebyshev(*i, x[row]) * chebyshev(*j, y[row]))
             })
             .collect();
+        if matches!(self.effect.card().mechanism, Mechanism::DryFriction | Mechanism::Rate) {
+            // The two strokes may differ.
+            let branch: Vec<f64> = set.moments().iter().map(bulge_effects::Moment::branch).collect();
+            columns.extend((0..=1).map(|i| times(&|row| BY_STROKE * branch[row] * chebyshev(i, x[row]))));
+        }
         if matches!(self.effect.card().needs, Needs::Time | Needs::Cycles | Needs::PressurePath) {
             let clock = scaled(set, |m| m.clock);
             columns.extend((1..=2).map(|i| times(&|row| chebyshev(i, clock[row]) / ALONG)));
@@ -231,6 +239,13 @@ impl Bent<'_> {
             change.iter().zip(&drive).map(|(s, x)| weight * s * chebyshev(i, *x)).collect()
         };
         (1..=DRIVEN).map(column).collect()
+    }
+
+    /// Another temperature at which there is no change: the change of a gain, of the size of the effect.
+    fn at_another_zero(&self, change: &[f64], off: Option<&[f64]>) -> Option<Vec<f64>> {
+        let off = off.filter(|_| self.effect.card().needs == Needs::Temperature)?;
+        let scale = (dot(change, change) / dot(off, off).max(f64::MIN_POSITIVE)).sqrt();
+        Some(off.iter().map(|force| scale * force).collect())
     }
 
     /// Friction alone has layers at turns.
@@ -263,13 +278,14 @@ impl Bent<'_> {
         let less = |force: Vec<f64>, part: f64| -> Vec<f64> {
             force.iter().zip(off).zip(change).map(|((f, off), s)| f - off - part * s).collect()
         };
+        let is_shape = usize::from(self.effect.card().stage == Stage::Shape);
         let mut done: Vec<&str> = Vec::new();
         for number in numbers.iter().filter(|number| number.off.is_none()) {
             if done.contains(&number.card.name) {
                 continue;
             }
             done.push(number.card.name);
-            for value in spread(&number.card, FORMS) {
+            for value in spread(&number.card, FORMS[is_shape]) {
                 let mut theta = self.theta.to_vec();
                 for other in numbers.iter().filter(|other| other.card.name == number.card.name) {
                     theta[other.index] = value;
@@ -277,15 +293,15 @@ impl Bent<'_> {
                 columns.extend(self.force(&theta).map(|force| less(force, 0.0)));
             }
         }
-        for part in MULTIPLES {
+        for part in MULTIPLES[is_shape] {
             let mut theta = self.theta.to_vec();
             for number in &numbers {
                 let Some(zero) = number.off else { continue };
-                let value = zero + part * (theta[number.index] - zero);
+                let value = zero + *part * (theta[number.index] - zero);
                 theta[number.index] = value.clamp(number.card.low, number.card.high);
             }
             let Ok(force) = self.force(&theta) else { continue };
-            let column = less(force, part);
+            let column = less(force, *part);
             if dot(&column, &column) > (OUT_OF_PROPORTION * part).powi(2) * dot(change, change) {
                 columns.push(column);
             }
@@ -306,8 +322,7 @@ impl Bent<'_> {
         if members.is_empty() {
             return Vec::new();
         }
-        let found =
-            Showings::of(self.catalogue, Some(&members), self.prepared, self.theta, self.tangent);
+        let found = Showings::of(self.catalogue, Some(&members), self.prepared, self.theta, self.tangent);
         let mut columns = Vec::new();
         for member in 0..found.effects.len() {
             let own: Vec<&Vec<f64>> =

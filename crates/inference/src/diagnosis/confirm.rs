@@ -229,7 +229,7 @@ impl Given<'_> {
         let Some((minimum, theta)) = best else {
             return Err(first_error.unwrap_or(ModelError::Values { given: 0, expected: 1 }));
         };
-        let form = self.form_error(&prepared, &theta)?;
+        let form = self.form_error(&prepared, &theta)?.in_short();
         let penalty = penalty(&prepared, &theta);
         let log_evidence = log_evidence(&prepared, &theta, &minimum) + form.log_evidence - penalty;
         // At a kink as at a stationary point: lower by what counts it doesn't get.

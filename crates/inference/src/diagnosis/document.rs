@@ -1,5 +1,6 @@
 //! A diagnosis as a value: everything that text, JSON and report show.
 
+use bulge_effects::Mechanism;
 use bulge_measurements::Reading;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -113,12 +114,22 @@ pub struct Missing {
     pub effect: String,
     /// The effect whose numbers these are, as `--with` takes it. It is `effect`, but for friction that was fitted with a transition too short to matter.
     pub fitted: String,
-    /// All effects that these data can't tell from it, itself first; members of a family under the family's name.
+    /// The family of which it is a member.
+    pub family: String,
+    /// The mechanism, in the words of [`bulge_effects::Mechanism`].
+    pub mechanism: Mechanism,
+    /// All effects that these data can't tell from it, itself first: the head of its family, and of each other family the best.
     pub class: Vec<String>,
     /// Others of its own family that these data can't tell from it: forms of one mechanism.
     pub forms: Vec<String>,
-    /// How often such a claim is right on data like these.
+    /// How much the data bend its formula; none where the formula is exact.
+    pub form_error: Option<FormErrorResult>,
+    /// How often such a claim names the right family on data like these.
     pub confidence: f64,
+    /// How often it names the right mechanism.
+    pub confidence_mechanism: f64,
+    /// How often it names the right form, which is this very effect.
+    pub confidence_form: f64,
     /// The same with its interval, and how often the class holds the right one.
     pub simulated: Confidence,
     /// Its numbers with 95 % intervals.
@@ -129,6 +140,53 @@ pub struct Missing {
     pub detectability: f64,
     /// Rivals, with how far they are.
     pub rivals: Vec<RivalResult>,
+}
+
+/// How much the data bend the formula of an effect.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FormErrorResult {
+    /// Part of the effect by which it is bent, in units of the noise; 0 where the formula holds.
+    pub share: f64,
+    /// RMS of what is added to the formula \[N\].
+    pub rms_n: f64,
+    /// Where that is largest; none where the formula holds.
+    pub r#where: Option<FormErrorAt>,
+    /// The effect by its formula, and as the data want it: curves to plot; none where the formula holds.
+    pub curves: Vec<BentCurve>,
+}
+
+/// The place of the largest form error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FormErrorAt {
+    /// Pressure \[Pa\].
+    pub pressure_pa: f64,
+    /// Contraction.
+    pub contraction: f64,
+    /// +1 shortening, -1 lengthening, 0 at rest.
+    pub direction: f64,
+    /// What the effect changes there by its formula \[N\].
+    pub formula_n: f64,
+    /// What the data add to that \[N\].
+    pub bending_n: f64,
+    /// Its standard deviation \[N\].
+    pub sd_n: f64,
+}
+
+/// An effect over contraction, at one pressure and in one direction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BentCurve {
+    /// Mean pressure of the level \[Pa\].
+    pub pressure_pa: f64,
+    /// +1 shortening, -1 lengthening, 0 at rest.
+    pub direction: f64,
+    /// Bin centres.
+    pub contraction: Vec<f64>,
+    /// What the effect changes by its formula \[N\].
+    pub formula_n: Vec<f64>,
+    /// What it changes as the data want it \[N\].
+    pub bent_n: Vec<f64>,
+    /// Standard deviation of that about the formula \[N\].
+    pub sd_n: Vec<f64>,
 }
 
 /// A number of an effect.

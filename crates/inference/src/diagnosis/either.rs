@@ -82,5 +82,8 @@ fn noise_of_base(
 /// Whether a smooth misfit that nobody thought of is less likely than none, though a test is surprised by it.
 fn is_chance(search: &Search) -> bool {
     let [only] = &search.stages[..] else { return false };
-    !only.adequate && !only.scene.smooth.is_empty() && smooth_evidence(&only.scene) <= 0.0
+    !only.adequate
+        && !only.adequacy.fit_fails
+        && !only.scene.smooth.is_empty()
+        && smooth_evidence(&only.scene) <= 0.0
 }

@@ -4,7 +4,8 @@ use bulge_model::Record;
 
 use crate::comparison::levels::Levels;
 use crate::comparison::residuals::bin;
-use crate::diagnosis::document::{ExplainedCurve, ExplainedStep, SurfaceCurve};
+use crate::diagnosis::document::{BentCurve, ExplainedCurve, ExplainedStep, SurfaceCurve};
+use crate::diagnosis::form_error::Bent;
 use crate::diagnosis::scene::Scene;
 use crate::dot::dot;
 
@@ -64,6 +65,24 @@ pub(crate) fn explained(effect: &str, record: &Record, before: &[f64], after: &[
         explained_n: cells.iter().map(|c| mean(&c.rows, |row| after[row] - before[row])).collect(),
     };
     ExplainedStep { effect: effect.to_owned(), curves: curves(&cells).map(curve).collect() }
+}
+
+/// An effect by its formula, and as the data bend it.
+pub(crate) fn bent_curves(record: &Record, bent: &Bent) -> Vec<BentCurve> {
+    let levels = Levels::of(record, &vec![true; record.len()]);
+    let cells = cells(record, &levels);
+    let curve = |cells: &[Cell]| {
+        let of = |value: &dyn Fn(usize) -> f64| cells.iter().map(|cell| mean(&cell.rows, value)).collect();
+        BentCurve {
+            pressure_pa: levels.mean[cells[0].level],
+            direction: cells[0].direction,
+            contraction: cells.iter().map(|cell| cell.contraction).collect(),
+            formula_n: of(&|row| bent.change[row]),
+            bent_n: of(&|row| bent.change[row] + bent.bending[row]),
+            sd_n: of(&|row| bent.sd_n[row]),
+        }
+    };
+    curves(&cells).map(curve).collect()
 }
 
 /// The systematic misfit that a model leaves: the smooth functions that it can't follow, with their standard deviation.

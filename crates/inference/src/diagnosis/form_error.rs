@@ -21,6 +21,8 @@ const LEVELS: [(f64, f64); 5] = [(0.0, 0.5), (0.05, 0.12), (0.1, 0.15), (0.2, 0.
 const ROUNDS: usize = 2;
 /// An effect that is bent by a larger part of it is another effect.
 const MOST_BENT: f64 = 0.4;
+/// So is one that is bent by more newtons than it has (RMS): where the noise is nearly alike in many rows, newtons may weigh little.
+const MOST_BENT_RAW: f64 = 1.0;
 /// A direction in which form errors move the readings by a smaller part of their variance says nothing.
 const NOTHING: f64 = 0.01;
 
@@ -32,6 +34,18 @@ pub(crate) struct Bent {
     pub(crate) sd: [f64; 4],
     /// How much of the effect is bent: |S c|/|K^-1/2 s|.
     pub(crate) part: f64,
+    /// What the effect changes by its formula \[N\].
+    pub(crate) change: Vec<f64>,
+    /// What the data add to that \[N\], and its standard deviation.
+    pub(crate) bending: Vec<f64>,
+    pub(crate) sd_n: Vec<f64>,
+}
+
+impl Bent {
+    /// Standard deviation of any of its form errors.
+    pub(crate) fn may_bend(&self) -> bool {
+        self.sd.iter().any(|sd| *sd > 0.0)
+    }
 }
 
 /// The form errors of a model.
@@ -47,6 +61,8 @@ pub(crate) struct FormError {
 /// A form error of one standard deviation in a principal direction.
 #[derive(Debug, Clone)]
 pub(crate) struct FormDirection {
+    /// What it changes in each of the effects \[N\].
+    by_effect: Vec<Vec<f64>>,
     /// What it changes \[N\].
     pub(crate) values: Vec<f64>,
     /// The same whitened, outside of the model's tangents; those of several directions are orthogonal to each other.
@@ -59,6 +75,10 @@ struct Columns {
     of: Vec<(usize, usize)>,
     gram: DMatrix<f64>,
     along: DVector<f64>,
+    /// The same of the columns in newtons.
+    raw_gram: DMatrix<f64>,
+    /// Lengths of the effects, whitened and in newtons.
+    lengths: Vec<[f64; 2]>,
 }
 
 impl Columns {
@@ -79,27 +99,45 @@ impl Columns {
         Some((inner.cholesky()?, right))
     }
 
-    /// Log evidence, fall of the square of the misfit, and how much each effect is bent.
-    fn evidence(&self, sds: &[[f64; 4]], lengths: &[f64]) -> Option<(f64, f64, Vec<f64>)> {
+    /// Log evidence, fall of the square of the misfit, and how much each effect is bent; none if one is bent by more than an effect may be.
+    fn evidence(&self, sds: &[[f64; 4]]) -> Option<(f64, f64, Vec<f64>)> {
         let chosen = self.chosen(sds);
-        let prior = |sd: f64| LEVELS.iter().find(|(level, _)| (level - sd).abs() < 1e-12).map_or(0.0, |l| (l.1 / LEVELS[0].1).ln());
+        let prior = |sd: f64| {
+            let level = LEVELS.iter().find(|(level, _)| (level - sd).abs() < 1e-12);
+            level.map_or(0.0, |level| (level.1 / LEVELS[0].1).ln())
+        };
         let mut log: f64 = sds.iter().flatten().map(|sd| prior(*sd)).sum();
         let (factor, right) = self.solved(&chosen)?;
         let c = factor.solve(&right);
         let fall = right.dot(&c);
         log += 0.5 * fall - factor.l_dirty().diagonal().iter().map(|d| d.ln()).sum::<f64>();
-        let bent = |effect: usize| {
+        let bent = |effect: usize, gram: &DMatrix<f64>| {
             let own: Vec<usize> = (0..chosen.len()).filter(|i| self.of[chosen[*i].0].0 == effect).collect();
             let pull = |i: usize| c[i] * chosen[i].1;
             let square: f64 = own
                 .iter()
                 .flat_map(|i| own.iter().map(move |j| (*i, *j)))
-                .map(|(i, j)| pull(i) * pull(j) * self.gram[(chosen[i].0, chosen[j].0)])
+                .map(|(i, j)| pull(i) * pull(j) * gram[(chosen[i].0, chosen[j].0)])
                 .sum();
-            square.max(0.0).sqrt() / lengths[effect].max(f64::MIN_POSITIVE)
+            square.max(0.0).sqrt()
         };
-        Some((log, fall, (0..lengths.len()).map(bent).collect()))
+        let parts = |gram: &DMatrix<f64>, of: usize| -> Vec<f64> {
+            let part = |effect: usize| bent(effect, gram) / self.lengths[effect][of].max(f64::MIN_POSITIVE);
+            (0..self.lengths.len()).map(part).collect()
+        };
+        let seen = parts(&self.gram, 0);
+        let is_itself = |parts: &[f64], most: f64| parts.iter().all(|part| *part <= most);
+        let allowed = is_itself(&seen, MOST_BENT) && is_itself(&parts(&self.raw_gram, 1), MOST_BENT_RAW);
+        allowed.then_some((log, fall, seen))
     }
+}
+
+/// All products of columns with each other.
+fn gram(columns: &[&[f64]]) -> DMatrix<f64> {
+    let half = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
+        if i <= j { dot(columns[i], columns[j]) } else { 0.0 }
+    });
+    DMatrix::from_fn(columns.len(), columns.len(), |i, j| half[(i.min(j), i.max(j))])
 }
 
 impl FormError {
@@ -116,7 +154,7 @@ impl FormError {
         let mut lengths = Vec::new();
         for (effect, bending) in bendings.iter().enumerate() {
             let length = norm(&whiten(&bending.change));
-            lengths.push(length);
+            lengths.push([length, norm(&bending.change)]);
             for (kind, column) in &bending.columns {
                 let mut seen = whiten(column);
                 let scale =
@@ -131,12 +169,12 @@ impl FormError {
             return (Self::default(), Vec::new());
         }
         let left = space.outside(misfit);
-        let gram = DMatrix::from_fn(white.len(), white.len(), |i, j| {
-            if i <= j { dot(&white[i], &white[j]) } else { 0.0 }
-        });
-        let gram = DMatrix::from_fn(white.len(), white.len(), |i, j| gram[(i.min(j), i.max(j))]);
+        let scaled: Vec<Vec<f64>> =
+            raw.iter().map(|(column, scale)| column.iter().map(|v| v * scale).collect()).collect();
+        let raw_gram = gram(&scaled.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        let gram = gram(&white.iter().map(Vec::as_slice).collect::<Vec<_>>());
         let along = DVector::from_fn(white.len(), |i, _| dot(&white[i], &left));
-        let columns = Columns { of, gram, along };
+        let columns = Columns { of, gram, along, raw_gram, lengths };
         let mut sds = vec![[0.0; 4]; bendings.len()];
         let mut best = (0.0, 0.0, vec![0.0; bendings.len()]);
         for _ in 0..ROUNDS {
@@ -150,8 +188,8 @@ impl FormError {
                     let mut kept = sds[effect][kind as usize];
                     for (level, _) in LEVELS.iter().filter(|(level, _)| *level <= largest) {
                         sds[effect][kind as usize] = *level;
-                        let Some(found) = columns.evidence(&sds, &lengths) else { continue };
-                        if found.0 > best.0 && found.2.iter().all(|part| *part <= MOST_BENT) {
+                        let Some(found) = columns.evidence(&sds) else { continue };
+                        if found.0 > best.0 {
                             (best, kept) = (found, *level);
                         }
                     }
@@ -163,14 +201,65 @@ impl FormError {
             }
         }
         let (log_evidence, fall, parts) = best;
-        let effects = bendings
-            .iter()
-            .zip(&sds)
-            .zip(parts)
-            .map(|((bending, sd), part)| Bent { effect: Arc::clone(&bending.effect), sd: *sd, part })
+        let effects = bendings.iter().zip(&sds).zip(parts);
+        let directions = columns.directions(&white, &raw, &sds);
+        let effects = effects
+            .map(|((bending, sd), part)| {
+                let (effect, change) = (Arc::clone(&bending.effect), bending.change.clone());
+                Bent { effect, sd: *sd, part, change, bending: Vec::new(), sd_n: Vec::new() }
+            })
             .collect();
-        (Self { log_evidence, fall, effects }, columns.directions(&white, &raw, &sds))
+        (Self { log_evidence, fall, effects }, directions)
     }
+
+    /// The same with what the data add to the formulas, row by row; `misfit` is whitened, `tangents` are orthonormal columns of the model's numbers \[N\] and whitened.
+    pub(crate) fn row_by_row(
+        mut self,
+        directions: &[FormDirection],
+        misfit: &[f64],
+        tangents: &[(Vec<f64>, Vec<f64>)],
+        whiten: &dyn Fn(&[f64]) -> Vec<f64>,
+    ) -> Self {
+        for (place, effect) in self.effects.iter_mut().enumerate().filter(|(_, effect)| effect.may_bend()) {
+            (effect.bending, effect.sd_n) = bent(directions, place, misfit, tangents, whiten);
+        }
+        self
+    }
+
+    /// The same without what it is row by row.
+    pub(crate) fn in_short(mut self) -> Self {
+        for effect in &mut self.effects {
+            (effect.change, effect.bending, effect.sd_n) = (Vec::new(), Vec::new(), Vec::new());
+        }
+        self
+    }
+}
+
+/// By how much the data bend one effect in each row, and the standard deviation: the coordinates of the directions are independent, c = t'z/(1 + |t|^2) with the variance
+/// 1/(1 + |t|^2). What the model's own numbers can do, `tangents` \[N\] and whitened and orthonormal, is no bending.
+fn bent(
+    directions: &[FormDirection],
+    effect: usize,
+    misfit: &[f64],
+    tangents: &[(Vec<f64>, Vec<f64>)],
+    whiten: &dyn Fn(&[f64]) -> Vec<f64>,
+) -> (Vec<f64>, Vec<f64>) {
+    let rows = directions.first().map_or(0, |direction| direction.values.len());
+    let (mut sum, mut square) = (vec![0.0; rows], vec![0.0; rows]);
+    for direction in directions {
+        let own = 1.0 + dot(&direction.white, &direction.white);
+        let c = dot(&direction.white, misfit) / own;
+        let mut values = direction.by_effect[effect].clone();
+        let white = whiten(&values);
+        for (raw, unit) in tangents {
+            add(&mut values, -dot(&white, unit), raw);
+        }
+        for ((sum, square), value) in sum.iter_mut().zip(&mut square).zip(&values) {
+            *sum += c * value;
+            *square += value * value / own;
+        }
+    }
+    (sum, square.into_iter().map(f64::sqrt).collect())
 }
 
 impl Columns {
@@ -187,13 +276,15 @@ impl Columns {
         let seen = (0..k).filter(|j| found.eigenvalues[*j] > NOTHING);
         seen.map(|j| {
             let mut values = vec![0.0; raw[0].0.len()];
+            let mut by_effect = vec![vec![0.0; values.len()]; sds.len()];
             let mut sum = vec![0.0; white[0].len()];
             for (place, (i, sd)) in chosen.iter().enumerate() {
                 let part = sd * found.eigenvectors[(place, j)];
                 add(&mut sum, part, &white[*i]);
                 add(&mut values, part * raw[*i].1, raw[*i].0);
+                add(&mut by_effect[self.of[*i].0], part * raw[*i].1, raw[*i].0);
             }
-            FormDirection { values, white: sum }
+            FormDirection { by_effect, values, white: sum }
         })
         .collect()
     }
@@ -202,5 +293,139 @@ impl Columns {
 fn add(sum: &mut [f64], part: f64, column: &[f64]) {
     for (total, value) in sum.iter_mut().zip(column) {
         *total += part * value;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::Catalogue;
+    use bulge_numerics::Random;
+
+    const ROWS: usize = 60;
+
+    fn columns(seed: u64, count: usize) -> Vec<Vec<f64>> {
+        let mut random = Random::new(seed, 0);
+        (0..count).map(|_| (0..ROWS).map(|_| random.normal()).collect()).collect()
+    }
+
+    fn bending(name: &str, kinds: &[Kind], seed: u64, size: f64) -> Bending {
+        let effect = Arc::clone(Catalogue::builtin().find(name).unwrap());
+        let change: Vec<f64> = columns(seed + 100, 1).remove(0).iter().map(|v| size * v).collect();
+        let made = columns(seed, kinds.len());
+        let own = kinds.iter().zip(made);
+        let columns = own.map(|(kind, c)| (*kind, c.iter().map(|v| 0.5 * size * v).collect())).collect();
+        Bending { effect, change, columns }
+    }
+
+    /// ln N(z; 0, 1 + B D^2 B') - ln N(z; 0, 1) outside of the tangents, by the dense matrix.
+    fn dense(white: &[Vec<f64>], sds: &[f64], z: &[f64]) -> f64 {
+        let n = z.len();
+        let covariance = DMatrix::from_fn(n, n, |i, j| {
+            let sum: f64 = white.iter().zip(sds).map(|(c, sd)| sd * sd * c[i] * c[j]).sum();
+            sum + f64::from(u8::from(i == j))
+        });
+        let factor = covariance.cholesky().unwrap();
+        let z = DVector::from_column_slice(z);
+        let log_determinant = 2.0 * factor.l().diagonal().iter().map(|d| d.ln()).sum::<f64>();
+        0.5 * (z.dot(&z) - z.dot(&factor.solve(&z))) - 0.5 * log_determinant
+    }
+
+    #[test]
+    fn evidence_and_fall_are_those_of_the_dense_covariance() {
+        let tangents = columns(1, 3);
+        let space = Space::without(&tangents);
+        let bent = bending("coulomb-friction", &[Kind::State, Kind::State, Kind::Turn], 5, 30.0);
+        // Bent by the first and the third column, and noise.
+        let mut misfit = columns(9, 1).remove(0);
+        for ((value, a), c) in misfit.iter_mut().zip(&bent.columns[0].1).zip(&bent.columns[2].1) {
+            *value += 0.2 * a - 0.15 * c;
+        }
+        let same = |column: &[f64]| column.to_vec();
+        let (found, directions) = FormError::of(std::slice::from_ref(&bent), &space, &misfit, &same);
+        let sd = found.effects[0].sd;
+        assert!(sd[Kind::State as usize] > 0.0 && sd[Kind::Turn as usize] > 0.0, "{sd:?}");
+        let white: Vec<Vec<f64>> = bent.columns.iter().map(|(_, c)| space.outside(c)).collect();
+        let own: Vec<f64> = bent.columns.iter().map(|(kind, _)| sd[*kind as usize]).collect();
+        let prior =
+            |sd: f64| (LEVELS.iter().find(|level| (level.0 - sd).abs() < 1e-12).unwrap().1 / 0.5).ln();
+        let expected =
+            dense(&white, &own, &space.outside(&misfit)) + sd.iter().map(|sd| prior(*sd)).sum::<f64>();
+        assert!((found.log_evidence - expected).abs() < 1e-9, "{} {expected}", found.log_evidence);
+        // No other levels are likelier.
+        for state in LEVELS {
+            for turn in LEVELS {
+                let own: Vec<f64> = bent
+                    .columns
+                    .iter()
+                    .map(|(kind, _)| if *kind == Kind::State { state.0 } else { turn.0 })
+                    .collect();
+                let other = dense(&white, &own, &space.outside(&misfit)) + prior(state.0) + prior(turn.0);
+                assert!(other <= expected + 1e-9 || found.effects[0].part > 0.3, "{state:?} {turn:?}");
+            }
+        }
+        // As further tangents the directions take away what the form errors do.
+        let whole: f64 = dot(&space.outside(&misfit), &space.outside(&misfit));
+        let mut beside = space.clone();
+        beside.leave_out(&directions.iter().map(|d| &d.white[..]).collect::<Vec<_>>());
+        let mut longer = misfit.clone();
+        longer.resize(ROWS + directions.len(), 0.0);
+        let left = beside.outside(&longer);
+        assert!((whole - dot(&left, &left) - found.fall).abs() < 1e-6 * found.fall, "{}", found.fall);
+        assert!(found.effects[0].part > 0.05 && found.effects[0].part < MOST_BENT);
+    }
+
+    #[test]
+    fn a_formula_that_holds_is_not_bent_and_an_exact_one_never() {
+        let space = Space::without(&columns(1, 3));
+        let same = |column: &[f64]| column.to_vec();
+        let noise = columns(9, 1).remove(0);
+        let loose = bending("coulomb-friction", &[Kind::State, Kind::Turn, Kind::Kin], 5, 30.0);
+        let (found, directions) = FormError::of(std::slice::from_ref(&loose), &space, &noise, &same);
+        assert!(found.log_evidence.abs() < 1e-12 && found.fall.abs() < 1e-12 && directions.is_empty());
+        let mut misfit = noise;
+        for (value, c) in misfit.iter_mut().zip(&loose.columns[0].1) {
+            *value += 0.3 * c;
+        }
+        let exact = Bending { effect: Arc::clone(Catalogue::builtin().find("force-gain").unwrap()), ..loose };
+        let (found, directions) = FormError::of(&[exact], &space, &misfit, &same);
+        assert!(found.log_evidence.abs() < 1e-12 && directions.is_empty());
+    }
+
+    #[test]
+    fn what_is_bent_by_more_than_its_part_is_another_effect() {
+        let space = Space::without(&[]);
+        let same = |column: &[f64]| column.to_vec();
+        let loose = bending("coulomb-friction", &[Kind::State], 5, 30.0);
+        let mut misfit = columns(9, 1).remove(0);
+        for (value, c) in misfit.iter_mut().zip(&loose.columns[0].1) {
+            *value += 2.0 * c;
+        }
+        let (found, _) = FormError::of(&[loose], &space, &misfit, &same);
+        assert!(found.effects[0].part <= MOST_BENT && found.effects[0].sd == [0.0; 4]);
+    }
+
+    #[test]
+    fn the_bending_is_drawn_as_it_is_and_without_what_the_numbers_can_do() {
+        let raw = columns(1, 1).remove(0);
+        let length = norm(&raw);
+        let unit: Vec<f64> = raw.iter().map(|v| v / length).collect();
+        let space = Space::without(std::slice::from_ref(&raw));
+        let same = |column: &[f64]| column.to_vec();
+        let loose = bending("coulomb-friction", &[Kind::State], 5, 300.0);
+        let column = loose.columns[0].1.clone();
+        let mut misfit = columns(9, 1).remove(0);
+        for ((value, c), t) in misfit.iter_mut().zip(&column).zip(&raw) {
+            *value += 0.1 * c + 7.0 * t;
+        }
+        let (found, directions) = FormError::of(&[loose], &space, &misfit, &same);
+        let found = found.row_by_row(&directions, &misfit, &[(unit.clone(), unit.clone())], &same);
+        let expected = space.outside(&column);
+        let bent = &found.effects[0];
+        for ((b, e), sd) in bent.bending.iter().zip(&expected).zip(&bent.sd_n) {
+            // 0.1 with the standard deviation of one number: 1/|column|.
+            assert!((b - 0.1 * e).abs() < 4.0 * e.abs() / norm(&expected) + 1e-9, "{b} {e}");
+            assert!((sd - e.abs() / norm(&expected)).abs() < 0.02 * sd + 1e-12, "{sd}");
+        }
     }
 }

@@ -168,7 +168,12 @@ impl Given<'_> {
         let (form, bent) = self.bent(prepared, theta, &linearised, &space);
         space.leave_out(&bent.iter().map(|direction| &direction.white[..]).collect::<Vec<_>>());
         let priors = linearised.priors + bent.len();
-        let directions: Vec<Vec<f64>> = bent.iter().map(|direction| direction.values.clone()).collect();
+        let whiten = |column: &[f64]| self.white(column, linearised.priors);
+        let mut known: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+        for (raw, white) in linearised.tangent.columns.iter().zip(&linearised.white) {
+            known.extend(orthogonal(raw.clone(), white.clone(), &known));
+        }
+        let form = form.row_by_row(&bent, &linearised.misfit, &known, &whiten);
         let whiten = |column: &[f64]| self.white(column, priors);
         linearised.misfit.resize(self.record.len() + priors, 0.0);
         let tangent = linearised.tangent;
@@ -177,20 +182,31 @@ impl Given<'_> {
         let smooth = if self.only.is_some() {
             Vec::new()
         } else {
-            let own = tangent.columns.into_iter().zip(linearised.white).map(|(raw, mut white)| {
+            for (_, white) in &mut known {
                 white.resize(self.record.len() + priors, 0.0);
-                (raw, white)
-            });
-            let bent = bent.into_iter().enumerate().map(|(place, direction)| {
+            }
+            for (place, direction) in bent.iter().enumerate() {
                 let mut white = whiten(&direction.values);
                 white[self.record.len() + linearised.priors + place] = 1.0;
-                (direction.values, white)
-            });
-            self.directions(own.chain(bent), &mut space, &whiten)
+                known.extend(orthogonal(direction.values.clone(), white, &known));
+            }
+            self.directions(known, &mut space, &whiten)
         };
+        let directions = bent.into_iter().map(|direction| direction.values).collect();
         let z = space.coordinates(&linearised.misfit);
         let offsets = self.offsets(&space, &whiten);
-        Ok(Scene { showings, candidates, smooth, space, offsets, priors, form, bent: directions, z, force: tangent.force })
+        Ok(Scene {
+            showings,
+            candidates,
+            smooth,
+            space,
+            offsets,
+            priors,
+            form,
+            bent: directions,
+            z,
+            force: tangent.force,
+        })
     }
 
     fn offsets(&self, space: &Space, whiten: &dyn Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
@@ -205,21 +221,16 @@ impl Given<'_> {
         self.record.sweeps().iter().map(of).collect()
     }
 
-    /// Smooth functions, the smoothest first, each without those before it and without what the model's own numbers and form errors can do; `own` are the columns of
-    /// those \[N\], and the same whitened.
+    /// Smooth functions, the smoothest first, each without those before it and without what the model's own numbers and form errors can do: `known`, orthonormal
+    /// columns \[N\] and whitened.
     fn directions(
         &self,
-        own: impl Iterator<Item = (Vec<f64>, Vec<f64>)>,
+        mut known: Vec<(Vec<f64>, Vec<f64>)>,
         space: &mut Space,
         whiten: &dyn Fn(&[f64]) -> Vec<f64>,
     ) -> Vec<Direction> {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of rows")]
         let most = (PART * self.record.len() as f64) as usize;
-        // White units with the functions that they are made of.
-        let mut known: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
-        for (raw, white) in own {
-            known.extend(orthogonal(raw, white, &known));
-        }
         let mut found: Vec<Direction> = Vec::new();
         let doubtful = self.doubtful();
         for function in smooth(self.record) {

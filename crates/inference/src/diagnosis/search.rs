@@ -22,13 +22,21 @@ const EXPLAINED: f64 = 0.01;
 pub(crate) const WORTH: [f64; 2] = [-2.0, 0.0];
 /// Log evidence of something that nobody thought of, before any data.
 const SOMETHING_ELSE: f64 = -2.0;
+/// Part of what form errors bring that doesn't count when hypotheses are put in order: of two that explain as much the one whose formula is nearer.
+const BY_BENDING: f64 = 0.1;
+/// Part of what a model explains that no comparison with something else rests on: no formula, however bent, is nearer to a real effect.
+const DIGITS: f64 = 0.002;
 /// Log evidence of form errors from which another effect is looked for that makes them superfluous, and what it must bring.
 const BENT: f64 = 4.0;
 const SUPERFLUOUS: f64 = 3.0;
+/// Part of the log evidence of form errors that another effect may leave to make them superfluous.
+const LESS_BENT: f64 = 0.5;
+/// Readings scatter about a model if the mean square of their misfit is that many standard deviations beyond 1, and larger than this.
+const SCATTERS: [f64; 2] = [6.0, 1.5];
 /// Part of what a model explains that a further effect must explain where the formulas of the model may be wrong: what explains less mends a formula.
-const MENDS: f64 = 0.01;
+const MENDS: f64 = 0.02;
 /// Effects that are added at most: a misfit that takes more is one that the catalogue doesn't hold.
-const MOST_EFFECTS: usize = 3;
+pub const MOST_EFFECTS: usize = 3;
 /// Hypotheses whose linear evidence is this much below the best are not fitted.
 const FITTED: f64 = 12.0;
 /// A fall of the square of the misfit beyond which tangents say little: then usual numbers are starts too, and the best of each kind are fitted.
@@ -77,6 +85,8 @@ pub(crate) struct Adequacy {
     names: bool,
     /// How often chance alone gives as much: the screen, the smooth test.
     pub(crate) chance: [f64; 2],
+    /// Whether the readings scatter about the model by much more than the noise does, in whatever way.
+    pub(crate) fit_fails: bool,
 }
 
 impl Adequacy {
@@ -89,7 +99,7 @@ impl Adequacy {
     }
 
     pub(crate) fn holds(&self) -> bool {
-        !self.screen_fails() && !self.smooth_fails()
+        !self.screen_fails() && !self.smooth_fails() && !self.fit_fails
     }
 }
 
@@ -127,6 +137,11 @@ impl Stage {
     fn value_over(&self, other: &Self) -> f64 {
         let own = |stage: &Self| stage.confirmed.log_evidence + stage.confirmed.penalty;
         own(self) - own(other) + self.something_else()
+    }
+
+    /// Log evidence that the last digits of a formula are worth, where a smooth misfit follows them and the formula doesn't.
+    fn digits_over(&self, base: &Self) -> f64 {
+        0.5 * DIGITS * (base.confirmed.bent_cost() - self.confirmed.bent_cost()).max(0.0)
     }
 
     /// How much more than chance the misfit scatters over the smooth functions, as a ratio of variances: 1 if the model explains the data.
@@ -199,11 +214,27 @@ impl Given<'_> {
     ) -> Result<Stage, ModelError> {
         let scene = self.scene(&confirmed.prepared, &confirmed.theta)?;
         let (null, chance) = scene.chance(self);
-        let adequacy = Adequacy { null, names: !added.is_empty(), chance };
+        let fit_fails = self.scatters(&confirmed);
+        let adequacy = Adequacy { null, names: !added.is_empty(), chance, fit_fails };
         let is_small =
             || self.tolerance_n.is_some_and(|tolerance| misfit(&scene, self.seed).1[1] <= tolerance);
-        let adequate = adequacy.holds() || is_small();
+        // A test may be surprised by what no smooth misfit explains: that is no structure.
+        let is_chance = || {
+            !added.is_empty()
+                && !adequacy.screen_fails()
+                && !fit_fails
+                && SOMETHING_ELSE + smooth_evidence(&scene) <= 0.0
+        };
+        let adequate = adequacy.holds() || is_small() || is_chance();
         Ok(Stage { added, confirmed, scene, adequate, adequacy, tried: Vec::new() })
+    }
+
+    /// Whether readings scatter about a model by much more than their noise.
+    fn scatters(&self, confirmed: &Confirmed) -> bool {
+        let rows = self.record.len() as f64;
+        let ratio = confirmed.bent_cost() / rows;
+        let sd = (2.0 / rows + 2.0 / self.law.degrees_of_freedom.max(1.0)).sqrt();
+        ratio > (1.0 + SCATTERS[0] * sd).max(SCATTERS[1])
     }
 
     /// From the base model to the set of effects that explains the data, or to where nothing more helps.
@@ -233,37 +264,25 @@ impl Given<'_> {
             }
             again = false;
             let ranked = ranked(&stages[stages.len() - 1].tried);
-            if std::env::var_os("TRACE").is_some() {
-                let stage = &stages[stages.len() - 1];
-                eprintln!("STAGE {:?} adequate {} chance {:?} cost {:.1} bent {:.1} form {:.1} excess {:.1} else {:.1}", names(stage.added.iter()), stage.adequate, stage.adequacy.chance, stage.confirmed.cost(), stage.confirmed.bent_cost(), stage.confirmed.form.log_evidence, stage.excess(), stage.something_else());
-                for b in &stage.confirmed.form.effects { eprintln!("   bent {} sd {:?} part {:.3}", b.effect.card().name, b.sd, b.part); }
-                for (t, c) in &ranked {
-                    let n: Vec<_> = t.hypothesis.effects.iter().map(|i| stage.scene.showings.effects[*i].effect.card().name).collect();
-                    eprintln!("   try {:?} lin {:.1} logZ {:.1} cost {:.1} bent {:.1} form {:.1} {}", n, t.hypothesis.log_evidence, t.log_evidence, c.cost(), c.bent_cost(), c.form.log_evidence, c.form.effects.iter().map(|b| format!("{:?} {:.2}", b.sd, b.part)).collect::<Vec<_>>().join("; "));
-                }
-            }
             let next = ranked.into_iter().find_map(|(best, confirmed)| self.step(&stages, best, confirmed));
+            let next = next.map(|next| self.one_of(&stages, next));
             let stage = &stages[stages.len() - 1];
-            let Some((next, stands_out)) = next else {
+            let Some((next, stands_out, worth)) = next else {
                 // The screen alone, and no effect that is worth its price: chance.
-                let is_chance = !stage.adequacy.smooth_fails();
+                let is_chance = !stage.adequacy.smooth_fails() && !stage.adequacy.fit_fails;
                 if let Some(stage) = stages.last_mut() {
                     stage.adequate |= is_chance;
                 }
                 break;
             };
             let replaces_bending = || {
-                next.adequate
-                    && next.confirmed.log_evidence > stage.confirmed.log_evidence + SUPERFLUOUS
-                    && next.confirmed.form.log_evidence < stage.confirmed.form.log_evidence
+                let [bent, left] = [stage, &next].map(|stage| stage.confirmed.form.log_evidence);
+                next.adequate && worth > SUPERFLUOUS && left < LESS_BENT * bent
             };
             if stage.adequate && !replaces_bending() {
                 break;
             }
-            if std::env::var_os("TRACE").is_some() {
-                eprintln!(" -> {:?} adequate {} else {:.1} value {:.1} vs else {:.1} stands {}", names(next.added.iter()), next.adequate, next.something_else(), next.value_over(stage), stage.something_else(), stands_out);
-            }
-            if stage.something_else() > next.value_over(stage) {
+            if stage.something_else() > next.value_over(stage) + next.digits_over(&stages[0]) {
                 something_else = Some(stages.len() - 1);
                 if !stage.added.is_empty() {
                     break;
@@ -296,7 +315,7 @@ impl Given<'_> {
 
     /// The stage that a hypothesis leads to from the last of `stages`, and whether the step stands out of what remains; none if it isn't worth its price, or nothing
     /// can be seen from there.
-    fn step(&self, stages: &[Stage], tried: &Tried, confirmed: &Confirmed) -> Option<(Stage, bool)> {
+    fn step(&self, stages: &[Stage], tried: &Tried, confirmed: &Confirmed) -> Option<(Stage, bool, f64)> {
         let (base, stage) = (stages.first()?, stages.last()?);
         let worth = WORTH[usize::from(!stage.added.is_empty())];
         let effects = &stage.scene.showings.effects;
@@ -310,9 +329,7 @@ impl Given<'_> {
             let explained = base.confirmed.bent_cost() - first.bent_cost();
             may_bend(&first.prepared) && first.bent_cost() - confirmed.bent_cost() < MENDS * explained
         };
-        let member = |one: &&Tried| {
-            matches!(&one.hypothesis.effects[..], [only] if new.len() > 1 && tried.hypothesis.effects.contains(only))
-        };
+        let member = |one: &&Tried| matches!(&one.hypothesis.effects[..], [only] if new.len() > 1 && tried.hypothesis.effects.contains(only));
         let alone = stage.tried.iter().filter(member).filter_map(|one| one.confirmed.as_ref());
         if alone.into_iter().any(mends) || !stage.added.is_empty() && mends(&stage.confirmed) {
             return None;
@@ -322,7 +339,32 @@ impl Given<'_> {
         let next = self.stage(added, confirmed.clone()).ok()?;
         // Where something unknown remains, its scatter counts as noise: a step must stand out of that too.
         let stands_out = tempered(tried.log_evidence, gain, next.scatter()) > worth;
-        Some((next, stands_out))
+        Some((next, stands_out, tried.log_evidence))
+    }
+
+    /// Of a pair its better half, where something that nobody thought of does on top of it as well as the other half.
+    fn one_of(&self, stages: &[Stage], pair: (Stage, bool, f64)) -> (Stage, bool, f64) {
+        let Some(stage) = stages.last().filter(|stage| pair.0.added.len() == stage.added.len() + 2) else {
+            return pair;
+        };
+        let effects = &stage.scene.showings.effects;
+        let is_half = |tried: &&Tried| {
+            let [only] = &tried.hypothesis.effects[..] else { return false };
+            let name = effects[*only].effect.card().name;
+            tried.confirmed.is_some() && pair.0.added.iter().any(|effect| effect.card().name == name)
+        };
+        let halves = stage.tried.iter().filter(is_half);
+        let best = halves.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
+        let half = best.and_then(|half| self.step(stages, half, half.confirmed.as_ref()?));
+        let margin = stages.first().map_or(0.0, |base| pair.0.digits_over(base));
+        match half {
+            Some(half)
+                if half.0.adequate || half.0.value_over(stage) > pair.0.value_over(stage) - PAIR + margin =>
+            {
+                half
+            }
+            _ => pair,
+        }
     }
 
     /// The best hypotheses of a stage with so much `room` for further effects, each fitted.
@@ -410,13 +452,13 @@ fn lower(one: Option<Confirmed>, other: Option<Confirmed>) -> Option<Confirmed> 
     }
 }
 
-/// Hypotheses that could be fitted, the best first; a pair counts for less, so that it is only taken if it is clearly better than a single effect.
+/// Hypotheses that could be fitted, the best first; a pair counts for less, so that it is only taken if it is clearly better than a single effect, and so does what
+/// is won by bending formulas.
 fn ranked(tried: &[Tried]) -> Vec<(&Tried, &Confirmed)> {
     let mut list: Vec<(&Tried, &Confirmed)> =
         tried.iter().filter_map(|t| Some((t, t.confirmed.as_ref()?))).collect();
-    let lambda: f64 = std::env::var("LAMBDA").ok().and_then(|v| v.parse().ok()).unwrap_or(0.1);
     let worth = |(t, c): &(&Tried, &Confirmed)| {
-        t.log_evidence - PAIR * (t.hypothesis.effects.len() as f64 - 1.0) - lambda * c.form.log_evidence
+        t.log_evidence - PAIR * (t.hypothesis.effects.len() as f64 - 1.0) - BY_BENDING * c.form.log_evidence
     };
     list.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     list

@@ -339,6 +339,31 @@ mod tests {
     }
 
     #[test]
+    fn ways_are_counted_from_and_to_reversals() {
+        let at = |i: usize| {
+            let place = [0.0, 1.0, 2.0, 3.0, 4.0, 3.0, 2.0, 1.0][i % 8];
+            let direction = if i % 8 < 5 { 1.0 } else { -1.0 };
+            let step = if i % 8 == 0 { 0.0 } else { direction * 0.01 };
+            Moment { direction, step, begins: i % 8 == 0, ..Moment::at_rest(2e5, 0.01 * place) }
+        };
+        let moments: Vec<Moment> = (0..16).map(at).collect();
+        let record = Record::from_moments(moments, vec![0.0; 16], vec![0..8, 8..16]).unwrap();
+        let [since, next, begun] = ways_to_reversals(&record);
+        // The stroke is 0.04. At row 5 it has turned: the way is that since the turn.
+        for sweep in [0, 8] {
+            assert_eq!([since[sweep + 5], next[sweep + 4], begun[sweep]], [0.0; 3]);
+            for i in 0..3 {
+                let way = 0.25 * i as f64;
+                assert!((since[sweep + 5 + i] - way).abs() < 1e-12, "{since:?}");
+                assert!((next[sweep + 4 - i] - way).abs() < 1e-12, "{next:?}");
+                assert!((begun[sweep + i] - way).abs() < 1e-12, "{begun:?}");
+            }
+            assert!(since[sweep..sweep + 5].iter().chain(&next[sweep + 5..sweep + 8]).all(|way| *way >= 1.0));
+            assert!(begun[sweep + 5..sweep + 8].iter().all(|way| way.is_infinite()));
+        }
+    }
+
+    #[test]
     fn at_a_single_length_nothing_depends_on_the_contraction() {
         let moments: Vec<Moment> = (0..30).map(|i| Moment::at_rest(1e5 + 1e4 * f64::from(i), 0.02)).collect();
         let record = Record::from_moments(moments, vec![0.0; 30], std::iter::once(0..30).collect()).unwrap();

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::comparison::document::Comparison;
+use crate::diagnosis::claim::{Levels, form_error};
 use crate::diagnosis::classes::{Class, Rival};
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::document::{
@@ -18,7 +19,7 @@ use crate::diagnosis::hints::hints;
 use crate::diagnosis::misfit::{located, misfit};
 use crate::diagnosis::plan::SEEN;
 use crate::diagnosis::scene::Given;
-use crate::diagnosis::search::{Search, Stage, singles};
+use crate::diagnosis::search::{MOST_EFFECTS, Search, Stage, singles};
 use crate::dot::dot;
 use crate::fit::interval;
 use crate::fit::problem::{FitProblem, free};
@@ -33,6 +34,8 @@ const SHORT: f64 = 0.025;
 /// Part of the square of the misfit that may be left where effects are named though something remains.
 const FORWARD: f64 = 0.02;
 
+/// Log evidence of a structure that is left below which it takes nothing away from what is named.
+const WEAK: f64 = 20.0;
 /// Part of the log evidence of the effects that their formulas must bring as they are: with less the claim rests on the form errors.
 const EXACT: f64 = 0.75;
 
@@ -180,7 +183,7 @@ impl Findings<'_> {
                 ),
             );
         }
-        let most = last.excess() < FORWARD * self.search.stages[0].excess();
+        let most = last.excess() < FORWARD * self.search.stages[0].excess() || last.something_else() < WEAK;
         let most = most && !bent && self.search.something_else != Some(0);
         let (sound, odd): (Vec<_>, Vec<_>) =
             last.added.iter().partition(|effect| self.plausible(effect.card().name));
@@ -196,8 +199,13 @@ impl Findings<'_> {
                     listed(odd)
                 )
             };
+            let further = if last.added.len() < MOST_EFFECTS {
+                "that no further effect explains"
+            } else {
+                "after three effects, where the search stops: accept them and ask again"
+            };
             let says = format!(
-                "missing: {}; {beside} most of the misfit, and {size} of structure remain that no further effect explains",
+                "missing: {}; {beside} most of the misfit, and {size} of structure remain {further}",
                 listed(sound)
             );
             return (Verdict::Missing, says);
@@ -274,22 +282,31 @@ impl Findings<'_> {
 
     fn missing(&self, class: &Class, sure: Confidence) -> Missing {
         let name = self.label(&class.effect);
-        let own = class.effect.card().family.to_owned();
+        let card = class.effect.card();
+        let own = card.family.to_owned();
         let mut names = vec![name.clone()];
-        if name != class.effect.card().name {
+        if name != own {
             names.push(own.clone());
         }
-        let fitted = class.effect.card().name.to_owned();
+        let fitted = card.name.to_owned();
+        let mut near: Vec<&Rival> = class.rivals.iter().filter(|rival| rival.in_class).collect();
+        near.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         let mut forms = Vec::new();
-        for rival in class.rivals.iter().filter(|rival| rival.in_class) {
+        let mut families = vec![card.family];
+        for rival in near {
             let card = rival.effect.card();
-            let family = card.family.to_owned();
-            if family == own {
-                forms.push(card.name.to_owned());
-            } else if !names.contains(&family) {
-                names.push(family);
+            if card.family == own {
+                if !names.iter().any(|name| name == card.name) {
+                    forms.push(card.name.to_owned());
+                }
+            } else if !families.contains(&card.family) {
+                families.push(card.family);
+                names.push(card.name.to_owned());
             }
         }
+        let levels = Levels::of(class, &sure, self.classes.len());
+        let bent = &self.last().scene.form.effects;
+        let bent = bent.iter().find(|bent| bent.effect.card().name == card.name);
         let mut rivals: Vec<RivalResult> =
             class.rivals.iter().map(|rival| rival_result(rival, class)).collect();
         rivals.sort_by(|a, b| a.behind.total_cmp(&b.behind));
@@ -297,7 +314,12 @@ impl Findings<'_> {
             class: names,
             fitted,
             forms,
-            confidence: sure.named,
+            family: own,
+            mechanism: card.mechanism,
+            form_error: bent.map(|bent| form_error(self.given.record, bent)),
+            confidence: levels.family,
+            confidence_mechanism: levels.mechanism,
+            confidence_form: levels.form,
             simulated: sure,
             parameters: self.parameters(&class.effect),
             plausible: self.plausible(class.effect.card().name),

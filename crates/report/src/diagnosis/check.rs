@@ -36,6 +36,15 @@ pub(super) fn check(diagnosis: &Diagnosis) -> Result<(), PlotError> {
         let values = lists.into_iter().chain([&curve.contraction]).flatten().copied();
         finite("what an effect explains", values.chain([curve.pressure_pa]))?;
     }
+    for error in diagnosis.added().filter_map(|missing| missing.form_error.as_ref()) {
+        finite("a form error", [error.share, error.rms_n].into_iter())?;
+        for curve in &error.curves {
+            let lists = [&curve.formula_n, &curve.bent_n, &curve.sd_n];
+            lengths("values of a bent effect", curve.contraction.len(), &lists.map(Vec::len))?;
+            let values = lists.into_iter().chain([&curve.contraction]).flatten().copied();
+            finite("a bent effect", values.chain([curve.pressure_pa]))?;
+        }
+    }
     for curve in &diagnosis.remaining.surface {
         let lists = [&curve.misfit_n, &curve.sd_n];
         lengths("values of the misfit that remains", curve.contraction.len(), &lists.map(Vec::len))?;

@@ -1,12 +1,14 @@
 //! The verdict in plain words.
 
-use bulge_inference::{Diagnosis, Missing, Verdict};
+use bulge_inference::{Diagnosis, MOST_EFFECTS, Missing, Remaining, Verdict};
 
-use crate::comparison::number::newton;
+use crate::comparison::number::{newton, three};
 use crate::diagnosis::words::chance;
 
 /// Words after which two sentences are about the same.
 const ALIKE: usize = 4;
+/// By how much a mechanism is surer than a family for both to be said.
+const SURER: f64 = 0.05;
 /// What a verdict that names effects begins with.
 const MISSING: &str = "missing: ";
 /// What a diagnosis without a verdict may begin with.
@@ -26,8 +28,19 @@ const TOO_FEW: &str = "these data are too few or too noisy for a verdict";
 #[must_use]
 pub fn headlines(diagnosis: &Diagnosis) -> Vec<String> {
     let claim = |missing: &Missing| {
-        let right = chance(missing.confidence);
-        format!("{MISSING}{} (on data like these such a claim is right {right} of the time)", missing.effect)
+        let (right, mechanism) = (chance(missing.confidence), missing.mechanism.name());
+        let right = if missing.simulated.claims == 0 {
+            format!("by the weight of the evidence right {right} of the time, not simulated")
+        } else {
+            format!("on data like these such a claim is right {right} of the time")
+        };
+        let surer = missing.confidence_mechanism - missing.confidence;
+        let of_mechanism = if surer > SURER {
+            format!(", that it is {mechanism} {}", chance(missing.confidence_mechanism))
+        } else {
+            String::new()
+        };
+        format!("{MISSING}{} ({mechanism}; {right}{of_mechanism})", missing.effect)
     };
     let nearest = |why: &str| -> Vec<String> {
         diagnosis.nearest.iter().map(|missing| format!("nearest: {} ({why})", missing.effect)).collect()
@@ -37,10 +50,14 @@ pub fn headlines(diagnosis: &Diagnosis) -> Vec<String> {
             let mut lines: Vec<String> = diagnosis.missing.iter().map(claim).collect();
             lines.extend(nearest("its numbers are implausible: it stands in for something else"));
             if diagnosis.remaining.structured {
-                let size = newton(diagnosis.remaining.misfit_n);
-                lines.push(format!(
-                    "remains: a structure of {size} that no other effect of the catalogue explains"
-                ));
+                let what = if diagnosis.added().count() < MOST_EFFECTS {
+                    "that no other effect of the catalogue explains".to_owned()
+                } else {
+                    format!(
+                        "after {MOST_EFFECTS} effects, where the search stops: accept them with `--with` and ask again"
+                    )
+                };
+                lines.push(format!("remains: a structure of {} {what}", structure(&diagnosis.remaining)));
             }
             return lines;
         }
@@ -51,6 +68,15 @@ pub fn headlines(diagnosis: &Diagnosis) -> Vec<String> {
     let own = diagnosis.says.trim();
     let says = if opens_alike(own, says) { own } else { says };
     std::iter::once(format!("{verdict}: {says}")).chain(rest).collect()
+}
+
+/// How large a structure is: where it can't be told from none, how large it may be at most.
+fn structure(remaining: &Remaining) -> String {
+    if remaining.misfit_n > 0.0 {
+        newton(remaining.misfit_n)
+    } else {
+        format!("at most {}", newton(remaining.misfit_interval_n[1]))
+    }
 }
 
 /// The sentence of the diagnosis, as far as it says more than [`headlines`] do.
@@ -82,6 +108,24 @@ pub fn forms_says(missing: &Missing) -> Option<String> {
         .then(|| format!("other forms of it, not told apart here: {}", missing.forms.join(", ")));
     let parts: Vec<String> = fitted.into_iter().chain(others).collect();
     (!parts.is_empty()).then(|| parts.join("; "))
+}
+
+/// How much the data bend the formula of a missing effect; none where it is exact.
+#[must_use]
+pub fn bending_says(missing: &Missing) -> Option<String> {
+    let error = missing.form_error.as_ref()?;
+    let Some(at) = error.r#where else {
+        return Some("its formula holds as it is".to_owned());
+    };
+    Some(format!(
+        "these data bend its formula by {}: {} RMS, most at {} bar and a contraction of {}, where the formula says {} and the data {}",
+        chance(error.share),
+        newton(error.rms_n),
+        three(at.pressure_pa / 1e5),
+        three(at.contraction),
+        newton(at.formula_n),
+        newton(at.formula_n + at.bending_n),
+    ))
 }
 
 /// Effects that the data can't tell from a missing one, without itself.

@@ -7,6 +7,7 @@
 //! ```
 //! Numbers come from the diagnosis alone: nothing is fitted or predicted here. A misfit is measured - model throughout.
 
+mod bent;
 mod candidates;
 mod check;
 mod explained;
@@ -26,7 +27,7 @@ use bulge_inference::Diagnosis;
 use crate::PlotError;
 use crate::comparison::Plot;
 
-pub use headline::{forms_says, further, headlines, others_in_class};
+pub use headline::{bending_says, forms_says, further, headlines, others_in_class};
 pub use next::{NextDocument, NextStep};
 pub use words::{base_name, chance, found_by, is_significant, noise_says, once_in, remains_says};
 
@@ -64,6 +65,7 @@ pub fn plots(diagnosis: &Diagnosis) -> Result<Vec<Plot>, PlotError> {
     let mut plots: Vec<Plot> = Vec::new();
     plots.extend(steps::plot(diagnosis)?);
     plots.extend(explained::plots(diagnosis)?);
+    plots.extend(bent::with_sentences(diagnosis)?.into_iter().map(|(plot, _)| plot));
     plots.extend(candidates::plot(diagnosis)?);
     plots.extend(rivals::plot(diagnosis)?);
     plots.extend(located::plot(diagnosis)?);

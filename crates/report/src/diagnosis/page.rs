@@ -9,8 +9,8 @@ use crate::comparison::number::{and, count, newton, three};
 use crate::comparison::page::{Figure, filled, model_and_measurement};
 use crate::comparison::wording::sentence;
 use crate::diagnosis::{
-    candidates, chance, explained, forms_says, further, headlines, limits, located, noise_says,
-    others_in_class, remaining, remains_says, rivals, steps, words,
+    bending_says, bent, candidates, chance, explained, forms_says, further, headlines, limits, located,
+    noise_says, others_in_class, remaining, remains_says, rivals, steps, words,
 };
 use crate::interval::with_interval;
 
@@ -19,7 +19,7 @@ use crate::interval::with_interval;
 struct Found<'a> {
     effect: &'a str,
     class: String,
-    forms: Option<String>,
+    forms: Vec<String>,
     /// Whether no other effect explains the data as well.
     is_alone: bool,
     detectability: String,
@@ -46,6 +46,7 @@ struct Page<'a> {
     steps_says: String,
     rungs: Vec<steps::Row>,
     explained: Vec<Figure>,
+    bent: Vec<Figure>,
     explained_says: String,
     candidates: Option<Figure>,
     candidates_says: String,
@@ -80,6 +81,7 @@ pub(super) fn render(diagnosis: &Diagnosis) -> Result<String, PlotError> {
 fn page(diagnosis: &Diagnosis) -> Result<Page<'_>, PlotError> {
     let figure = |plot: Option<Plot>| plot.map(|plot| Figure::new(plot, String::new()));
     let explained = explained::with_sentences(diagnosis)?;
+    let bent = bent::with_sentences(diagnosis)?;
     let remains = sentence(&remains_says(diagnosis));
     let comparison = steps::with_noise(diagnosis);
     Ok(Page {
@@ -102,6 +104,10 @@ fn page(diagnosis: &Diagnosis) -> Result<Page<'_>, PlotError> {
         rungs: steps::rows(diagnosis),
         explained_says: explained_says(diagnosis, explained.len()),
         explained: explained.into_iter().map(|(plot, says)| Figure::new(plot, says)).collect(),
+        bent: bent
+            .into_iter()
+            .map(|(plot, says)| Figure::new(plot, format!("{}.", sentence(&says))))
+            .collect(),
         candidates: figure(candidates::plot(diagnosis)?),
         candidates_says: candidates::says(diagnosis),
         untested: candidates::untested(diagnosis),
@@ -149,7 +155,11 @@ fn found(missing: &Missing, verdict: Verdict) -> Found<'_> {
         effect: &missing.effect,
         class: and(&others),
         is_alone: others.is_empty() && missing.forms.is_empty(),
-        forms: forms_says(missing).map(|says| sentence(&says)),
+        forms: [forms_says(missing), bending_says(missing)]
+            .into_iter()
+            .flatten()
+            .map(|says| sentence(&says))
+            .collect(),
         detectability: three(missing.detectability),
         right: if verdict == Verdict::Missing { right(missing) } else { String::new() },
         numbers: numbers.collect(),

@@ -1,9 +1,10 @@
 //! Diagnoses to show, one of each verdict, around a comparison.
 
+use bulge_effects::Mechanism;
 use bulge_inference::{
-    CandidateResult, Comparison, Confidence, CorrelationTime, DiagnosedData, DiagnosedNoise, Diagnosis,
-    ExplainedCurve, ExplainedStep, LadderStep, Located, Missing, NextExperiment, NoiseLaw, NoiseSource,
-    ParameterResult, Remaining, RivalResult, SurfaceCurve, Verdict,
+    BentCurve, CandidateResult, Comparison, Confidence, CorrelationTime, DiagnosedData, DiagnosedNoise,
+    Diagnosis, ExplainedCurve, ExplainedStep, FormErrorAt, FormErrorResult, LadderStep, Located, Missing,
+    NextExperiment, NoiseLaw, NoiseSource, ParameterResult, Remaining, RivalResult, SurfaceCurve, Verdict,
 };
 
 /// Rubber and friction are missing; the second and third rungs of the comparison.
@@ -125,7 +126,12 @@ fn bladder() -> Missing {
         fitted: "bladder-elasticity".to_owned(),
         forms: vec!["bladder-c01".to_owned()],
         class: ["bladder-elasticity", "wall-thickness"].map(str::to_owned).to_vec(),
+        family: "bladder-elasticity".to_owned(),
+        mechanism: Mechanism::Rubber,
+        form_error: Some(bent()),
         confidence: 0.97,
+        confidence_mechanism: 0.98,
+        confidence_form: 0.9,
         simulated: Confidence { named: 0.97, class: 0.99, interval: [0.95, 0.98], claims: 400 },
         parameters: [("modulus".to_owned(), number(0.31, "MPa", 0.28, 0.33))].into(),
         plausible: true,
@@ -135,13 +141,38 @@ fn bladder() -> Missing {
     }
 }
 
+fn bent() -> FormErrorResult {
+    let at = FormErrorAt {
+        pressure_pa: 2e5,
+        contraction: 0.2,
+        direction: 1.0,
+        formula_n: 40.0,
+        bending_n: -4.0,
+        sd_n: 0.5,
+    };
+    let curve = BentCurve {
+        pressure_pa: 2e5,
+        direction: 1.0,
+        contraction: vec![0.1, 0.2],
+        formula_n: vec![20.0, 40.0],
+        bent_n: vec![20.5, 36.0],
+        sd_n: vec![0.3, 0.5],
+    };
+    FormErrorResult { share: 0.08, rms_n: 2.3, r#where: Some(at), curves: vec![curve] }
+}
+
 fn friction() -> Missing {
     Missing {
         effect: "coulomb-friction".to_owned(),
         fitted: "bouc-wen".to_owned(),
         forms: Vec::new(),
         class: vec!["coulomb-friction".to_owned()],
+        family: "coulomb-friction".to_owned(),
+        mechanism: Mechanism::DryFriction,
+        form_error: Some(FormErrorResult { share: 0.0, rms_n: 0.0, r#where: None, curves: Vec::new() }),
         confidence: 0.999,
+        confidence_mechanism: 0.999,
+        confidence_form: 0.9,
         simulated: Confidence { named: 0.999, class: 1.0, interval: [0.0, 1.0], claims: 0 },
         parameters: [("friction".to_owned(), number(14.0, "N", 8.0, 20.0))].into(),
         plausible: false,
