@@ -13,7 +13,7 @@ use bulge_muscles::{Muscle, from_toml};
 use std::fmt::Write;
 use std::sync::Arc;
 
-const BRAID: &str = "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"cylinder\"\n";
+const BRAID: &str = "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm +- 0\"\nradius = \"10 mm +- 0\"\nbraid_angle = \"25 deg +- 0\"\nends = \"cylinder\"\n";
 
 fn muscle(more: &str) -> Muscle {
     from_toml(&format!("{BRAID}{more}\n"), "m.toml").unwrap()

@@ -30,10 +30,11 @@ impl Analysis<'_> {
             let without = rung.without_state.as_ref();
             warnings.extend(without.map(|w| without_state(rung.added.as_deref().unwrap_or("base"), w)));
         }
-        let used = |p: Parameter| matches!(p, Parameter::Length | Parameter::Radius | Parameter::BraidAngle);
-        for (parameter, _) in self.muscle.widths().iter().filter(|(p, _)| !used(*p)) {
+        use Parameter::{BraidAngle, GasWall, Length, Radius, Wall};
+        let used = |p: Parameter| matches!(p, Length | Radius | BraidAngle | Wall | GasWall);
+        for (parameter, _) in self.muscle.widths().iter().filter(|(p, width)| !used(*p) && *width > 0.0) {
             warnings.push(format!(
-                "the width stated for `{}` is not used: only those of length, radius and braid angle are",
+                "the width stated for `{}` is not used: only those of length, radius, braid angle and wall are",
                 parameter.key()
             ));
         }

@@ -117,7 +117,7 @@ pub fn plan(
     let (muscle, specimens) = &protocol.specimens_of(muscle)?;
     let model = known_model(muscle, known, specimens)?;
     let prepared = with_nuisances(&model, catalogue)?;
-    let theta = prepared.model.start();
+    let theta = prepared.start();
     let planned = Planned::of(&prepared.model, &theta, protocol)?;
     let given = planned.given(catalogue);
     let scene = given.scene(&prepared, &theta)?;
