@@ -510,13 +510,40 @@ fn a_radius_that_is_off_is_no_effect_of_the_material() {
     assert!((moved.value - 10.7).abs() < 0.1 && moved.sd.unwrap() < 0.1, "{moved:?}");
     assert!((moved.widths - (moved.value - 10.0) / 0.3).abs() < 1e-9);
     assert!(geometry.as_stated_rmse_n.unwrap() > 10.0 * found.noise.sd_n, "{geometry:?}");
-    assert!(geometry.says.contains("radius 10.00 mm +- 0.30") && geometry.says.contains("by default"), "{}", geometry.says);
+    assert!(
+        geometry.says.contains("radius 10.00 mm +- 0.30") && geometry.says.contains("by default"),
+        "{}",
+        geometry.says
+    );
     // With a radius that is exact another answer comes out, and the sentence says so.
     let exact = geometry.if_exact.as_ref().unwrap();
     assert!(exact.differs && geometry.says.contains("were they exact"), "{geometry:?}");
-    let stated = of_catalogue(&truth, &[], &[("250 mm", "250 mm +- 0"), ("10 mm", "10 mm +- 0"), ("25 deg", "25 deg +- 0"), ("1.8 mm", "1.8 mm +- 0")]);
+    let stated = of_catalogue(
+        &truth,
+        &[],
+        &[
+            ("250 mm", "250 mm +- 0"),
+            ("10 mm", "10 mm +- 0"),
+            ("25 deg", "25 deg +- 0"),
+            ("1.8 mm", "1.8 mm +- 0"),
+        ],
+    );
     assert_eq!((stated.verdict, names(&stated).len()), (exact.verdict, exact.missing.len()));
-    assert!(stated.geometry.doubtful.is_empty() && stated.geometry.if_exact.is_none(), "{:?}", stated.geometry);
+    assert!(
+        stated.geometry.doubtful.is_empty() && stated.geometry.if_exact.is_none(),
+        "{:?}",
+        stated.geometry
+    );
+}
+
+#[test]
+fn a_radius_that_no_such_muscle_has_is_no_doubt() {
+    let found = of_catalogue(&BRAID.replace("10 mm", "12 mm"), &[], &[]);
+    let other = found.geometry.if_doubtful.as_ref().unwrap();
+    assert!(found.geometry.if_exact.is_none(), "{:?}", found.geometry);
+    assert!(found.geometry.says.contains("so all is taken as stated"), "{}", found.geometry.says);
+    assert!(found.verdict == Verdict::Missing && names(&found).contains(&"radius-error"), "{}", found.says);
+    assert_eq!(other.differs, other.verdict != found.verdict || other.missing != names(&found));
 }
 
 #[test]
@@ -526,9 +553,13 @@ fn rubber_is_found_where_no_wall_is_stated() {
     assert!(missing.effect == "bladder-elasticity", "{}", found.says);
     let modulus = &missing.parameters["modulus"];
     // 0.3 MPa in 1.8 mm are 540 N/m: in the wall of 1 mm that was assumed, 0.54 MPa.
-    assert_eq!(found.geometry.assumed[0].value, 1.0);
+    assert!((found.geometry.assumed[0].value - 1.0).abs() < 1e-12);
     assert!((modulus.value / 0.54 - 1.0).abs() < 0.05, "{modulus:?}");
-    assert!(found.geometry.says.contains("c10 x t = 5") && found.geometry.says.contains("wall t isn't stated"), "{}", found.geometry.says);
+    assert!(
+        found.geometry.says.contains("c10 x t = 5") && found.geometry.says.contains("wall t isn't stated"),
+        "{}",
+        found.geometry.says
+    );
 }
 
 #[test]

@@ -137,8 +137,11 @@ impl Learnt {
             if !value.si.is_finite() {
                 return wrong(format!("has `{key}` = {}, which is not finite", value.si));
             }
-            if let Some(width) = value.width.filter(|width| !(width.is_finite() && width.is_sign_positive())) {
-                return wrong(format!("has `{key}` with the width {width}: it must be finite and not negative"));
+            if let Some(width) = value.width.filter(|width| !(width.is_finite() && width.is_sign_positive()))
+            {
+                return wrong(format!(
+                    "has `{key}` with the width {width}: it must be finite and not negative"
+                ));
             }
             if !unit(&value.unit).is_ok_and(|(_, dimension)| dimension == value.dimension) {
                 let (unit, kind) = (shortened(&value.unit), value.dimension.describe());

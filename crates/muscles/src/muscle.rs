@@ -637,7 +637,10 @@ mod tests {
         for parameter in [Parameter::Fibres, Parameter::FittingRadius, Parameter::BraidAngle] {
             assert_eq!(muscle.clone().with_width(parameter, 1e-4), Err(MuscleError::NoWidth { parameter }));
         }
-        assert_eq!(muscle.clone().with_width(Parameter::Length, 0.0).unwrap().width(Parameter::Length), Some(0.0));
+        assert_eq!(
+            muscle.clone().with_width(Parameter::Length, 0.0).unwrap().width(Parameter::Length),
+            Some(0.0)
+        );
         for width in [-1e-4, f64::NAN, f64::INFINITY] {
             assert!(muscle.clone().with_width(Parameter::Length, width).is_err());
         }

@@ -48,7 +48,11 @@ impl Quantity<'_> {
         self.check("prior", value, &mean)?;
         let Some(width) = width.filter(|width| *width > 0.0) else {
             let instead = format!("write `{}`, or leave it out", self.example("prior"));
-            return Err(self.table.error(value.span(), "`prior` has no standard deviation greater than 0", instead));
+            return Err(self.table.error(
+                value.span(),
+                "`prior` has no standard deviation greater than 0",
+                instead,
+            ));
         };
         if !(low..=high).contains(&mean.si) {
             let (mean, bounds) = (self.shown(mean.si), self.range(low, high));

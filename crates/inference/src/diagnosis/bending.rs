@@ -306,8 +306,7 @@ impl Bent<'_> {
         if members.is_empty() {
             return Vec::new();
         }
-        let found =
-            Showings::of(self.catalogue, Some(&members), self.prepared, self.theta, self.tangent);
+        let found = Showings::of(self.catalogue, Some(&members), self.prepared, self.theta, self.tangent);
         let mut columns = Vec::new();
         for member in 0..found.effects.len() {
             let own: Vec<&Vec<f64>> =

@@ -116,7 +116,8 @@ impl Given<'_> {
             .into_iter()
             .filter(|h| Some(h.effects[0]) != own)
             .map(|h| {
-                let separation = self.separation(&without.scene, h.effects[0], &signal, &bent) / scatter.sqrt();
+                let separation =
+                    self.separation(&without.scene, h.effects[0], &signal, &bent) / scatter.sqrt();
                 let near =
                     (h.log_evidence > best - FITTED * scatter || separation < SEPARATION) && fitted < MOST;
                 fitted += usize::from(near);
@@ -223,7 +224,8 @@ impl Given<'_> {
         margin: f64,
     ) -> Rival {
         let log_evidence = tried.as_ref().map_or(linear, |tried| {
-            let gain = tried.confirmed.as_ref().map_or(0.0, |c| without.confirmed.bent_cost() - c.bent_cost());
+            let gain =
+                tried.confirmed.as_ref().map_or(0.0, |c| without.confirmed.bent_cost() - c.bent_cost());
             tempered(tried.log_evidence, gain, scatter)
         });
         // What is the same on these data stays, however unlikely its numbers are: priors may be wrong.

@@ -15,7 +15,7 @@ use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
 use crate::diagnosis::document::Diagnosis;
 use crate::diagnosis::either::quieter;
-use crate::diagnosis::geometry::{Doubt, IfExact, geometry};
+use crate::diagnosis::geometry::{Doubt, geometry};
 use crate::diagnosis::ground::{Ground, Stop, effective_rows, ground, ground_again, row_sd};
 use crate::diagnosis::next::{Judged, Limits, NextLimits, next_experiment};
 use crate::diagnosis::not_looked_for::not_looked_for;
@@ -76,12 +76,9 @@ pub fn diagnose(
     // On a thread of the pool: small evaluations aren't handed over to it one by one.
     rayon::scope(|_| {
         let doubt = Doubt::of(muscle);
-        let mut found = answered(data, [muscle, &doubt.doubted], options)?;
-        if doubt.decides(&found.geometry) {
-            let silent = DiagnoseOptions { progress: Progress::default(), ..options.clone() };
-            let exact = answered(data, [muscle, &doubt.exact], &silent)?;
-            found.geometry.if_exact = Some(IfExact::of(&exact));
-        }
+        let found = answered(data, [muscle, &doubt.doubted], options)?;
+        let silent = DiagnoseOptions { progress: Progress::default(), ..options.clone() };
+        let mut found = doubt.settled(found, |exact| answered(data, [muscle, exact], &silent))?;
         doubt.say(&mut found, &options.base.catalogue);
         found.not_looked_for = not_looked_for(&found, &options.base.catalogue);
         Ok(found)
@@ -241,7 +238,8 @@ fn concluded(
     let comparison = compare_near(analysis, &compared, last.numbers())?;
     progress.at(1.0, "done");
     let mut diagnosis = document(analysis.muscle, &found, comparison);
-    let shown = if found.shown().is_empty() { &search.stages[0] } else { &search.stages[search.stages.len() - 1] };
+    let shown =
+        if found.shown().is_empty() { &search.stages[0] } else { &search.stages[search.stages.len() - 1] };
     diagnosis.geometry = geometry(analysis, shown);
     Ok(diagnosis)
 }

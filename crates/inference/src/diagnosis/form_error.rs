@@ -82,7 +82,12 @@ impl Columns {
     /// Log evidence, fall of the square of the misfit, and how much each effect is bent.
     fn evidence(&self, sds: &[[f64; 4]], lengths: &[f64]) -> Option<(f64, f64, Vec<f64>)> {
         let chosen = self.chosen(sds);
-        let prior = |sd: f64| LEVELS.iter().find(|(level, _)| (level - sd).abs() < 1e-12).map_or(0.0, |l| (l.1 / LEVELS[0].1).ln());
+        let prior = |sd: f64| {
+            LEVELS
+                .iter()
+                .find(|(level, _)| (level - sd).abs() < 1e-12)
+                .map_or(0.0, |l| (l.1 / LEVELS[0].1).ln())
+        };
         let mut log: f64 = sds.iter().flatten().map(|sd| prior(*sd)).sum();
         let (factor, right) = self.solved(&chosen)?;
         let c = factor.solve(&right);
@@ -131,9 +136,14 @@ impl FormError {
             return (Self::default(), Vec::new());
         }
         let left = space.outside(misfit);
-        let gram = DMatrix::from_fn(white.len(), white.len(), |i, j| {
-            if i <= j { dot(&white[i], &white[j]) } else { 0.0 }
-        });
+        let gram =
+            DMatrix::from_fn(
+                white.len(),
+                white.len(),
+                |i, j| {
+                    if i <= j { dot(&white[i], &white[j]) } else { 0.0 }
+                },
+            );
         let gram = DMatrix::from_fn(white.len(), white.len(), |i, j| gram[(i.min(j), i.max(j))]);
         let along = DVector::from_fn(white.len(), |i, _| dot(&white[i], &left));
         let columns = Columns { of, gram, along };

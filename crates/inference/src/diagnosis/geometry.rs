@@ -6,7 +6,8 @@
 //! ```text
 //! departure = d' C^-1 d,    d = found - stated,  C the covariance of the numbers beside all others
 //! ```
-//! From 4 sigma on, the answer on exact geometry is asked for too.
+//! From 4 sigma on, the answer on exact geometry is asked for too. A number that the data want more than three usual widths away is one that no such muscle has: the doubt
+//! then stands in for something else, and the answer is that on the geometry as stated.
 
 use bulge_effects::{Catalogue, Mechanism};
 use bulge_model::{ModelParameter, Wanted, Warm};
@@ -18,10 +19,13 @@ use serde::Serialize;
 use crate::comparison::analysis::Analysis;
 use crate::diagnosis::document::{Diagnosis, Missing, Verdict};
 use crate::diagnosis::search::Stage;
+use crate::fit::nuisance::is_geometry;
 use crate::fit::problem::free;
 
 /// Square of the sigmas from the stated geometry, beyond which another answer is asked for: of four numbers chance alone gives as much once in 300 times.
 const DEPARTED: f64 = 16.0;
+/// Usual widths beyond which a number is not doubtful but another muscle's.
+const BEYOND: f64 = 3.0;
 /// Sigmas and widths from which a number is said to have moved.
 const MOVED: [f64; 2] = [2.0, 0.3];
 
@@ -39,7 +43,9 @@ pub struct Geometry {
     /// Square of the distance between the geometry that was found and the stated one, in sigmas.
     pub departure: f64,
     /// The answer with exact numbers instead of usual widths, where the data are far from those; none where they are not.
-    pub if_exact: Option<IfExact>,
+    pub if_exact: Option<OtherAnswer>,
+    /// The answer with usual widths, where the geometry is taken as stated because they would not do; none where it is taken as doubtful.
+    pub if_doubtful: Option<OtherAnswer>,
 }
 
 /// A number of the geometry with its doubt.
@@ -81,9 +87,9 @@ pub struct AssumedNumber {
     pub unit: &'static str,
 }
 
-/// The answer if the doubtful numbers were exact.
+/// The answer if the doubtful numbers were exact, or the other way round.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct IfExact {
+pub struct OtherAnswer {
     /// The verdict.
     pub verdict: Verdict,
     /// Names of the effects that would be missing.
@@ -92,9 +98,10 @@ pub struct IfExact {
     pub differs: bool,
 }
 
-impl IfExact {
-    pub(crate) fn of(exact: &Diagnosis) -> Self {
-        Self { verdict: exact.verdict, missing: names(exact), differs: false }
+impl OtherAnswer {
+    fn of(other: &Diagnosis, answer: &Diagnosis) -> Self {
+        let differs = other.verdict != answer.verdict || names(other) != names(answer);
+        Self { verdict: other.verdict, missing: names(other), differs }
     }
 
     fn says(&self) -> String {
@@ -131,24 +138,41 @@ impl Doubt {
         Self { exact: added.iter().fold(doubted.clone(), sure), doubted, added, wall }
     }
 
-    /// Whether another answer is to be expected on exact geometry.
-    pub(crate) fn decides(&self, geometry: &Geometry) -> bool {
-        !self.added.is_empty() && geometry.departure > DEPARTED
+    /// The diagnosis that counts, after one on the doubted geometry: `answer_on` exact geometry is asked for where another is to be expected.
+    pub(crate) fn settled<E>(
+        &self,
+        mut doubtful: Diagnosis,
+        answer_on: impl FnOnce(&Muscle) -> Result<Diagnosis, E>,
+    ) -> Result<Diagnosis, E> {
+        for number in &mut doubtful.geometry.doubtful {
+            number.by_default = self.added.iter().any(|parameter| parameter.name() == number.number);
+        }
+        let beyond = |number: &DoubtfulNumber| {
+            number.by_default && number.found.as_ref().is_some_and(|found| found.widths.abs() > BEYOND)
+        };
+        let is_beyond = doubtful.geometry.doubtful.iter().any(beyond);
+        if self.added.is_empty() || !(is_beyond || doubtful.geometry.departure > DEPARTED) {
+            return Ok(doubtful);
+        }
+        let mut exact = answer_on(&self.exact)?;
+        if is_beyond && exact.verdict != Verdict::CannotTell {
+            let if_doubtful = Some(OtherAnswer::of(&doubtful, &exact));
+            exact.geometry = Geometry { if_doubtful, ..doubtful.geometry };
+            return Ok(exact);
+        }
+        doubtful.geometry.if_exact = Some(OtherAnswer::of(&exact, &doubtful));
+        Ok(doubtful)
     }
 
     /// Completes the geometry of a diagnosis, with its sentence.
     pub(crate) fn say(&self, diagnosis: &mut Diagnosis, catalogue: &Catalogue) {
-        let (verdict, missing) = (diagnosis.verdict, names(diagnosis));
         let rubber = self.wall.map(|wall| rubber(diagnosis, catalogue, wall));
         let geometry = &mut diagnosis.geometry;
-        for number in &mut geometry.doubtful {
-            number.by_default = self.added.iter().any(|parameter| parameter.name() == number.number);
-        }
-        geometry.assumed =
-            self.wall.map(|wall| AssumedNumber { number: "wall", value: 1e3 * wall, unit: "mm" }).into_iter().collect();
-        if let Some(exact) = &mut geometry.if_exact {
-            exact.differs = exact.verdict != verdict || exact.missing != missing;
-        }
+        geometry.assumed = self
+            .wall
+            .map(|wall| AssumedNumber { number: "wall", value: 1e3 * wall, unit: "mm" })
+            .into_iter()
+            .collect();
         geometry.says = [rubber.unwrap_or_default(), geometry.doubt_says()]
             .into_iter()
             .filter(|says| !says.is_empty())
@@ -162,7 +186,11 @@ fn rubber(diagnosis: &Diagnosis, catalogue: &Catalogue, wall: f64) -> String {
     let is_modulus = |missing: &Missing, name: &str| {
         let effect = catalogue.find(&missing.fitted).ok()?;
         let is_rubber = effect.card().mechanism == Mechanism::Rubber;
-        effect.parameters().iter().find(|p| is_rubber && p.name == name && p.unit == "MPa").map(|p| p.key.to_owned())
+        effect
+            .parameters()
+            .iter()
+            .find(|p| is_rubber && p.name == name && p.unit == "MPa")
+            .map(|p| p.key.to_owned())
     };
     let found: Vec<String> = diagnosis
         .added()
@@ -195,25 +223,39 @@ impl Geometry {
         let data = match (moved.is_empty(), self.as_stated_rmse_n) {
             (true, _) => "the data move none of them".to_owned(),
             (false, Some(error)) => {
-                format!("the data want {} (as stated the base is off by {} N)", moved.join(", "), significant(error, 3))
+                format!(
+                    "the data want {} (as stated the base is off by {} N)",
+                    moved.join(", "),
+                    significant(error, 3)
+                )
             }
             (false, None) => format!("the data want {}", moved.join(", ")),
         };
-        let exact = match &self.if_exact {
-            Some(exact) if exact.differs => format!(
-                "; were they exact, the answer would be {}{}",
-                exact.says(),
-                self.ruler().map_or_else(String::new, |ruler| format!(": {ruler} settles that"))
+        let default = format!("{} by default (state `+- ...`, `+- 0` if exact)", stated.join(", "));
+        let ruler = || self.ruler().map_or_else(String::new, |ruler| format!(": {ruler} settles that"));
+        match (&self.if_exact, &self.if_doubtful) {
+            (_, Some(other)) if other.differs => format!(
+                "{default}: {data}, which no such muscle has, so all is taken as stated; with that doubt the answer would be {}{}",
+                other.says(),
+                ruler()
             ),
-            Some(_) => "; were they exact, the answer would be the same".to_owned(),
-            None => String::new(),
-        };
-        format!("{} by default (state `+- ...`, `+- 0` if exact): {data}{exact}", stated.join(", "))
+            (_, Some(_)) => {
+                format!(
+                    "{default}: {data}, which no such muscle has, so all is taken as stated; the answer is the same with that doubt"
+                )
+            }
+            (Some(other), _) if other.differs => {
+                format!("{default}: {data}; were they exact, the answer would be {}{}", other.says(), ruler())
+            }
+            (Some(_), _) => format!("{default}: {data}; were they exact, the answer would be the same"),
+            (None, None) => format!("{default}: {data}"),
+        }
     }
 
     /// The measurement that decides: of the number that moved furthest, to a third of that.
     fn ruler(&self) -> Option<String> {
-        let moved = self.doubtful.iter().filter(|n| n.by_default).filter_map(|n| Some((n, n.found.as_ref()?)));
+        let moved =
+            self.doubtful.iter().filter(|n| n.by_default).filter_map(|n| Some((n, n.found.as_ref()?)));
         let (number, found) = moved.max_by(|a, b| a.1.widths.abs().total_cmp(&b.1.widths.abs()))?;
         let to = significant((found.value - number.value).abs() / 3.0, 1);
         Some(format!("the {} measured to {to} {}", number.number.replace('_', " "), number.unit))
@@ -275,7 +317,14 @@ pub(crate) fn geometry(analysis: &Analysis<'_>, stage: &Stage) -> Geometry {
             widths: (f.value - f.stated) / width,
         });
         let width = in_unit(*parameter, *width).0;
-        Some(DoubtfulNumber { number: parameter.name().to_owned(), value, width, unit, by_default: false, found })
+        Some(DoubtfulNumber {
+            number: parameter.name().to_owned(),
+            value,
+            width,
+            unit,
+            by_default: false,
+            found,
+        })
     };
     Geometry {
         doubtful: doubtful.filter_map(number).collect(),
@@ -285,17 +334,14 @@ pub(crate) fn geometry(analysis: &Analysis<'_>, stage: &Stage) -> Geometry {
     }
 }
 
-const fn is_geometry(parameter: Parameter) -> bool {
-    matches!(parameter, Parameter::Length | Parameter::Radius | Parameter::BraidAngle | Parameter::Wall)
-}
-
 fn fitted(muscle: &Muscle, stage: &Stage) -> Vec<Fitted> {
     let confirmed = &stage.confirmed;
     let numbers = confirmed.prepared.model.parameters();
     let mut found: Vec<Fitted> = Vec::new();
     for (place, index) in free(&confirmed.prepared.model).into_iter().enumerate() {
         let number = &numbers[index];
-        let Some((parameter, at_off, scale)) = stands_for(muscle, number, confirmed.prepared.nuisance[index]) else {
+        let Some((parameter, at_off, scale)) = stands_for(muscle, number, confirmed.prepared.nuisance[index])
+        else {
             continue;
         };
         // Of specimens that differ, the first stands for all.
@@ -308,7 +354,14 @@ fn fitted(muscle: &Muscle, stage: &Stage) -> Vec<Fitted> {
         let (distance, slope) =
             if number.logarithmic { ((value / of_stated).ln(), value) } else { (value - of_stated, 1.0) };
         let per_coordinate = (slope * scale).abs();
-        found.push(Fitted { parameter, place, value: at_off + scale * value, stated, per_coordinate, distance });
+        found.push(Fitted {
+            parameter,
+            place,
+            value: at_off + scale * value,
+            stated,
+            per_coordinate,
+            distance,
+        });
     }
     found
 }
@@ -348,7 +401,8 @@ fn departure(stage: &Stage, fitted: &[Fitted]) -> f64 {
 fn as_stated(analysis: &Analysis<'_>) -> Option<f64> {
     let model = analysis.base(0).ok()?;
     let counting = Warm::of_rows(&analysis.used.mask);
-    let found = model.evaluate_partly(&analysis.record, &model.start(), &Wanted::default(), &counting).ok()?;
+    let found =
+        model.evaluate_partly(&analysis.record, &model.start(), &Wanted::default(), &counting).ok()?;
     let force = &found.prediction.force;
     let forces = [force];
     let errors = analysis.with_state(&forces).map(|row| (analysis.record.force()[row] - force[row]).powi(2));

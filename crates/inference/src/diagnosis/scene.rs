@@ -190,7 +190,18 @@ impl Given<'_> {
         };
         let z = space.coordinates(&linearised.misfit);
         let offsets = self.offsets(&space, &whiten);
-        Ok(Scene { showings, candidates, smooth, space, offsets, priors, form, bent: directions, z, force: tangent.force })
+        Ok(Scene {
+            showings,
+            candidates,
+            smooth,
+            space,
+            offsets,
+            priors,
+            form,
+            bent: directions,
+            z,
+            force: tangent.force,
+        })
     }
 
     fn offsets(&self, space: &Space, whiten: &dyn Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {

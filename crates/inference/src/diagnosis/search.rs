@@ -235,11 +235,42 @@ impl Given<'_> {
             let ranked = ranked(&stages[stages.len() - 1].tried);
             if std::env::var_os("TRACE").is_some() {
                 let stage = &stages[stages.len() - 1];
-                eprintln!("STAGE {:?} adequate {} chance {:?} cost {:.1} bent {:.1} form {:.1} excess {:.1} else {:.1}", names(stage.added.iter()), stage.adequate, stage.adequacy.chance, stage.confirmed.cost(), stage.confirmed.bent_cost(), stage.confirmed.form.log_evidence, stage.excess(), stage.something_else());
-                for b in &stage.confirmed.form.effects { eprintln!("   bent {} sd {:?} part {:.3}", b.effect.card().name, b.sd, b.part); }
+                eprintln!(
+                    "STAGE {:?} adequate {} chance {:?} cost {:.1} bent {:.1} form {:.1} excess {:.1} else {:.1}",
+                    names(stage.added.iter()),
+                    stage.adequate,
+                    stage.adequacy.chance,
+                    stage.confirmed.cost(),
+                    stage.confirmed.bent_cost(),
+                    stage.confirmed.form.log_evidence,
+                    stage.excess(),
+                    stage.something_else()
+                );
+                for b in &stage.confirmed.form.effects {
+                    eprintln!("   bent {} sd {:?} part {:.3}", b.effect.card().name, b.sd, b.part);
+                }
                 for (t, c) in &ranked {
-                    let n: Vec<_> = t.hypothesis.effects.iter().map(|i| stage.scene.showings.effects[*i].effect.card().name).collect();
-                    eprintln!("   try {:?} lin {:.1} logZ {:.1} cost {:.1} bent {:.1} form {:.1} {}", n, t.hypothesis.log_evidence, t.log_evidence, c.cost(), c.bent_cost(), c.form.log_evidence, c.form.effects.iter().map(|b| format!("{:?} {:.2}", b.sd, b.part)).collect::<Vec<_>>().join("; "));
+                    let n: Vec<_> = t
+                        .hypothesis
+                        .effects
+                        .iter()
+                        .map(|i| stage.scene.showings.effects[*i].effect.card().name)
+                        .collect();
+                    eprintln!(
+                        "   try {:?} lin {:.1} logZ {:.1} cost {:.1} bent {:.1} form {:.1} {}",
+                        n,
+                        t.hypothesis.log_evidence,
+                        t.log_evidence,
+                        c.cost(),
+                        c.bent_cost(),
+                        c.form.log_evidence,
+                        c.form
+                            .effects
+                            .iter()
+                            .map(|b| format!("{:?} {:.2}", b.sd, b.part))
+                            .collect::<Vec<_>>()
+                            .join("; ")
+                    );
                 }
             }
             let next = ranked.into_iter().find_map(|(best, confirmed)| self.step(&stages, best, confirmed));
@@ -261,7 +292,15 @@ impl Given<'_> {
                 break;
             }
             if std::env::var_os("TRACE").is_some() {
-                eprintln!(" -> {:?} adequate {} else {:.1} value {:.1} vs else {:.1} stands {}", names(next.added.iter()), next.adequate, next.something_else(), next.value_over(stage), stage.something_else(), stands_out);
+                eprintln!(
+                    " -> {:?} adequate {} else {:.1} value {:.1} vs else {:.1} stands {}",
+                    names(next.added.iter()),
+                    next.adequate,
+                    next.something_else(),
+                    next.value_over(stage),
+                    stage.something_else(),
+                    stands_out
+                );
             }
             if stage.something_else() > next.value_over(stage) {
                 something_else = Some(stages.len() - 1);
@@ -310,9 +349,7 @@ impl Given<'_> {
             let explained = base.confirmed.bent_cost() - first.bent_cost();
             may_bend(&first.prepared) && first.bent_cost() - confirmed.bent_cost() < MENDS * explained
         };
-        let member = |one: &&Tried| {
-            matches!(&one.hypothesis.effects[..], [only] if new.len() > 1 && tried.hypothesis.effects.contains(only))
-        };
+        let member = |one: &&Tried| matches!(&one.hypothesis.effects[..], [only] if new.len() > 1 && tried.hypothesis.effects.contains(only));
         let alone = stage.tried.iter().filter(member).filter_map(|one| one.confirmed.as_ref());
         if alone.into_iter().any(mends) || !stage.added.is_empty() && mends(&stage.confirmed) {
             return None;

@@ -28,8 +28,11 @@ impl Prepared {
     /// Where a fit starts: nuisances as they are stated.
     pub(crate) fn start(&self) -> Vec<f64> {
         let mut start = self.model.start();
-        let stated = self.priors.iter().zip(&self.nuisance).map(|(prior, nuisance)| prior.filter(|_| *nuisance));
-        for (value, (mean, _)) in start.iter_mut().zip(stated).filter_map(|(value, prior)| Some((value, prior?))) {
+        let stated =
+            self.priors.iter().zip(&self.nuisance).map(|(prior, nuisance)| prior.filter(|_| *nuisance));
+        for (value, (mean, _)) in
+            start.iter_mut().zip(stated).filter_map(|(value, prior)| Some((value, prior?)))
+        {
             *value = mean;
         }
         start
@@ -74,6 +77,11 @@ pub(crate) fn with_nuisances(model: &Model, catalogue: &Catalogue) -> Result<Pre
         }
     }
     Ok(prepared)
+}
+
+/// Numbers of the geometry that a width makes nuisances of.
+pub(crate) const fn is_geometry(parameter: Parameter) -> bool {
+    matches!(parameter, Parameter::Length | Parameter::Radius | Parameter::BraidAngle | Parameter::Wall)
 }
 
 fn known<'c>(catalogue: &'c Catalogue, name: &str) -> Option<&'c Arc<dyn Effect>> {
@@ -157,7 +165,8 @@ mod tests {
         ];
         // The wall itself moves nothing: its rubber does, and gas that acts on its inner face.
         are(&priors(&braided), &geometry);
-        let stated = preset("dmsp-20-250").unwrap().with(Parameter::C10, 3e5).unwrap().with_gas_wall(None).unwrap();
+        let stated =
+            preset("dmsp-20-250").unwrap().with(Parameter::C10, 3e5).unwrap().with_gas_wall(None).unwrap();
         let [length, radius, angle] = geometry;
         let wall = [("wall-thickness", 0.002, 0.15 * 0.002), ("bladder-elasticity", 3e5, 0.15 * 3e5)];
         are(&priors(&stated.with_usual_widths().0), &[length, radius, angle, wall[0], wall[1]]);

@@ -2,8 +2,8 @@
 
 use bulge_inference::{
     CandidateResult, Comparison, Confidence, CorrelationTime, DiagnosedData, DiagnosedNoise, Diagnosis,
-    ExplainedCurve, ExplainedStep, LadderStep, Located, Missing, NextExperiment, NoiseLaw, NoiseSource,
-    ParameterResult, Remaining, RivalResult, SurfaceCurve, Verdict,
+    ExplainedCurve, ExplainedStep, Geometry, LadderStep, Located, Missing, NextExperiment, NoiseLaw,
+    NoiseSource, ParameterResult, Remaining, RivalResult, SurfaceCurve, Verdict,
 };
 
 /// Rubber and friction are missing; the second and third rungs of the comparison.
@@ -47,6 +47,8 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
             hints: vec!["grows with the pressure".to_owned()],
             surface: surface(),
         },
+        geometry: Geometry::default(),
+        not_looked_for: Vec::new(),
         next_experiment: Some(NextExperiment {
             says: "Hold at 3 bar for an hour.".to_owned(),
             separates: vec!["bladder-elasticity".to_owned(), "wall-thickness".to_owned()],
