@@ -173,8 +173,7 @@ impl Muscle {
         self
     }
 
-    /// The same with a stated width (one standard deviation, SI) of a parameter; it replaces an earlier one. A width of 0 says that the number is
-    /// exact: then it has no usual width either ([`Muscle::with_usual_widths`]).
+    /// The same with a stated width (one standard deviation, SI) of a parameter; it replaces an earlier one. 0 says that the number is exact.
     ///
     /// # Errors
     /// If the width is not finite and >= 0, or the parameter is a count or is not stated.
