@@ -1,6 +1,6 @@
 """Writes the suite of simulated measurements with hidden effects.
 
-    python generate.py --seed 1 --out DIR [--suite exact|forms [--exact-widths]] [--only REGEX] [--jobs 2]
+    python generate.py --seed 1 --out DIR [--suite exact|forms] [--exact-widths] [--only REGEX] [--jobs 2]
     python generate.py --check
 
 Every case becomes DIR/<case>/data.csv, muscle.toml, unseen.csv and truth.json. The same seed gives the same bytes, whatever --only and --jobs say.
@@ -29,7 +29,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1, help="another seed gives other muscles, amplitudes and noise")
     parser.add_argument("--out", type=Path, help="folder of the cases")
     parser.add_argument("--suite", choices=SUITES, default="exact", help="effects as the catalogue has them, or in forms of their own")
-    parser.add_argument("--exact-widths", action="store_true", help="forms suite: state widths of 0 where the geometry has none")
+    parser.add_argument("--exact-widths", action="store_true", help="state widths of 0 where the geometry has none")
     parser.add_argument("--only", default="", help="regular expression that the names of the cases must contain")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--list", action="store_true", help="print the names of the cases and stop")
@@ -54,7 +54,7 @@ def _generate(chosen, build, arguments):
     with ProcessPoolExecutor(max_workers=arguments.jobs) as pool:
         # The largest cases first, so that none is left to run alone at the end.
         queue = sorted(chosen, key=lambda order: order.size != "dense")
-        more = (True,) if arguments.exact_widths and arguments.suite == "forms" else ()
+        more = (True,) if arguments.exact_widths else ()
         running = {pool.submit(build, order, arguments.seed, arguments.out, *more): order for order in queue}
         for done, future in enumerate(as_completed(running), 1):
             if future.exception() is not None:

@@ -22,7 +22,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, default=1, help="another seed gives other muscles, amplitudes and noise")
     parser.add_argument("--suite", choices=("exact", "forms"), default="exact", help="effects as the catalogue has them, or in forms of their own")
-    parser.add_argument("--exact-widths", action="store_true", help="forms suite: state widths of 0 where the geometry has none")
+    parser.add_argument("--exact-widths", action="store_true", help="state widths of 0 where the geometry has none")
     parser.add_argument("--bulge", default="bulge", help="the program to prove")
     parser.add_argument("--out", type=Path, help="folder of everything that is written [default: out/hidden-effects/seed-SEED, out/hidden-effects/forms-SEED]")
     parser.add_argument("--jobs", type=int, default=2, help="processes")

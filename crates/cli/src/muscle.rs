@@ -1,6 +1,7 @@
 //! `bulge muscle`: the shipped muscles.
 
-use bulge_muscles::{PRESETS, preset};
+use bulge_muscles::units::significant;
+use bulge_muscles::{PRESETS, Parameter, USUAL_WIDTHS, UsualWidth, preset};
 use clap::Args;
 use serde_json::json;
 use std::fmt::Write;
@@ -44,6 +45,25 @@ impl MuscleCommand {
         for shipped in PRESETS {
             let _ = writeln!(text, "  {:<width$}  {}", shipped.name, shipped.about);
         }
+        let usual: Vec<String> = USUAL_WIDTHS.iter().map(usual).collect();
+        let _ = write!(
+            text,
+            "\nA number may have a width, one standard deviation: \"110 mm +- 0.2 mm\". Where none is stated, a diagnosis takes the\n\
+             geometry as known up to what such muscles have: {};\n`+- 0` says that a number is exact.\n",
+            usual.join(", ")
+        );
         Ok(text)
     }
+}
+
+/// A usual width in words.
+fn usual((parameter, width): &(Parameter, UsualWidth)) -> String {
+    let size = match (width, parameter) {
+        (UsualWidth::Relative(part), _) => format!("{} %", significant(100.0 * part, 2)),
+        (UsualWidth::Absolute(angle), Parameter::BraidAngle) => {
+            format!("{} deg", significant(angle.to_degrees(), 2))
+        }
+        (UsualWidth::Absolute(length), _) => format!("{} mm", significant(1e3 * length, 2)),
+    };
+    format!("{} {size}", parameter.name())
 }

@@ -15,11 +15,11 @@ use std::fmt::Write;
 const BRAID: &str = r#"
 name = "braid"
 kind = "braided"
-length = "250 mm"
-radius = "10 mm"
-braid_angle = "25 deg"
+length = "250 mm +- 0"
+radius = "10 mm +- 0"
+braid_angle = "25 deg +- 0"
 ends = "clamped"
-wall = "1.8 mm"
+wall = "1.8 mm +- 0"
 
 [instruments]
 force = { noise = "2 N", zero = "0.5 N", gain = "0.05 %" }
@@ -208,7 +208,7 @@ fn a_wrong_unit_is_no_physics() {
 }
 
 /// A muscle with a closed form: F = pi r0^2 p (3 (1 - e)^2/tan^2 alpha - 1/sin^2 alpha).
-const CYLINDER: &str = "name = \"c\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"cylinder\"\n";
+const CYLINDER: &str = "name = \"c\"\nkind = \"braided\"\nlength = \"250 mm +- 0\"\nradius = \"10 mm +- 0\"\nbraid_angle = \"25 deg +- 0\"\nends = \"cylinder\"\n";
 
 fn cylinder(pressure: f64, e: f64) -> f64 {
     let angle = 25.0_f64.to_radians();
@@ -479,6 +479,87 @@ fn held_lengths() -> Columns {
     let mut columns = Columns::new(p, Trace::Contraction(e), f);
     columns.time_s = Some(t);
     columns
+}
+
+/// Loops of the braid with other numbers than its file states, and the file as a catalogue has it: without widths, with changes.
+fn of_catalogue(truth: &str, effects: &[(&str, &[f64])], changes: &[(&str, &str)]) -> Diagnosis {
+    let catalogue = Catalogue::builtin();
+    let mut model = Model::new(&from_toml(truth, "truth.toml").unwrap());
+    let mut theta = Vec::new();
+    for (name, values) in effects {
+        model = model.with(catalogue.find(name).unwrap(), None).unwrap();
+        theta.extend_from_slice(values);
+    }
+    let data = simulate(&model, &theta, &protocol(2.0, 0.0), 11).unwrap().data;
+    let file = changes.iter().fold(BRAID.replace(" +- 0", ""), |file, (from, to)| file.replace(from, to));
+    let base = Options::new(catalogue, Vec::new());
+    diagnose(&data, &from_toml(&file, "catalogue.toml").unwrap(), &DiagnoseOptions::new(base)).unwrap()
+}
+
+#[test]
+fn a_radius_that_is_off_is_no_effect_of_the_material() {
+    let truth = BRAID.replace("10 mm", "10.7 mm");
+    let found = of_catalogue(&truth, &[], &[]);
+    let geometry = &found.geometry;
+    let of_geometry = ["radius-error", "braid-angle-error", "fibre-length"];
+    assert!(names(&found).iter().all(|name| of_geometry.contains(name)), "{}", found.says);
+    let radius = geometry.doubtful.iter().find(|number| number.number == "radius").unwrap();
+    assert!(radius.by_default && (radius.width - 0.3).abs() < 1e-12, "{radius:?}");
+    let moved = radius.found.as_ref().unwrap();
+    // To a hundredth: an equation that is off by 1 % in the force is off by half of that here.
+    assert!((moved.value - 10.7).abs() < 0.1 && moved.sd.unwrap() < 0.1, "{moved:?}");
+    assert!((moved.widths - (moved.value - 10.0) / 0.3).abs() < 1e-9);
+    assert!(geometry.as_stated_rmse_n.unwrap() > 10.0 * found.noise.sd_n, "{geometry:?}");
+    assert!(
+        geometry.says.contains("radius 10.00 mm +- 0.30") && geometry.says.contains("by default"),
+        "{}",
+        geometry.says
+    );
+    // With a radius that is exact another answer comes out, and the sentence says so.
+    let exact = geometry.if_exact.as_ref().unwrap();
+    assert!(exact.differs && geometry.says.contains("were they exact"), "{geometry:?}");
+    let stated = of_catalogue(
+        &truth,
+        &[],
+        &[
+            ("250 mm", "250 mm +- 0"),
+            ("10 mm", "10 mm +- 0"),
+            ("25 deg", "25 deg +- 0"),
+            ("1.8 mm", "1.8 mm +- 0"),
+        ],
+    );
+    assert_eq!((stated.verdict, names(&stated).len()), (exact.verdict, exact.missing.len()));
+    assert!(
+        stated.geometry.doubtful.is_empty() && stated.geometry.if_exact.is_none(),
+        "{:?}",
+        stated.geometry
+    );
+}
+
+#[test]
+fn a_radius_that_no_such_muscle_has_is_no_doubt() {
+    let found = of_catalogue(&BRAID.replace("10 mm", "12 mm"), &[], &[]);
+    let other = found.geometry.if_doubtful.as_ref().unwrap();
+    assert!(found.geometry.if_exact.is_none(), "{:?}", found.geometry);
+    assert!(found.geometry.says.contains("so all is taken as stated"), "{}", found.geometry.says);
+    assert!(found.verdict == Verdict::Missing && names(&found).contains(&"radius-error"), "{}", found.says);
+    assert_eq!(other.differs, other.verdict != found.verdict || other.missing != names(&found));
+}
+
+#[test]
+fn rubber_is_found_where_no_wall_is_stated() {
+    let found = of_catalogue(BRAID, &[("bladder-elasticity", &[3e5])], &[("wall = \"1.8 mm\"\n", "")]);
+    let [missing] = &found.missing[..] else { panic!("{}", found.says) };
+    assert!(missing.effect == "bladder-elasticity", "{}", found.says);
+    let modulus = &missing.parameters["modulus"];
+    // 0.3 MPa in 1.8 mm are 540 N/m: in the wall of 1 mm that was assumed, 0.54 MPa.
+    assert!((found.geometry.assumed[0].value - 1.0).abs() < 1e-12);
+    assert!((modulus.value / 0.54 - 1.0).abs() < 0.05, "{modulus:?}");
+    assert!(
+        found.geometry.says.contains("c10 x t = 5") && found.geometry.says.contains("wall t isn't stated"),
+        "{}",
+        found.geometry.says
+    );
 }
 
 #[test]

@@ -36,10 +36,11 @@ pub fn any(text: &str) -> Result<Any, AnyUnitError> {
 
 /// Reads a value with an optional width (one standard deviation): "1 N +- 0.2 N", "50 ± 30 N", "1 N s +- 5 %".
 ///
-/// A percentage is relative to the value, except where the value is itself a ratio: then it is absolute.
+/// A percentage is relative to the value, except where the value is itself a ratio: then it is absolute. `+- 0`, with or
+/// without a unit, says that the value is exact.
 ///
 /// # Errors
-/// If either part is not a number with a unit, their dimensions differ, or the width is not greater than 0.
+/// If either part is not a number with a unit, their dimensions differ, or the width is negative.
 pub fn any_with_width(text: &str) -> Result<(Any, Option<f64>), AnyUnitError> {
     let Some((value_text, width_text)) =
         ["+-", "+/-", "\u{b1}"].iter().find_map(|sign| text.split_once(sign))
@@ -48,6 +49,9 @@ pub fn any_with_width(text: &str) -> Result<(Any, Option<f64>), AnyUnitError> {
     };
     let (value_number, value_unit) = split(value_text)?;
     let (width_number, width_unit) = split(width_text)?;
+    if width_number == 0.0 && width_unit.is_empty() {
+        return Ok((in_any(value_text, value_number, value_unit)?, Some(0.0)));
+    }
     let is_ratio = |unit: &str| {
         normalised(unit)
             .is_ok_and(|unit| !unit.is_empty() && Ratio::UNITS.iter().any(|(symbol, _)| *symbol == unit))
@@ -62,10 +66,10 @@ pub fn any_with_width(text: &str) -> Result<(Any, Option<f64>), AnyUnitError> {
         return Err(AnyUnitError::OtherDimension { text: shortened(text), found, wanted });
     }
     let width = if is_relative { value.si.abs() * stated.si } else { stated.si };
-    if width > 0.0 && width.is_finite() {
-        Ok((value, Some(width)))
+    if width >= 0.0 && width.is_finite() {
+        Ok((value, Some(width.abs())))
     } else {
-        Err(AnyUnitError::WidthNotPositive { text: shortened(text), width })
+        Err(AnyUnitError::NegativeWidth { text: shortened(text), width })
     }
 }
 
@@ -197,9 +201,10 @@ mod tests {
         }
         refuses(any_with_width("1 N +- 0.2 bar"), &["is a pressure (Pa)", "the value is a force (N)"]);
         refuses(any_with_width("1 N +- 0.2"), &["a pure number"]);
-        refuses(any_with_width("1 N +- 0 N"), &["greater than 0"]);
-        refuses(any_with_width("1 N +- -1 N"), &["greater than 0"]);
-        refuses(any_with_width("0 N +- 5 %"), &["greater than 0"]);
+        for text in ["1 N +- 0 N", "1 N +- 0", "1 N +- 0 %"] {
+            assert_eq!(read(text), Ok((1.0, Some(0.0))), "{text}");
+        }
+        refuses(any_with_width("1 N +- -1 N"), &["can't be negative"]);
         refuses(any_with_width("1 N +- "), &["no number"]);
         refuses(any_with_width("+- 1 N"), &["no number"]);
     }

@@ -99,11 +99,11 @@ pub enum AnyUnitError {
         /// What the value is.
         wanted: String,
     },
-    /// A width that is zero or negative.
+    /// A width that is negative or not finite.
     #[error(
-        "the width in `{text}` is {width} in SI units, but must be greater than 0: write \"1 N +- 0.2 N\", or leave the width out"
+        "the width in `{text}` is {width} in SI units, but can't be negative: write \"1 N +- 0.2 N\", `+- 0` for an exact number, or leave the width out"
     )]
-    WidthNotPositive {
+    NegativeWidth {
         /// What was written.
         text: String,
         /// The width in SI units.

@@ -113,9 +113,9 @@ pub enum MuscleError {
         /// The parameter.
         parameter: Parameter,
     },
-    /// A width that is not finite and > 0.
-    #[error("the width of `{}` is {width} in SI units: it must be finite and greater than 0", parameter.name())]
-    WidthNotPositive {
+    /// A width that is not finite and >= 0.
+    #[error("the width of `{}` is {width} in SI units: it must be finite and not negative", parameter.name())]
+    NegativeWidth {
         /// The parameter.
         parameter: Parameter,
         /// The width in SI.
@@ -162,7 +162,7 @@ impl MuscleError {
             Self::HalfUnfolding { .. } => "effects.limited-unfolding",
             Self::OtherKind { parameter, .. }
             | Self::NoWidth { parameter }
-            | Self::WidthNotPositive { parameter, .. } => parameter.key(),
+            | Self::NegativeWidth { parameter, .. } => parameter.key(),
             Self::Learnt { .. } => "effects",
             Self::SpecimenName { .. } => "specimens",
             Self::NoSpread => "instruments",

@@ -137,8 +137,11 @@ impl Learnt {
             if !value.si.is_finite() {
                 return wrong(format!("has `{key}` = {}, which is not finite", value.si));
             }
-            if let Some(width) = value.width.filter(|width| !(width.is_finite() && *width > 0.0)) {
-                return wrong(format!("has `{key}` with the width {width}: it must be finite and > 0"));
+            if let Some(width) = value.width.filter(|width| !(width.is_finite() && width.is_sign_positive()))
+            {
+                return wrong(format!(
+                    "has `{key}` with the width {width}: it must be finite and not negative"
+                ));
             }
             if !unit(&value.unit).is_ok_and(|(_, dimension)| dimension == value.dimension) {
                 let (unit, kind) = (shortened(&value.unit), value.dimension.describe());
@@ -287,7 +290,7 @@ mod tests {
             ("x", vec![value("a b", 1.0, "", Dimension::NONE)], "`a b`"),
             ("x", vec![good.clone(), good.clone()], "`force` twice"),
             ("x", vec![value("a", f64::NAN, "", Dimension::NONE)], "NaN"),
-            ("x", vec![LearntValue { width: Some(0.0), ..good.clone() }], "width 0"),
+            ("x", vec![LearntValue { width: Some(-0.5), ..good.clone() }], "width -0.5"),
             ("x", vec![value("a", 1.0, "mm", Dimension::FORCE)], "no unit of a force"),
             ("x", vec![value("a", 1.0, "furlong", Dimension::LENGTH)], "`furlong`"),
         ] {

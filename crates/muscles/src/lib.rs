@@ -36,6 +36,7 @@ mod construction;
 mod data_columns;
 mod digits;
 mod dimension;
+mod doubt;
 mod error;
 mod fault;
 mod file;
@@ -60,6 +61,7 @@ mod write;
 
 pub use construction::{Braided, Construction, Ends, FibreCount, Kind, Pleated};
 pub use dimension::Dimension;
+pub use doubt::{USUAL_WIDTHS, UsualWidth};
 pub use error::MuscleError;
 pub use fault::Fault;
 pub use file::{from_toml, read};

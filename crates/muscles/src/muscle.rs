@@ -173,19 +173,19 @@ impl Muscle {
         self
     }
 
-    /// The same with a stated width (one standard deviation, SI) of a parameter; it replaces an earlier one.
+    /// The same with a stated width (one standard deviation, SI) of a parameter; it replaces an earlier one. 0 says that the number is exact.
     ///
     /// # Errors
-    /// If the width is not finite and > 0, or the parameter is a count or is not stated.
+    /// If the width is not finite and >= 0, or the parameter is a count or is not stated.
     pub fn with_width(mut self, parameter: Parameter, width: f64) -> Result<Self, MuscleError> {
-        if !(width.is_finite() && width > 0.0) {
-            return Err(MuscleError::WidthNotPositive { parameter, width });
+        if !(width.is_finite() && width >= 0.0) {
+            return Err(MuscleError::NegativeWidth { parameter, width });
         }
         if parameter == Parameter::Fibres || !self.is_stated(parameter) {
             return Err(MuscleError::NoWidth { parameter });
         }
         self.widths.retain(|(other, _)| *other != parameter);
-        self.widths.push((parameter, width));
+        self.widths.push((parameter, width.abs()));
         self.widths.sort_by_key(|(parameter, _)| *parameter);
         Ok(self)
     }
@@ -636,7 +636,11 @@ mod tests {
         for parameter in [Parameter::Fibres, Parameter::FittingRadius, Parameter::BraidAngle] {
             assert_eq!(muscle.clone().with_width(parameter, 1e-4), Err(MuscleError::NoWidth { parameter }));
         }
-        for width in [0.0, -1.0, f64::NAN] {
+        assert_eq!(
+            muscle.clone().with_width(Parameter::Length, 0.0).unwrap().width(Parameter::Length),
+            Some(0.0)
+        );
+        for width in [-1e-4, f64::NAN, f64::INFINITY] {
             assert!(muscle.clone().with_width(Parameter::Length, width).is_err());
         }
     }

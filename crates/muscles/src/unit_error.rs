@@ -97,12 +97,12 @@ pub enum UnitError {
         /// A value written as it should be.
         example: &'static str,
     },
-    /// A width that is zero or negative.
+    /// A width that is negative or not finite.
     #[error(
-        "the width in `{text}` is {width} in SI units, but must be greater than 0: write \"{example} +- 1 %\", \
-         or leave the width out"
+        "the width in `{text}` is {width} in SI units, but can't be negative: write \"{example} +- 1 %\", \
+         `+- 0` for an exact number, or leave the width out"
     )]
-    WidthNotPositive {
+    NegativeWidth {
         /// What was written.
         text: String,
         /// The width in SI units.

@@ -93,10 +93,10 @@ pub fn factor<Q: Quantity>(unit: &str) -> Result<f64, UnitError> {
 /// Reads a value with an optional width: "110 mm", "110 mm +- 0.2 mm", "110 ± 0.2 mm", "110 mm +- 0.5 %".
 ///
 /// The width (one standard deviation) has the same dimension, or is a percentage of the value; for a [`Ratio`], whose
-/// own unit is the percentage, it is absolute.
+/// own unit is the percentage, it is absolute. `+- 0`, with or without a unit, says that the value is exact.
 ///
 /// # Errors
-/// If either part is not a quantity of the dimension or the width is not greater than 0.
+/// If either part is not a quantity of the dimension or the width is negative.
 pub fn parse_with_width<Q: Quantity>(text: &str) -> Result<(Q, Option<Q>), UnitError> {
     let Some((value_text, width_text)) = ["+-", "+/-", "±"].iter().find_map(|sign| text.split_once(sign))
     else {
@@ -104,6 +104,9 @@ pub fn parse_with_width<Q: Quantity>(text: &str) -> Result<(Q, Option<Q>), UnitE
     };
     let (value_number, value_unit) = split::<Q>(value_text)?;
     let (width_number, width_unit) = split::<Q>(width_text)?;
+    if width_number == 0.0 && width_unit.is_empty() {
+        return Ok((parse(value_text)?, Some(Q::from_si(0.0))));
+    }
     let is_relative = Q::NAME != Ratio::NAME && is_ratio_unit(&width_unit);
     // "110 ± 0.2 mm": one unit for both.
     let shares_unit = value_unit.is_empty() && !is_relative;
@@ -114,10 +117,11 @@ pub fn parse_with_width<Q: Quantity>(text: &str) -> Result<(Q, Option<Q>), UnitE
     } else {
         scaled::<Q>(width_text, width_number, factor_in::<Q>(width_text, &width_unit)?)?.si()
     };
-    if width > 0.0 && width.is_finite() {
-        Ok((value, Some(Q::from_si(width))))
+    if width >= 0.0 && width.is_finite() {
+        // Without the sign of a zero, which nobody writes back.
+        Ok((value, Some(Q::from_si(width.abs()))))
     } else {
-        Err(UnitError::WidthNotPositive { text: shortened(text), width, example: Q::EXAMPLE })
+        Err(UnitError::NegativeWidth { text: shortened(text), width, example: Q::EXAMPLE })
     }
 }
 
@@ -413,13 +417,17 @@ mod tests {
         for text in ["110 mm +- 0.2 mm", "110 mm \u{b1} 0.2mm", "110 mm +/- 200 um", "110 +- 0.2 mm"] {
             assert_eq!(read(text), Ok((110.0, Some(0.2))), "{text}");
         }
+        for text in ["110 mm +- 0", "110 mm +- 0 mm", "110 mm \u{b1} 0 %", "110 +- -0 mm"] {
+            let (value, width) = read(text).unwrap();
+            assert_eq!((value, width.map(f64::to_bits)), (110.0, Some(0.0_f64.to_bits())), "{text}");
+        }
         assert_eq!(read("200 mm +- 1 %"), Ok((200.0, Some(2.0))));
         assert_eq!(read("-200 mm +- 1 %"), Ok((-200.0, Some(2.0))));
         let ratio = parse_with_width::<Ratio>("20 % +- 1 %");
         assert_eq!(ratio, Ok((Ratio::percent(20.0), Some(Ratio::percent(1.0)))));
         for (text, part) in [
-            ("110 mm +- 0 mm", "greater than 0"),
-            ("110 mm +- -2 mm", "greater than 0"),
+            ("110 mm +- -2 mm", "can't be negative"),
+            ("110 +- 0", "no unit"),
             ("110 mm +- ", "no length"),
             ("110 mm +- 2 bar", "a pressure"),
             ("110 mm +- 0.2", "no unit"),

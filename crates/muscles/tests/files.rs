@@ -163,7 +163,7 @@ fn values_that_are_no_quantities() {
     refused(&length("[1]"), (3, 10), &["is a list"]);
     refused(&length("{ mm = 110 }"), (3, 10), &["is a table"]);
     refused(&length("1979-05-27"), (3, 10), &["is a date"]);
-    refused(&length("\"110 mm +- 0 mm\""), (3, 10), &["greater than 0"]);
+    refused(&length("\"110 mm +- -1 mm\""), (3, 10), &["can't be negative"]);
 }
 
 #[test]
@@ -429,7 +429,7 @@ fn learnt_effects_that_are_wrong() {
     refused(&effect("x = nan"), (7, 5), &["finite", "`x = \"4 N s\"`"]);
     refused(&effect("x = \"4 furlongs\""), (7, 5), &["unknown unit"]);
     refused(&effect("x = \"14 N +- 2 mm\""), (7, 5), &["mm"]);
-    refused(&effect("x = \"14 N +- 0 N\""), (7, 5), &["greater than 0"]);
+    refused(&effect("x = \"14 N +- -1 N\""), (7, 5), &["can't be negative"]);
     refused(&effect("\"two words\" = 1"), (7, 1), &["`two words`", "write a word"]);
     refused(&format!("{PLEATED}[effects.\"\"]"), (6, 10), &["write a word"]);
     refused(&format!("{PLEATED}[effects]\ncreep = 3"), (7, 9), &["`creep` is a number", "[effects.creep]"]);
@@ -671,7 +671,8 @@ fn some_muscle(random: &mut Lcg) -> Muscle {
     }
     for parameter in Parameter::ALL {
         if random.next(3) == 0 {
-            muscle = muscle.clone().with_width(parameter, random.fraction() * 1e-3).unwrap_or(muscle);
+            let width = if random.next(4) == 0 { 0.0 } else { random.fraction() * 1e-3 };
+            muscle = muscle.clone().with_width(parameter, width).unwrap_or(muscle);
         }
     }
     for name in ["creep", "coulomb-friction", "x_9"] {

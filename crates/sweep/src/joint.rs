@@ -294,7 +294,8 @@ fn stated_widths(muscle: &Muscle) -> Result<Vec<(Quantity, [f64; 2])>, FamilyErr
     let mut found = Vec::new();
     for (parameter, width) in muscle.widths() {
         let is_fixed = matches!(parameter, Parameter::Length | Parameter::Fibres);
-        if let (Some(value), false) = (muscle.get(*parameter), is_fixed) {
+        // A width of 0 says that the number is exact.
+        if let (Some(value), false) = (muscle.get(*parameter), is_fixed || *width <= 0.0) {
             found.push((Quantity::Parameter(*parameter), [value, *width]));
         }
     }
@@ -305,7 +306,7 @@ fn stated_widths(muscle: &Muscle) -> Result<Vec<(Quantity, [f64; 2])>, FamilyErr
         }
         let stated = muscle.learnt().iter().find(|learnt| learnt.name() == card.name);
         for value in stated.into_iter().flat_map(bulge_muscles::Learnt::values) {
-            if let Some(width) = value.width {
+            if let Some(width) = value.width.filter(|width| *width > 0.0) {
                 let quantity = Quantity::Effect { effect: card.name.to_owned(), key: value.key.clone() };
                 found.push((quantity, [value.si, width]));
             }

@@ -40,24 +40,24 @@ class Setting:
     plan: object
 
 
-def build(order, seed, folder):
-    """Builds the case of an order and writes it to folder/<name>. Returns its truth."""
+def build(order, seed, folder, exact=False):
+    """Builds the case of an order and writes it to folder/<name>; `exact` states widths of 0 where none are. Returns its truth."""
     reason = None
     for attempt in range(ATTEMPTS):
         rng = np.random.default_rng([seed, zlib.crc32(order.name.encode()), attempt])
         try:
-            return _build_once(order, rng, folder)
+            return _build_once(order, rng, folder, exact)
         except (Unsuitable, NoEquilibrium, OutsideWindow) as problem:
             reason = problem
     raise RuntimeError(f"case {order.name}: none of {ATTEMPTS} draws is suitable; the last: {reason}")
 
 
-def _build_once(order, rng, folder):
+def _build_once(order, rng, folder, exact):
     setting = _setting(order, rng)
     names = available(setting.world, setting.path, setting.provided)
     world, hidden = _hide(order, rng, setting, names)
     truth = _truth(order, setting, world, hidden, names)
-    _write(order, rng, setting, world, truth, folder)
+    _write(order, rng, setting, world, truth, folder, exact)
     return truth
 
 
@@ -296,7 +296,7 @@ def _beyond_all(gram):
     return float(np.sqrt(max(gram[0, 0] - (part**2 / values[good]).sum(), 0.0)))
 
 
-def _write(order, rng, setting, world, truth, folder):
+def _write(order, rng, setting, world, truth, folder, exact):
     """data.csv, muscle.toml, unseen.csv and, last, truth.json."""
     target = folder / order.name
     target.mkdir(parents=True, exist_ok=True)
@@ -313,5 +313,5 @@ def _write(order, rng, setting, world, truth, folder):
     length = world.muscle.length
     paths.write(target / "data.csv", readings, rounded(world.force(path) + force, law.force_step), length, unit, motion)
     paths.write(target / "unseen.csv", setting.unseen, world.force(setting.unseen), length, unit, motion)
-    (target / "muscle.toml").write_text(world.muscle.toml(), encoding="utf-8")
+    (target / "muscle.toml").write_text(world.muscle.toml(exact), encoding="utf-8")
     (target / "truth.json").write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")

@@ -240,7 +240,10 @@ fn limits(out: &mut String, diagnosis: &Diagnosis) {
             &format!("did not converge, so neither found nor rejected: {}", failed.join(", ")),
         );
     }
-    for line in reasons(&untested(diagnosis), UNTESTED.len()) {
+    // Those that could be the answer stand beside the verdict.
+    let mut others = untested(diagnosis);
+    others.retain(|(name, _)| diagnosis.not_looked_for.iter().all(|effect| effect.effect != *name));
+    for line in reasons(&others, UNTESTED.len()) {
         let _ = writeln!(out, "{UNTESTED}{line}");
     }
 }
@@ -302,7 +305,7 @@ mod diagnosed;
 mod tests {
     use super::*;
     use bulge_effects::Catalogue;
-    use bulge_inference::{Comparison, Options, compare};
+    use bulge_inference::{Comparison, NotLookedFor, Options, compare};
     use bulge_measurements::Data;
     use bulge_muscles::from_toml;
 
@@ -423,6 +426,24 @@ mod tests {
         assert!(
             place(&lines, "  missing: coulomb-friction") < remains && remains < place(&lines, "noise floor")
         );
+    }
+
+    #[test]
+    fn what_the_answer_depends_on_stands_in_the_first_lines() {
+        let mut diagnosis = diagnosed::missing(comparison());
+        let why = "needs a column `temperature` that changes".to_owned();
+        diagnosis.not_looked_for = vec![NotLookedFor { effect: "temperature".to_owned(), why }];
+        "radius 16 mm +- 0.48 by default".clone_into(&mut diagnosis.geometry.says);
+        let lines = lines(&diagnosis);
+        let order = [
+            "  missing: coulomb-friction",
+            "  not looked for: temperature (needs a column `temperature` that changes)",
+            "  geometry: radius 16 mm +- 0.48 by default",
+            "    equilibrium",
+        ];
+        let places = order.map(|part| place(&lines, part));
+        assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{places:?} in {lines:#?}");
+        assert!(lines.iter().all(|line| !line.contains("could not be looked for")), "{lines:#?}");
     }
 
     #[test]

@@ -46,9 +46,13 @@ impl Quantity<'_> {
         let (mean, width) =
             units::any_with_width(&text).map_err(|error| self.no_number("prior", value, &error))?;
         self.check("prior", value, &mean)?;
-        let Some(width) = width else {
+        let Some(width) = width.filter(|width| *width > 0.0) else {
             let instead = format!("write `{}`, or leave it out", self.example("prior"));
-            return Err(self.table.error(value.span(), "`prior` has no standard deviation", instead));
+            return Err(self.table.error(
+                value.span(),
+                "`prior` has no standard deviation greater than 0",
+                instead,
+            ));
         };
         if !(low..=high).contains(&mean.si) {
             let (mean, bounds) = (self.shown(mean.si), self.range(low, high));

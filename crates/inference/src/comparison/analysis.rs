@@ -145,7 +145,7 @@ impl<'a> Analysis<'a> {
     }
 
     /// The base with what the muscle file states, but for those of the first `count` effects: they are fitted anew.
-    fn base(&self, count: usize) -> Result<Model, ModelError> {
+    pub(crate) fn base(&self, count: usize) -> Result<Model, ModelError> {
         let mut model = self.root.clone().for_specimens(self.record.specimens())?;
         for (effect, values) in &self.options.known {
             let is_asked = |other: &Arc<dyn Effect>| other.card().name == effect.card().name;
@@ -180,7 +180,7 @@ impl<'a> Analysis<'a> {
     /// The rung of the first `count` effects: fitted if there is anything to fit.
     pub(crate) fn climb(&self, count: usize, below: Option<&Climbed>) -> Result<Climbed, InferenceError> {
         let prepared = self.model(count)?;
-        let mut theta = prepared.model.start();
+        let mut theta = prepared.start();
         let mut known = Vec::new();
         if let Some(below) = below {
             known = carry_over(&below.prepared.model, &below.theta, &prepared.model, &mut theta);

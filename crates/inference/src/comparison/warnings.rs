@@ -6,6 +6,7 @@ use crate::comparison::analysis::Analysis;
 use crate::comparison::clock::TIME_UNIT;
 use crate::comparison::document::{LeftOut, Rung};
 use crate::comparison::specimens::note;
+use crate::fit::nuisance::is_geometry;
 
 impl Analysis<'_> {
     /// The warnings, the most important first.
@@ -30,10 +31,10 @@ impl Analysis<'_> {
             let without = rung.without_state.as_ref();
             warnings.extend(without.map(|w| without_state(rung.added.as_deref().unwrap_or("base"), w)));
         }
-        let used = |p: Parameter| matches!(p, Parameter::Length | Parameter::Radius | Parameter::BraidAngle);
-        for (parameter, _) in self.muscle.widths().iter().filter(|(p, _)| !used(*p)) {
+        let used = |p: Parameter| is_geometry(p) || p == Parameter::GasWall;
+        for (parameter, _) in self.muscle.widths().iter().filter(|(p, width)| !used(*p) && *width > 0.0) {
             warnings.push(format!(
-                "the width stated for `{}` is not used: only those of length, radius and braid angle are",
+                "the width stated for `{}` is not used: only those of length, radius, braid angle and wall are",
                 parameter.key()
             ));
         }

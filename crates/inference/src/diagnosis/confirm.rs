@@ -98,7 +98,7 @@ impl Given<'_> {
             model = model.with(effect, None)?;
         }
         let prepared = with_nuisances(&model, self.catalogue)?;
-        let mut first = prepared.model.start();
+        let mut first = prepared.start();
         if let Some((model, numbers)) = from {
             carry_over(model, numbers, &prepared.model, &mut first);
         }

@@ -15,8 +15,10 @@ use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
 use crate::diagnosis::document::Diagnosis;
 use crate::diagnosis::either::quieter;
+use crate::diagnosis::geometry::{Doubt, geometry};
 use crate::diagnosis::ground::{Ground, Stop, effective_rows, ground, ground_again, row_sd};
 use crate::diagnosis::next::{Judged, Limits, NextLimits, next_experiment};
+use crate::diagnosis::not_looked_for::not_looked_for;
 use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::{Search, Stage};
 use crate::diagnosis::unanswered::{cannot_tell, unanswered};
@@ -72,19 +74,40 @@ pub fn diagnose(
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis, InferenceError> {
     // On a thread of the pool: small evaluations aren't handed over to it one by one.
-    rayon::scope(|_| match diagnosed(data, muscle, options) {
-        Err(error @ (InferenceError::TooFewRows { .. } | InferenceError::Identical { .. })) => {
-            Ok(cannot_tell(&*of_specimens(data, muscle)?, muscle, &error.to_string()))
-        }
-        found => found,
+    rayon::scope(|_| {
+        let doubt = Doubt::of(muscle);
+        let found = answered(data, [muscle, &doubt.doubted], options)?;
+        let silent = DiagnoseOptions { progress: Progress::default(), ..options.clone() };
+        let mut found = doubt.settled(found, |exact| answered(data, [muscle, exact], &silent))?;
+        doubt.say(&mut found, &options.base.catalogue);
+        found.not_looked_for = not_looked_for(&found, &options.base.catalogue);
+        Ok(found)
     })
 }
 
-fn diagnosed(data: &Data, muscle: &Muscle, options: &DiagnoseOptions) -> Result<Diagnosis, InferenceError> {
+/// The answer on a muscle, as `[stated, doubted]`.
+fn answered(
+    data: &Data,
+    muscles: [&Muscle; 2],
+    options: &DiagnoseOptions,
+) -> Result<Diagnosis, InferenceError> {
+    match diagnosed(data, muscles, options) {
+        Err(error @ (InferenceError::TooFewRows { .. } | InferenceError::Identical { .. })) => {
+            Ok(cannot_tell(&*of_specimens(data, muscles[0])?, muscles[0], &error.to_string()))
+        }
+        found => found,
+    }
+}
+
+fn diagnosed(
+    data: &Data,
+    [stated, muscle]: [&Muscle; 2],
+    options: &DiagnoseOptions,
+) -> Result<Diagnosis, InferenceError> {
     let mut analysis = Analysis::new(data, muscle, &options.base)?;
     analysis.ask()?;
     if analysis.findings.iter().any(|finding| finding.decided) {
-        return Ok(unanswered(&analysis.data, muscle, compared_as_stated(data, muscle, options)?));
+        return Ok(unanswered(&analysis.data, stated, compared_as_stated(data, stated, options)?));
     }
     let first = analysis.climb(0, None)?;
     analysis.measure_noise(&first);
@@ -214,7 +237,11 @@ fn concluded(
     let last = &search.stages[search.stages.len() - 1].confirmed;
     let comparison = compare_near(analysis, &compared, last.numbers())?;
     progress.at(1.0, "done");
-    Ok(document(analysis.muscle, &found, comparison))
+    let mut diagnosis = document(analysis.muscle, &found, comparison);
+    let shown =
+        if found.shown().is_empty() { &search.stages[0] } else { &search.stages[search.stages.len() - 1] };
+    diagnosis.geometry = geometry(analysis, shown);
+    Ok(diagnosis)
 }
 
 /// The comparison with the base alone.

@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 
 use crate::comparison::document::{Comparison, LeftOut, Mismatch};
 use crate::diagnosis::confidence::Confidence;
+use crate::diagnosis::geometry::Geometry;
+use crate::diagnosis::not_looked_for::NotLookedFor;
 use crate::noise::law::NoiseLaw;
 
 /// What is missing in the model of a muscle, by the data.
@@ -40,6 +42,10 @@ pub struct Diagnosis {
     pub explained: Vec<ExplainedStep>,
     /// What is left.
     pub remaining: Remaining,
+    /// The geometry that the diagnosis rests on, and how doubtful it is.
+    pub geometry: Geometry,
+    /// Effects that could not be looked for in these data, and could be the answer.
+    pub not_looked_for: Vec<NotLookedFor>,
     /// What to measure next, if that would decide something.
     pub next_experiment: Option<NextExperiment>,
     /// What a reader should know before trusting the verdict.

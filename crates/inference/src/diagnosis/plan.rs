@@ -114,10 +114,12 @@ pub fn plan(
     catalogue: &Catalogue,
     protocol: &Protocol,
 ) -> Result<Plan, InferenceError> {
+    // As a diagnosis of these data would have it.
+    let (muscle, doubtful) = &muscle.clone().with_usual_widths();
     let (muscle, specimens) = &protocol.specimens_of(muscle)?;
     let model = known_model(muscle, known, specimens)?;
     let prepared = with_nuisances(&model, catalogue)?;
-    let theta = prepared.model.start();
+    let theta = prepared.start();
     let planned = Planned::of(&prepared.model, &theta, protocol)?;
     let given = planned.given(catalogue);
     let scene = given.scene(&prepared, &theta)?;
@@ -130,6 +132,13 @@ pub fn plan(
         warnings.push(
             "no noise is stated by the protocol or `[instruments]`: 1 % of full scale is assumed".to_owned(),
         );
+    }
+    if !doubtful.is_empty() {
+        let names: Vec<&str> = doubtful.iter().map(|(parameter, _)| parameter.name()).collect();
+        warnings.push(format!(
+            "the usual widths of geometry count for {}, of which the muscle file states none: write such as `+- 0.2 mm`, or `+- 0` if exact",
+            names.join(", ")
+        ));
     }
     let mut effects = effects(&scene, planned.record.len(), muscle);
     effects.sort_by(|a, b| b.usual_sigma.total_cmp(&a.usual_sigma).then(a.effect.cmp(&b.effect)));

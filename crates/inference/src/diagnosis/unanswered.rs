@@ -7,6 +7,7 @@ use crate::comparison::document::{Comparison, DataSummary};
 use crate::comparison::loops::branches;
 use crate::comparison::rows::full_scale;
 use crate::diagnosis::document::{DiagnosedData, DiagnosedNoise, Diagnosis, Remaining, Verdict};
+use crate::diagnosis::geometry::Geometry;
 use crate::diagnosis::write::source;
 use crate::noise::law::{NoiseLaw, NoiseSource};
 
@@ -47,6 +48,8 @@ pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnos
             hints: Vec::new(),
             surface: Vec::new(),
         },
+        geometry: Geometry::default(),
+        not_looked_for: Vec::new(),
         next_experiment: None,
         warnings: Vec::new(),
         comparison: nothing_compared(data, muscle),

@@ -15,6 +15,7 @@ use crate::diagnosis::document::{
     NextExperiment, ParameterResult, Remaining, RivalResult, Verdict,
 };
 use crate::diagnosis::explained::{explained, surface};
+use crate::diagnosis::geometry::Geometry;
 use crate::diagnosis::hints::hints;
 use crate::diagnosis::misfit::{located, misfit};
 use crate::diagnosis::plan::SEEN;
@@ -104,6 +105,8 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
             hints: if adequate { Vec::new() } else { hints(given.record, &last.scene, &left) },
             surface: surface(given.record, &last.scene),
         },
+        geometry: Geometry::default(),
+        not_looked_for: Vec::new(),
         next_experiment: found.next.clone().filter(|_| named),
         warnings: comparison.warnings.clone(),
         comparison,

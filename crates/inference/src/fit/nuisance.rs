@@ -24,6 +24,21 @@ pub(crate) struct Prepared {
     pub(crate) nuisance: Vec<bool>,
 }
 
+impl Prepared {
+    /// Where a fit starts: nuisances as they are stated.
+    pub(crate) fn start(&self) -> Vec<f64> {
+        let mut start = self.model.start();
+        let stated =
+            self.priors.iter().zip(&self.nuisance).map(|(prior, nuisance)| prior.filter(|_| *nuisance));
+        for (value, (mean, _)) in
+            start.iter_mut().zip(stated).filter_map(|(value, prior)| Some((value, prior?)))
+        {
+            *value = mean;
+        }
+        start
+    }
+}
+
 /// Adds to a model what `[instruments]` and stated widths leave open. An effect that was asked for by name keeps its own prior: then it is
 /// not noise.
 pub(crate) fn with_nuisances(model: &Model, catalogue: &Catalogue) -> Result<Prepared, ModelError> {
@@ -52,14 +67,21 @@ pub(crate) fn with_nuisances(model: &Model, catalogue: &Catalogue) -> Result<Pre
         prepared.priors.extend(std::iter::repeat_n(None, added));
         prepared.nuisance.extend(std::iter::repeat_n(true, added));
         let is_it = |p: &bulge_model::ModelParameter| p.effect == width.effect && p.name == width.parameter;
-        // Specimens that differ have each their own.
-        for (prior, _) in
+        // Specimens that differ have each their own, as doubtful in proportion.
+        for (prior, number) in
             prepared.priors.iter_mut().zip(prepared.model.parameters()).filter(|(_, p)| is_it(p))
         {
-            *prior = Some(width.prior);
+            let (mean, sd) = width.prior;
+            let ratio = if mean > 0.0 && number.off > 0.0 { number.off / mean } else { 1.0 };
+            *prior = Some((mean * ratio, sd * ratio));
         }
     }
     Ok(prepared)
+}
+
+/// Numbers of the geometry that a width makes nuisances of.
+pub(crate) const fn is_geometry(parameter: Parameter) -> bool {
+    matches!(parameter, Parameter::Length | Parameter::Radius | Parameter::BraidAngle | Parameter::Wall)
 }
 
 fn known<'c>(catalogue: &'c Catalogue, name: &str) -> Option<&'c Arc<dyn Effect>> {
@@ -89,8 +111,73 @@ fn widths(muscle: &Muscle) -> Vec<Width> {
             Parameter::Radius if muscle.is_pleated() => add("end-radius", "radius", stated, *sd),
             Parameter::Radius => add("radius-error", "radius", stated, *sd),
             Parameter::BraidAngle => add("braid-angle-error", "error", 0.0, *sd),
+            // The gas acts on the wall's inner face where the file says so, and rubber stores energy as its modulus times the thickness.
+            Parameter::Wall => {
+                if muscle.gas_wall().is_some() && !muscle.is_stated(Parameter::GasWall) {
+                    add("wall-thickness", "thickness", stated, *sd);
+                }
+                if let Some(c10) = muscle.get(Parameter::C10) {
+                    add("bladder-elasticity", "modulus", c10, c10 * sd / stated);
+                }
+            }
+            Parameter::GasWall => add("wall-thickness", "thickness", stated, *sd),
             _ => {}
         }
     }
     widths
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_muscles::{from_toml, preset};
+
+    fn priors(muscle: &Muscle) -> Vec<(String, f64, f64)> {
+        let prepared = with_nuisances(&Model::new(muscle), &Catalogue::builtin()).unwrap();
+        assert!(prepared.nuisance.iter().all(|nuisance| *nuisance));
+        let numbers = prepared.model.parameters().iter().zip(&prepared.priors).zip(prepared.start());
+        numbers
+            .map(|((p, prior), start)| {
+                let (mean, sd) = prior.unwrap();
+                assert!((start - mean).abs() <= 0.0, "{} starts at {start}", p.effect);
+                (p.effect.clone(), mean, sd)
+            })
+            .collect()
+    }
+
+    fn are(found: &[(String, f64, f64)], expected: &[(&str, f64, f64)]) {
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for ((name, mean, sd), (wanted, at, width)) in found.iter().zip(expected) {
+            assert_eq!(name, wanted);
+            assert!((mean - at).abs() <= 1e-12 && (sd / width - 1.0).abs() < 1e-12, "{name}: {mean} +- {sd}");
+        }
+    }
+
+    #[test]
+    fn usual_widths_are_priors_of_the_geometry() {
+        let (pleated, _) = preset("ppam-2-r16").unwrap().with_usual_widths();
+        are(&priors(&pleated), &[("fibre-length", 0.0, 0.5 / 110.0), ("end-radius", 0.016, 0.03 * 0.016)]);
+        let (braided, _) = preset("dmsp-20-250").unwrap().with_usual_widths();
+        let geometry = [
+            ("fibre-length", 0.0, 0.5 / 250.0),
+            ("radius-error", 0.010_725, 0.03 * 0.010_725),
+            ("braid-angle-error", 0.0, 2.0_f64.to_radians()),
+        ];
+        // The wall itself moves nothing: its rubber does, and gas that acts on its inner face.
+        are(&priors(&braided), &geometry);
+        let stated =
+            preset("dmsp-20-250").unwrap().with(Parameter::C10, 3e5).unwrap().with_gas_wall(None).unwrap();
+        let [length, radius, angle] = geometry;
+        let wall = [("wall-thickness", 0.002, 0.15 * 0.002), ("bladder-elasticity", 3e5, 0.15 * 3e5)];
+        are(&priors(&stated.with_usual_widths().0), &[length, radius, angle, wall[0], wall[1]]);
+    }
+
+    #[test]
+    fn exact_numbers_have_no_priors() {
+        let file = "name = \"m\"\nkind = \"braided\"\nlength = \"250 mm +- 0\"\nradius = \"10 mm +- 0\"\nbraid_angle = \"25 deg +- 0\"\nwall = \"1 mm +- 0\"\n";
+        let muscle = from_toml(file, "m").unwrap();
+        are(&priors(&muscle.clone().with_usual_widths().0), &[]);
+        let thin = muscle.with_width(Parameter::Radius, 1e-4).unwrap();
+        are(&priors(&thin), &[("radius-error", 0.01, 1e-4)]);
+    }
 }

@@ -3,6 +3,7 @@
 use bulge_inference::{Diagnosis, MOST_EFFECTS, Missing, Remaining, Verdict};
 
 use crate::comparison::number::{newton, three};
+use crate::diagnosis::asides::asides;
 use crate::diagnosis::words::chance;
 
 /// Words after which two sentences are about the same.
@@ -18,15 +19,23 @@ const ADEQUATE: &str = "the model explains these data within noise and tolerance
 const UNKNOWN: &str = "these data hold a structure that no effect of the catalogue explains";
 const TOO_FEW: &str = "these data are too few or too noisy for a verdict";
 
-/// The verdict, one line for each thing that it says; each begins with `missing: `, `remains: `, `adequate: `, `unknown: `, `cannot tell: ` or `nearest: `.
+/// The verdict, one line for each thing that it says; each begins with `missing: `, `remains: `, `adequate: `, `unknown: `, `cannot tell: `, `nearest: `,
+/// `not looked for: ` or `geometry: `.
 ///
 /// ```text
 /// missing: bladder-elasticity (on data like these such a claim is right 97 % of the time)
 /// ```
 /// What is missing comes first, then that something remains. Effects that were tried on the way to another verdict are `nearest: `: nothing is claimed of them.
-/// Where the diagnosis has a sentence of its own for the verdict, with numbers, it is the line.
+/// Where the diagnosis has a sentence of its own for the verdict, with numbers, it is the line. Last come effects that could be the answer and were not looked for,
+/// and the geometry that all this depends on.
 #[must_use]
 pub fn headlines(diagnosis: &Diagnosis) -> Vec<String> {
+    let mut lines = verdict(diagnosis);
+    lines.extend(asides(diagnosis));
+    lines
+}
+
+fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
     let claim = |missing: &Missing| {
         let (right, mechanism) = (chance(missing.confidence), missing.mechanism.name());
         let right = if missing.simulated.claims == 0 {

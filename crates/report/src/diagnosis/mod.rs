@@ -7,6 +7,7 @@
 //! ```
 //! Numbers come from the diagnosis alone: nothing is fitted or predicted here. A misfit is measured - model throughout.
 
+mod asides;
 mod bent;
 mod candidates;
 mod check;

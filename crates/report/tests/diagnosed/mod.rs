@@ -3,7 +3,7 @@
 use bulge_effects::Mechanism;
 use bulge_inference::{
     BentCurve, CandidateResult, Comparison, Confidence, CorrelationTime, DiagnosedData, DiagnosedNoise,
-    Diagnosis, ExplainedCurve, ExplainedStep, FormErrorAt, FormErrorResult, LadderStep, Located, Missing,
+    Diagnosis, ExplainedCurve, ExplainedStep, FormErrorAt, FormErrorResult, Geometry, LadderStep, Located, Missing,
     NextExperiment, NoiseLaw, NoiseSource, ParameterResult, Remaining, RivalResult, SurfaceCurve, Verdict,
 };
 
@@ -48,6 +48,8 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
             hints: vec!["grows with the pressure".to_owned()],
             surface: surface(),
         },
+        geometry: Geometry::default(),
+        not_looked_for: Vec::new(),
         next_experiment: Some(NextExperiment {
             says: "Hold at 3 bar for an hour.".to_owned(),
             separates: vec!["bladder-elasticity".to_owned(), "wall-thickness".to_owned()],

@@ -1,0 +1,411 @@
+//! The geometry that a diagnosis rests on: which numbers are doubtful, where the data move them, and what a better ruler would settle.
+//!
+//! A number of which the muscle file states no width has the one that such muscles have ([`Muscle::with_usual_widths`]), and is fitted along within it. A braid of which no
+//! wall is stated gets a nominal one, so that rubber can be looked for: a force shows modulus times thickness only.
+//!
+//! ```text
+//! departure = d' C^-1 d,    d = found - stated,  C the covariance of the numbers beside all others
+//! ```
+//! From 4 sigma on, the answer on exact geometry is asked for too. A number that the data want more than three usual widths away is one that no such muscle has: the doubt
+//! then stands in for something else, and the answer is that on the geometry as stated.
+
+use bulge_effects::{Catalogue, Mechanism};
+use bulge_model::{ModelParameter, Wanted, Warm};
+use bulge_muscles::units::significant;
+use bulge_muscles::{Muscle, Parameter};
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+
+use crate::comparison::analysis::Analysis;
+use crate::diagnosis::document::{Diagnosis, Missing, Verdict};
+use crate::diagnosis::search::Stage;
+use crate::fit::nuisance::is_geometry;
+use crate::fit::problem::free;
+
+/// Square of the sigmas from the stated geometry, beyond which another answer is asked for: of four numbers chance alone gives as much once in 300 times.
+const DEPARTED: f64 = 16.0;
+/// Usual widths beyond which a number is not doubtful but another muscle's.
+const BEYOND: f64 = 3.0;
+/// Sigmas and widths from which a number is said to have moved.
+const MOVED: [f64; 2] = [2.0, 0.3];
+
+/// How doubtful the geometry is.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Geometry {
+    /// In words; empty where the file states all widths, and the wall.
+    pub says: String,
+    /// Numbers with a width.
+    pub doubtful: Vec<DoubtfulNumber>,
+    /// Numbers that the file doesn't state, and that were assumed.
+    pub assumed: Vec<AssumedNumber>,
+    /// RMS error of the base with the geometry, the rig and everything else as stated \[N\].
+    pub as_stated_rmse_n: Option<f64>,
+    /// Square of the distance between the geometry that was found and the stated one, in sigmas.
+    pub departure: f64,
+    /// The answer with exact numbers instead of usual widths, where the data are far from those; none where they are not.
+    pub if_exact: Option<OtherAnswer>,
+    /// The answer with usual widths, where the geometry is taken as stated because they would not do; none where it is taken as doubtful.
+    pub if_doubtful: Option<OtherAnswer>,
+}
+
+/// A number of the geometry with its doubt.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DoubtfulNumber {
+    /// Its key in the muscle file.
+    pub number: String,
+    /// Value as stated, in `unit`.
+    pub value: f64,
+    /// One standard deviation.
+    pub width: f64,
+    /// The unit of all.
+    pub unit: &'static str,
+    /// Whether the file states no width: then it is the one that such muscles have.
+    pub by_default: bool,
+    /// What the data make of it; none if the force doesn't depend on it by itself.
+    pub found: Option<MovedNumber>,
+}
+
+/// A doubtful number after the fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MovedNumber {
+    /// Value.
+    pub value: f64,
+    /// Standard deviation; none if the data and the width don't determine it.
+    pub sd: Option<f64>,
+    /// How far it is from the stated value, in widths.
+    pub widths: f64,
+}
+
+/// A number that was assumed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AssumedNumber {
+    /// Its key in the muscle file.
+    pub number: &'static str,
+    /// Value in `unit`.
+    pub value: f64,
+    /// The unit.
+    pub unit: &'static str,
+}
+
+/// The answer if the doubtful numbers were exact, or the other way round.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OtherAnswer {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Names of the effects that would be missing.
+    pub missing: Vec<String>,
+    /// Whether that is another answer.
+    pub differs: bool,
+}
+
+impl OtherAnswer {
+    fn of(other: &Diagnosis, answer: &Diagnosis) -> Self {
+        let differs = other.verdict != answer.verdict || names(other) != names(answer);
+        Self { verdict: other.verdict, missing: names(other), differs }
+    }
+
+    fn says(&self) -> String {
+        match self.verdict {
+            Verdict::Adequate => "nothing missing".to_owned(),
+            Verdict::Missing => format!("missing: {}", self.missing.join(" and ")),
+            Verdict::Unknown => "unknown".to_owned(),
+            Verdict::CannotTell => "that these data cannot tell".to_owned(),
+        }
+    }
+}
+
+fn names(diagnosis: &Diagnosis) -> Vec<String> {
+    diagnosis.missing.iter().map(|missing| missing.effect.clone()).collect()
+}
+
+/// A muscle with the doubt of what its file doesn't state.
+pub(crate) struct Doubt {
+    /// With usual widths.
+    pub(crate) doubted: Muscle,
+    /// With exact numbers instead.
+    pub(crate) exact: Muscle,
+    added: Vec<Parameter>,
+    /// The wall that was assumed \[m\].
+    wall: Option<f64>,
+}
+
+impl Doubt {
+    pub(crate) fn of(muscle: &Muscle) -> Self {
+        let (doubted, added) = muscle.clone().with_usual_widths();
+        let (doubted, wall) = doubted.with_usual_wall();
+        let added: Vec<Parameter> = added.into_iter().map(|(parameter, _)| parameter).collect();
+        let sure = |muscle: Muscle, p: &Parameter| muscle.clone().with_width(*p, 0.0).unwrap_or(muscle);
+        Self { exact: added.iter().fold(doubted.clone(), sure), doubted, added, wall }
+    }
+
+    /// The diagnosis that counts, after one on the doubted geometry: `answer_on` exact geometry is asked for where another is to be expected.
+    pub(crate) fn settled<E>(
+        &self,
+        mut doubtful: Diagnosis,
+        answer_on: impl FnOnce(&Muscle) -> Result<Diagnosis, E>,
+    ) -> Result<Diagnosis, E> {
+        for number in &mut doubtful.geometry.doubtful {
+            number.by_default = self.added.iter().any(|parameter| parameter.name() == number.number);
+        }
+        let beyond = |number: &DoubtfulNumber| {
+            number.by_default && number.found.as_ref().is_some_and(|found| found.widths.abs() > BEYOND)
+        };
+        let is_beyond = doubtful.geometry.doubtful.iter().any(beyond);
+        if self.added.is_empty() || !(is_beyond || doubtful.geometry.departure > DEPARTED) {
+            return Ok(doubtful);
+        }
+        let mut exact = answer_on(&self.exact)?;
+        if is_beyond && exact.verdict != Verdict::CannotTell {
+            let if_doubtful = Some(OtherAnswer::of(&doubtful, &exact));
+            exact.geometry = Geometry { if_doubtful, ..doubtful.geometry };
+            return Ok(exact);
+        }
+        doubtful.geometry.if_exact = Some(OtherAnswer::of(&exact, &doubtful));
+        Ok(doubtful)
+    }
+
+    /// Completes the geometry of a diagnosis, with its sentence.
+    pub(crate) fn say(&self, diagnosis: &mut Diagnosis, catalogue: &Catalogue) {
+        let rubber = self.wall.map(|wall| rubber(diagnosis, catalogue, wall));
+        let geometry = &mut diagnosis.geometry;
+        geometry.assumed = self
+            .wall
+            .map(|wall| AssumedNumber { number: "wall", value: 1e3 * wall, unit: "mm" })
+            .into_iter()
+            .collect();
+        geometry.says = [rubber.unwrap_or_default(), geometry.doubt_says()]
+            .into_iter()
+            .filter(|says| !says.is_empty())
+            .collect::<Vec<_>>()
+            .join("; ");
+    }
+}
+
+/// What rubber of which only modulus times thickness is known was found with.
+fn rubber(diagnosis: &Diagnosis, catalogue: &Catalogue, wall: f64) -> String {
+    let is_modulus = |missing: &Missing, name: &str| {
+        let effect = catalogue.find(&missing.fitted).ok()?;
+        let is_rubber = effect.card().mechanism == Mechanism::Rubber;
+        effect
+            .parameters()
+            .iter()
+            .find(|p| is_rubber && p.name == name && p.unit == "MPa")
+            .map(|p| p.key.to_owned())
+    };
+    let found: Vec<String> = diagnosis
+        .added()
+        .flat_map(|missing| missing.parameters.iter().map(move |(name, number)| (missing, name, number)))
+        .filter_map(|(missing, name, number)| {
+            let key = is_modulus(missing, name)?;
+            let line = |modulus: f64| significant(1e6 * modulus * wall, 3);
+            let (value, low, high) = (line(number.value), line(number.low), line(number.high));
+            Some(format!("{} is known as {key} x t = {value} N/m ({low} to {high})", missing.effect))
+        })
+        .collect();
+    if found.is_empty() {
+        return String::new();
+    }
+    format!(
+        "{}: the wall t isn't stated, {} mm assumed; write `wall = \"...\"` into the muscle file",
+        found.join(", "),
+        significant(1e3 * wall, 3)
+    )
+}
+
+impl Geometry {
+    fn doubt_says(&self) -> String {
+        let taken: Vec<&DoubtfulNumber> = self.doubtful.iter().filter(|number| number.by_default).collect();
+        if taken.is_empty() {
+            return String::new();
+        }
+        let stated: Vec<String> = taken.iter().map(|number| number.says()).collect();
+        let moved: Vec<String> = taken.iter().filter_map(|number| number.moved_says()).collect();
+        let data = match (moved.is_empty(), self.as_stated_rmse_n) {
+            (true, _) => "the data move none of them".to_owned(),
+            (false, Some(error)) => {
+                format!(
+                    "the data want {} (as stated the base is off by {} N)",
+                    moved.join(", "),
+                    significant(error, 3)
+                )
+            }
+            (false, None) => format!("the data want {}", moved.join(", ")),
+        };
+        let default = format!("{} by default (state `+- ...`, `+- 0` if exact)", stated.join(", "));
+        let ruler = || self.ruler().map_or_else(String::new, |ruler| format!(": {ruler} settles that"));
+        match (&self.if_exact, &self.if_doubtful) {
+            (_, Some(other)) if other.differs => format!(
+                "{default}: {data}, which no such muscle has, so all is taken as stated; with that doubt the answer would be {}{}",
+                other.says(),
+                ruler()
+            ),
+            (_, Some(_)) => {
+                format!(
+                    "{default}: {data}, which no such muscle has, so all is taken as stated; the answer is the same with that doubt"
+                )
+            }
+            (Some(other), _) if other.differs => {
+                format!("{default}: {data}; were they exact, the answer would be {}{}", other.says(), ruler())
+            }
+            (Some(_), _) => format!("{default}: {data}; were they exact, the answer would be the same"),
+            (None, None) => format!("{default}: {data}"),
+        }
+    }
+
+    /// The measurement that decides: of the number that moved furthest, to a third of that.
+    fn ruler(&self) -> Option<String> {
+        let moved =
+            self.doubtful.iter().filter(|n| n.by_default).filter_map(|n| Some((n, n.found.as_ref()?)));
+        let (number, found) = moved.max_by(|a, b| a.1.widths.abs().total_cmp(&b.1.widths.abs()))?;
+        let to = significant((found.value - number.value).abs() / 3.0, 1);
+        Some(format!("the {} measured to {to} {}", number.number.replace('_', " "), number.unit))
+    }
+}
+
+impl DoubtfulNumber {
+    fn says(&self) -> String {
+        format!(
+            "{} {} {} +- {}",
+            self.number.replace('_', " "),
+            significant(self.value, 4),
+            self.unit,
+            significant(self.width, 2)
+        )
+    }
+
+    fn moved_says(&self) -> Option<String> {
+        let found = self.found.as_ref()?;
+        let sd = found.sd?;
+        let is_far = (found.value - self.value).abs() > MOVED[0] * sd && found.widths.abs() > MOVED[1];
+        is_far.then(|| {
+            let (value, widths) = (significant(found.value, 4), significant(found.widths.abs(), 2));
+            format!("{} {value} {}, {widths} widths off", self.number.replace('_', " "), self.unit)
+        })
+    }
+}
+
+/// One number of the fit that stands for one of the geometry.
+struct Fitted {
+    parameter: Parameter,
+    /// Place among the free numbers.
+    place: usize,
+    /// Value and stated value, in SI of the parameter.
+    value: f64,
+    stated: f64,
+    /// From the coordinates of the search to SI of the parameter.
+    per_coordinate: f64,
+    /// Distance in coordinates.
+    distance: f64,
+}
+
+/// The geometry as a model has it.
+pub(crate) fn geometry(analysis: &Analysis<'_>, stage: &Stage) -> Geometry {
+    let muscle = analysis.muscle;
+    let fitted = fitted(muscle, stage);
+    let minimum = &stage.confirmed.minimum;
+    let sd = minimum.standard_deviations(stage.scatter());
+    let in_unit = |parameter: Parameter, value: f64| match parameter {
+        Parameter::BraidAngle => (value.to_degrees(), "deg"),
+        _ => (1e3 * value, "mm"),
+    };
+    let doubtful = muscle.widths().iter().filter(|(p, width)| is_geometry(*p) && *width > 0.0);
+    let number = |(parameter, width): &(Parameter, f64)| {
+        let (value, unit) = in_unit(*parameter, muscle.get(*parameter)?);
+        let found = fitted.iter().find(|f| f.parameter == *parameter).map(|f| MovedNumber {
+            value: in_unit(*parameter, f.value).0,
+            sd: sd.get(f.place).copied().flatten().map(|sd| in_unit(*parameter, sd * f.per_coordinate).0),
+            widths: (f.value - f.stated) / width,
+        });
+        let width = in_unit(*parameter, *width).0;
+        Some(DoubtfulNumber {
+            number: parameter.name().to_owned(),
+            value,
+            width,
+            unit,
+            by_default: false,
+            found,
+        })
+    };
+    Geometry {
+        doubtful: doubtful.filter_map(number).collect(),
+        as_stated_rmse_n: as_stated(analysis),
+        departure: departure(stage, &fitted),
+        ..Geometry::default()
+    }
+}
+
+fn fitted(muscle: &Muscle, stage: &Stage) -> Vec<Fitted> {
+    let confirmed = &stage.confirmed;
+    let numbers = confirmed.prepared.model.parameters();
+    let mut found: Vec<Fitted> = Vec::new();
+    for (place, index) in free(&confirmed.prepared.model).into_iter().enumerate() {
+        let number = &numbers[index];
+        let Some((parameter, at_off, scale)) = stands_for(muscle, number, confirmed.prepared.nuisance[index])
+        else {
+            continue;
+        };
+        // Of specimens that differ, the first stands for all.
+        if found.iter().any(|f| f.parameter == parameter) {
+            continue;
+        }
+        let value = confirmed.theta[index];
+        let stated = muscle.get(parameter).unwrap_or(0.0);
+        let of_stated = (stated - at_off) / scale;
+        let (distance, slope) =
+            if number.logarithmic { ((value / of_stated).ln(), value) } else { (value - of_stated, 1.0) };
+        let per_coordinate = (slope * scale).abs();
+        found.push(Fitted {
+            parameter,
+            place,
+            value: at_off + scale * value,
+            stated,
+            per_coordinate,
+            distance,
+        });
+    }
+    found
+}
+
+/// The number of the geometry that a number of an effect stands for, as `(parameter, offset, factor)`: parameter = offset + factor number.
+fn stands_for(muscle: &Muscle, number: &ModelParameter, is_nuisance: bool) -> Option<(Parameter, f64, f64)> {
+    let stated = |parameter| muscle.get(parameter);
+    match number.effect.as_str() {
+        "fibre-length" => stated(Parameter::Length).map(|l| (Parameter::Length, l, l)),
+        "end-radius" if muscle.is_pleated() => Some((Parameter::Radius, 0.0, 1.0)),
+        "radius-error" => Some((Parameter::Radius, 0.0, 1.0)),
+        "braid-angle-error" => stated(Parameter::BraidAngle).map(|angle| (Parameter::BraidAngle, angle, 1.0)),
+        "bladder-elasticity" if is_nuisance && number.key == "c10" => {
+            let (wall, c10) = (stated(Parameter::Wall)?, stated(Parameter::C10)?);
+            Some((Parameter::Wall, 0.0, wall / c10))
+        }
+        "wall-thickness" if is_nuisance => Some((Parameter::Wall, 0.0, 1.0)),
+        _ => None,
+    }
+}
+
+fn departure(stage: &Stage, fitted: &[Fitted]) -> f64 {
+    let minimum = &stage.confirmed.minimum;
+    let (all, some) = (minimum.theta.len(), fitted.len());
+    if some == 0 {
+        return 0.0;
+    }
+    let covariance = minimum.covariance(stage.scatter());
+    let of = |i: usize, j: usize| covariance[fitted[i].place * all + fitted[j].place];
+    let distance = DVector::from_iterator(some, fitted.iter().map(|f| f.distance));
+    let found = DMatrix::from_fn(some, some, of).cholesky().map(|c| distance.dot(&c.solve(&distance)));
+    // A number that a bound holds has no covariance, and is as far as it can be.
+    found.filter(|square| square.is_finite()).unwrap_or(f64::MAX)
+}
+
+/// RMS error of the base with nothing fitted \[N\].
+fn as_stated(analysis: &Analysis<'_>) -> Option<f64> {
+    let model = analysis.base(0).ok()?;
+    let counting = Warm::of_rows(&analysis.used.mask);
+    let found =
+        model.evaluate_partly(&analysis.record, &model.start(), &Wanted::default(), &counting).ok()?;
+    let force = &found.prediction.force;
+    let forces = [force];
+    let errors = analysis.with_state(&forces).map(|row| (analysis.record.force()[row] - force[row]).powi(2));
+    let (rows, square) = errors.fold((0_usize, 0.0), |(n, sum), error| (n + 1, sum + error));
+    (rows > 0).then(|| (square / rows as f64).sqrt())
+}
