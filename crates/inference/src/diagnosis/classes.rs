@@ -11,9 +11,11 @@ use std::sync::Arc;
 
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::confirm::Confirmed;
+use crate::diagnosis::hypotheses::{Hypothesis, Tried, singles, ticket};
 use crate::diagnosis::scene::{Given, Scene};
-use crate::diagnosis::search::{Hypothesis, Stage, Tried, WORTH, singles, tempered};
+use crate::diagnosis::search::WORTH;
 use crate::diagnosis::space::Space;
+use crate::diagnosis::stage::{Stage, tempered};
 use crate::dot::dot;
 
 /// Rivals whose log evidence is less than this below stay in the class.
@@ -103,7 +105,7 @@ impl Given<'_> {
         let bent: Vec<&Vec<f64>> = stage.scene.bent.iter().collect();
         let name = effect.card().name;
         let own = without.scene.showings.effects.iter().position(|s| s.effect.card().name == name);
-        let ticket = own.map_or(0.0, |own| crate::diagnosis::search::ticket(&without.scene, own));
+        let ticket = own.map_or(0.0, |own| ticket(&without.scene, own));
         let scatter = stage.scatter();
         let gain = without.confirmed.bent_cost() - stage.confirmed.bent_cost();
         let log_evidence =

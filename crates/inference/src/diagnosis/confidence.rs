@@ -9,10 +9,12 @@ use serde::Serialize;
 
 use crate::diagnosis::candidates::{Candidate, log_evidence};
 use crate::diagnosis::classes::{Class, DECIDED, EVIDENCE, Rival, SAME, SEPARATION};
+use crate::diagnosis::hypotheses::{Tried, ticket};
 use crate::diagnosis::null::{Null, Statistics};
 use crate::diagnosis::scene::{Given, Scene};
-use crate::diagnosis::search::{ALARM, Tried, WORTH, ticket};
+use crate::diagnosis::search::WORTH;
 use crate::diagnosis::showing::Screened;
+use crate::diagnosis::stage::ALARM;
 use crate::dot::dot;
 use bulge_numerics::Random;
 

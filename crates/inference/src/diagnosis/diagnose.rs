@@ -20,7 +20,8 @@ use crate::diagnosis::ground::{Ground, Stop, effective_rows, ground, ground_agai
 use crate::diagnosis::next::{Judged, Limits, NextLimits, next_experiment};
 use crate::diagnosis::not_looked_for::not_looked_for;
 use crate::diagnosis::scene::Given;
-use crate::diagnosis::search::{Search, Stage};
+use crate::diagnosis::search::Search;
+use crate::diagnosis::stage::Stage;
 use crate::diagnosis::unanswered::{cannot_tell, unanswered};
 use crate::diagnosis::write::{Findings, document};
 use crate::error::InferenceError;

@@ -18,7 +18,7 @@ use serde::Serialize;
 
 use crate::comparison::analysis::Analysis;
 use crate::diagnosis::document::{Diagnosis, Missing, Verdict};
-use crate::diagnosis::search::Stage;
+use crate::diagnosis::stage::Stage;
 use crate::fit::nuisance::is_geometry;
 use crate::fit::problem::free;
 

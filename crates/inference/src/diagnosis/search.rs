@@ -6,158 +6,31 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::diagnosis::bending::may_bend;
-use crate::diagnosis::candidates::{Candidate, explained, log_evidence};
-use crate::diagnosis::confirm::{Confirmed, starts};
-use crate::diagnosis::misfit::misfit;
-use crate::diagnosis::null::Null;
-use crate::diagnosis::scene::{Given, Scene};
-use crate::diagnosis::something_else::smooth_evidence;
+use crate::diagnosis::confirm::Confirmed;
+use crate::diagnosis::hypotheses::{FAR, Hypothesis, Tried, hypotheses, ticket};
+use crate::diagnosis::scene::Given;
+use crate::diagnosis::stage::{Stage, tempered};
 
-/// Chance with which the screen may raise a false alarm, and the smooth test.
-pub(crate) const ALARM: [f64; 2] = [0.03, 0.006];
-/// Chance with which the smooth test may raise one where effects are named: to say that they explain everything takes more than to say nothing.
-const EXPLAINED: f64 = 0.01;
 /// Log evidence from which the first effect is worth naming: before any data it is seven times as likely that something is missing in a model of a real muscle
 /// as that nothing is. That a second effect is missing too is no more likely than not.
 pub(crate) const WORTH: [f64; 2] = [-2.0, 0.0];
-/// Log evidence of something that nobody thought of, before any data.
-const SOMETHING_ELSE: f64 = -2.0;
 /// Part of what form errors bring that doesn't count when hypotheses are put in order: of two that explain as much the one whose formula is nearer.
 const BY_BENDING: f64 = 0.1;
-/// Part of what a model explains that no comparison with something else rests on: no formula, however bent, is nearer to a real effect.
-const DIGITS: f64 = 0.002;
 /// Log evidence of form errors from which another effect is looked for that makes them superfluous, and what it must bring.
 const BENT: f64 = 4.0;
 const SUPERFLUOUS: f64 = 3.0;
 /// Part of the log evidence of form errors that another effect may leave to make them superfluous.
 const LESS_BENT: f64 = 0.5;
-/// Readings scatter about a model if the mean square of their misfit is that many standard deviations beyond 1, and larger than this.
-const SCATTERS: [f64; 2] = [6.0, 1.5];
 /// Part of what a model explains that a further effect must explain where the formulas of the model may be wrong: what explains less mends a formula.
 const MENDS: f64 = 0.02;
 /// Effects that are added at most: a misfit that takes more is one that the catalogue doesn't hold.
 pub const MOST_EFFECTS: usize = 3;
-/// Hypotheses whose linear evidence is this much below the best are not fitted.
-const FITTED: f64 = 12.0;
-/// A fall of the square of the misfit beyond which tangents say little: then usual numbers are starts too, and the best of each kind are fitted.
-const FAR: f64 = 200.0;
 /// Part of the fall that the tangents say, from which they hold: then no other starts are needed.
 const PROMISED: f64 = 0.95;
 /// A fall of the sum of squares from which a minimum is another one: half a unit of log evidence.
 const LOWER: f64 = 1.0;
-/// Most single effects and most pairs that are fitted.
-const MOST: [usize; 2] = [8, 6];
-/// Forms from which a fit of an effect starts.
-const FORMS: usize = 2;
-/// Log evidence that an effect of time must bring beyond one of the path alone.
-const SIMPLER: f64 = 0.2;
 /// Log evidence that a second effect must bring at once to be named with the first.
 const PAIR: f64 = 3.0;
-
-/// One or two effects, with what they would explain in linear approximation.
-#[derive(Debug, Clone)]
-pub(crate) struct Hypothesis {
-    /// Places in the scene's list of effects.
-    pub(crate) effects: Vec<usize>,
-    /// Log evidence with the prior tickets, over that of the model without them.
-    pub(crate) log_evidence: f64,
-    /// Fall of the square of the misfit.
-    pub(crate) gain: f64,
-    /// Starting numbers of a fit.
-    pub(crate) starts: Vec<Vec<f64>>,
-}
-
-/// A hypothesis after its fit.
-#[derive(Debug, Clone)]
-pub(crate) struct Tried {
-    pub(crate) hypothesis: Hypothesis,
-    /// The fit; none if it failed.
-    pub(crate) confirmed: Option<Confirmed>,
-    /// Log evidence of the fit with tickets, over that of the model before.
-    pub(crate) log_evidence: f64,
-}
-
-/// Whether a model explains the data.
-#[derive(Debug, Clone)]
-pub(crate) struct Adequacy {
-    pub(crate) null: Null,
-    /// Whether effects are named.
-    names: bool,
-    /// How often chance alone gives as much: the screen, the smooth test.
-    pub(crate) chance: [f64; 2],
-    /// Whether the readings scatter about the model by much more than the noise does, in whatever way.
-    pub(crate) fit_fails: bool,
-}
-
-impl Adequacy {
-    pub(crate) fn screen_fails(&self) -> bool {
-        self.chance[0] < ALARM[0]
-    }
-
-    pub(crate) fn smooth_fails(&self) -> bool {
-        self.chance[1] < if self.names { EXPLAINED } else { ALARM[1] }
-    }
-
-    pub(crate) fn holds(&self) -> bool {
-        !self.screen_fails() && !self.smooth_fails() && !self.fit_fails
-    }
-}
-
-/// A model of the path from the base to the last step.
-pub(crate) struct Stage {
-    /// Effects that were added to the base.
-    pub(crate) added: Vec<Arc<dyn Effect>>,
-    pub(crate) confirmed: Confirmed,
-    pub(crate) scene: Scene,
-    pub(crate) adequacy: Adequacy,
-    /// Whether the model explains the data.
-    pub(crate) adequate: bool,
-    /// What was tried from here.
-    pub(crate) tried: Vec<Tried>,
-}
-
-impl Stage {
-    /// The added effects but one.
-    pub(crate) fn without(&self, place: usize) -> Vec<Arc<dyn Effect>> {
-        let others = self.added.iter().enumerate().filter(|(i, _)| *i != place);
-        others.map(|(_, effect)| Arc::clone(effect)).collect()
-    }
-
-    /// Square of the misfit that smooth functions follow, beyond what chance gives.
-    pub(crate) fn excess(&self) -> f64 {
-        (self.scene.structure() - self.scene.smooth.len() as f64).max(0.0)
-    }
-
-    /// Log evidence of something that nobody thought of on top of the model; 0 where nothing is left to explain.
-    pub(crate) fn something_else(&self) -> f64 {
-        if self.adequate { 0.0 } else { (SOMETHING_ELSE + smooth_evidence(&self.scene)).max(0.0) }
-    }
-
-    /// Log evidence of the model, with or without something else on top, over that of another; implausible numbers cost nothing here.
-    fn value_over(&self, other: &Self) -> f64 {
-        let own = |stage: &Self| stage.confirmed.log_evidence + stage.confirmed.penalty;
-        own(self) - own(other) + self.something_else()
-    }
-
-    /// Log evidence that the last digits of a formula are worth, where a smooth misfit follows them and the formula doesn't.
-    fn digits_over(&self, base: &Self) -> f64 {
-        0.5 * DIGITS * (base.confirmed.bent_cost() - self.confirmed.bent_cost()).max(0.0)
-    }
-
-    /// How much more than chance the misfit scatters over the smooth functions, as a ratio of variances: 1 if the model explains the data.
-    pub(crate) fn scatter(&self) -> f64 {
-        let smooth = &self.scene.smooth;
-        if self.adequate || smooth.is_empty() {
-            return 1.0;
-        }
-        (self.scene.structure() / smooth.len() as f64).max(1.0)
-    }
-}
-
-/// A log evidence when the noise is larger by the ratio `scatter` of variances than the law says; `gain` is the fall of the square of the misfit in it.
-pub(crate) fn tempered(log_evidence: f64, gain: f64, scatter: f64) -> f64 {
-    log_evidence - 0.5 * gain * (1.0 - 1.0 / scatter)
-}
 
 /// A whole search: the base first, then each model that was accepted.
 pub(crate) struct Search {
@@ -204,39 +77,7 @@ impl Search {
         self.stages.push(stage);
     }
 }
-
 impl Given<'_> {
-    /// A model with its scene and adequacy.
-    pub(crate) fn stage(
-        &self,
-        added: Vec<Arc<dyn Effect>>,
-        confirmed: Confirmed,
-    ) -> Result<Stage, ModelError> {
-        let scene = self.scene(&confirmed.prepared, &confirmed.theta)?;
-        let (null, chance) = scene.chance(self);
-        let fit_fails = self.scatters(&confirmed);
-        let adequacy = Adequacy { null, names: !added.is_empty(), chance, fit_fails };
-        let is_small =
-            || self.tolerance_n.is_some_and(|tolerance| misfit(&scene, self.seed).1[1] <= tolerance);
-        // A test may be surprised by what no smooth misfit explains: that is no structure.
-        let is_chance = || {
-            !added.is_empty()
-                && !adequacy.screen_fails()
-                && !fit_fails
-                && SOMETHING_ELSE + smooth_evidence(&scene) <= 0.0
-        };
-        let adequate = adequacy.holds() || is_small() || is_chance();
-        Ok(Stage { added, confirmed, scene, adequate, adequacy, tried: Vec::new() })
-    }
-
-    /// Whether readings scatter about a model by much more than their noise.
-    fn scatters(&self, confirmed: &Confirmed) -> bool {
-        let rows = self.record.len() as f64;
-        let ratio = confirmed.bent_cost() / rows;
-        let sd = (2.0 / rows + 2.0 / self.law.degrees_of_freedom.max(1.0)).sqrt();
-        ratio > (1.0 + SCATTERS[0] * sd).max(SCATTERS[1])
-    }
-
     /// From the base model to the set of effects that explains the data, or to where nothing more helps.
     ///
     /// `near` are numbers that the base is known to have about; `before` is a search of the same readings with another noise: where its fits ended, fits begin.
@@ -462,145 +303,4 @@ fn ranked(tried: &[Tried]) -> Vec<(&Tried, &Confirmed)> {
     };
     list.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     list
-}
-
-/// Log of the prior chance of an effect: families are equally likely; the head of a family has half of its chance, the other members share the rest.
-pub(crate) fn ticket(scene: &Scene, effect: usize) -> f64 {
-    let effects = &scene.showings.effects;
-    let shown = |place: usize| scene.candidates.iter().any(|c| c.effect == place);
-    let family_of = |place: usize| effects[place].effect.card().family.to_owned();
-    let mut families: Vec<String> = (0..effects.len()).filter(|i| shown(*i)).map(family_of).collect();
-    families.sort();
-    let own = family_of(effect);
-    let members = families.iter().filter(|family| **family == own).count();
-    families.dedup();
-    let of_family = -(families.len().max(1) as f64).ln();
-    let heads = (0..effects.len()).filter(|i| shown(*i) && effects[*i].effect.card().name == own).count();
-    let is_head = effects[effect].effect.card().name == own;
-    // Of two that are the same on these data, the one that takes less to be seen.
-    let simple =
-        if effects[effect].effect.card().needs == bulge_effects::Needs::Time { -SIMPLER } else { 0.0 };
-    of_family
-        + simple
-        + match (members, heads, is_head) {
-            (0 | 1, _, _) => 0.0,
-            (_, 0, _) => -(members as f64).ln(),
-            (_, _, true) => 0.5_f64.ln(),
-            (_, _, false) => (0.5 / (members - 1) as f64).ln(),
-        }
-}
-
-/// Single effects and pairs that may explain the misfit, the best of each first.
-pub(crate) fn hypotheses(scene: &Scene, model: &Model, room: usize) -> Vec<Hypothesis> {
-    let singles = singles(scene, model);
-    let pairs = if room > 1 { pairs(scene, model) } else { Vec::new() };
-    let best = singles.iter().chain(&pairs).map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
-    let near = |list: Vec<Hypothesis>, most: usize| {
-        list.into_iter()
-            .filter(|h| h.log_evidence > best - FITTED || best > FAR)
-            .take(most)
-            .collect::<Vec<_>>()
-    };
-    let mut all = near(singles, MOST[0]);
-    all.extend(near(pairs, MOST[1]));
-    all
-}
-
-/// Every effect with the forms that suit best.
-pub(crate) fn singles(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
-    let mut found: Vec<Hypothesis> = Vec::new();
-    for effect in 0..scene.showings.effects.len() {
-        let mut forms: Vec<(f64, f64, &Candidate, Vec<f64>)> = scene
-            .candidates
-            .iter()
-            .filter(|c| c.effect == effect)
-            .map(|c| {
-                let explained = c.explains(&scene.z);
-                (c.log_evidence(&explained), explained.gain, c, explained.sizes)
-            })
-            .collect();
-        forms.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let Some((largest, gain, _, _)) = forms.first() else { continue };
-        let (largest, gain) = (*largest, *gain);
-        let sum: f64 = forms.iter().map(|form| (form.0 - largest).exp()).sum();
-        let starts =
-            forms.iter().take(FORMS).flat_map(|(_, _, c, sizes)| starts_of(scene, model, c, sizes)).collect();
-        let log_evidence = largest + sum.ln() + ticket(scene, effect);
-        found.push(Hypothesis { effects: vec![effect], log_evidence, gain, starts });
-    }
-    found.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
-    found
-}
-
-fn starts_of(scene: &Scene, model: &Model, candidate: &Candidate, sizes: &[f64]) -> Vec<Vec<f64>> {
-    let effect = &scene.showings.effects[candidate.effect].effect;
-    starts(&scene.showings.showings[candidate.showing], effect, model, sizes)
-}
-
-/// Every pair of effects of different families, at the forms that suit best together.
-fn pairs(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
-    let effects = &scene.showings.effects;
-    let family = |candidate: &Candidate| effects[candidate.effect].effect.card().family;
-    let tickets: Vec<f64> = (0..effects.len()).map(|i| ticket(scene, i)).collect();
-    let all = &scene.candidates;
-    let mut found: Vec<(f64, f64, usize, usize)> = (0..all.len())
-        .into_par_iter()
-        .map(|i| {
-            let mut best: Vec<(f64, f64, usize, usize)> = Vec::new();
-            for j in i + 1..all.len() {
-                let (a, b) = (&all[i], &all[j]);
-                if a.effect == b.effect || family(a) == family(b) || a.columns.len() + b.columns.len() > 3 {
-                    continue;
-                }
-                let together = explained(&[a, b], &scene.z);
-                // A pair of which one does nothing is no pair.
-                if together.sizes.contains(&0.0) {
-                    continue;
-                }
-                let value = log_evidence(&[a, b], &together) + tickets[a.effect] + tickets[b.effect];
-                best.push((value, together.gain, i, j));
-            }
-            best
-        })
-        .flatten()
-        .collect();
-    found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2.cmp(&b.2)).then(a.3.cmp(&b.3)));
-    let mut kept: Vec<Hypothesis> = Vec::new();
-    for (log_evidence, gain, i, j) in found {
-        let places = [all[i].effect, all[j].effect];
-        if kept.len() >= MOST[1] {
-            break;
-        }
-        if kept.iter().any(|h| places.iter().all(|place| h.effects.contains(place))) {
-            continue;
-        }
-        // What explains more alone comes first.
-        let alone = |place: usize| all[place].explains(&scene.z).gain;
-        let (first, second) = if alone(i) >= alone(j) { (i, j) } else { (j, i) };
-        let chosen = [&all[first], &all[second]];
-        let together = explained(&chosen, &scene.z);
-        let (a, b) = together.sizes.split_at(chosen[0].columns.len());
-        let starts_a = starts_of(scene, model, chosen[0], a);
-        let starts_b = starts_of(scene, model, chosen[1], b);
-        let starts = starts_a
-            .iter()
-            .flat_map(|a| starts_b.iter().map(move |b| a.iter().chain(b).copied().collect()))
-            .collect();
-        let effects = vec![all[first].effect, all[second].effect];
-        kept.push(Hypothesis { effects, log_evidence, gain, starts });
-    }
-    kept
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn scatter_beyond_the_noise_takes_its_part_of_the_evidence() {
-        let is = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found}");
-        // ln Z holds gain/2; with four times the variance a quarter of that is left.
-        is(tempered(10.0, 12.0, 4.0), 10.0 - 6.0 + 1.5);
-        is(tempered(10.0, 12.0, 1.0), 10.0);
-    }
 }

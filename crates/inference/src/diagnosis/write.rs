@@ -17,10 +17,12 @@ use crate::diagnosis::document::{
 use crate::diagnosis::explained::{explained, surface};
 use crate::diagnosis::geometry::Geometry;
 use crate::diagnosis::hints::hints;
+use crate::diagnosis::hypotheses::singles;
 use crate::diagnosis::misfit::{located, misfit};
 use crate::diagnosis::plan::SEEN;
 use crate::diagnosis::scene::Given;
-use crate::diagnosis::search::{MOST_EFFECTS, Search, Stage, singles};
+use crate::diagnosis::search::{MOST_EFFECTS, Search};
+use crate::diagnosis::stage::Stage;
 use crate::dot::dot;
 use crate::fit::interval;
 use crate::fit::problem::{FitProblem, free};

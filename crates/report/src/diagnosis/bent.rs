@@ -58,8 +58,8 @@ fn plot(
         curves.iter().flat_map(|c| c.formula_n.iter().copied().chain(ends(c, -1.0)).chain(ends(c, 1.0)));
     let each = |svg: &mut Svg, panel: &_, place: usize| {
         let (piece, curve) = (&pieces[place], &curves[place]);
-        let mut band = piece.points(panel, ends(curve, -1.0).into_iter());
-        band.extend(piece.points(panel, ends(curve, 1.0).into_iter()).into_iter().rev());
+        let mut band = piece.points(panel, ends(curve, -1.0));
+        band.extend(piece.points(panel, ends(curve, 1.0)).into_iter().rev());
         svg.veil(&band, colour(piece.direction), 0.18);
         let formula = piece.points(panel, curve.formula_n.iter().copied());
         svg.polyline(&formula, Stroke::dashed(colour(piece.direction), 1.5));

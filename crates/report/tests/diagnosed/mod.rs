@@ -3,8 +3,9 @@
 use bulge_effects::Mechanism;
 use bulge_inference::{
     BentCurve, CandidateResult, Comparison, Confidence, CorrelationTime, DiagnosedData, DiagnosedNoise,
-    Diagnosis, ExplainedCurve, ExplainedStep, FormErrorAt, FormErrorResult, Geometry, LadderStep, Located, Missing,
-    NextExperiment, NoiseLaw, NoiseSource, ParameterResult, Remaining, RivalResult, SurfaceCurve, Verdict,
+    Diagnosis, ExplainedCurve, ExplainedStep, FormErrorAt, FormErrorResult, Geometry, LadderStep, Located,
+    Missing, NextExperiment, NoiseLaw, NoiseSource, ParameterResult, Remaining, RivalResult, SurfaceCurve,
+    Verdict,
 };
 
 /// Rubber and friction are missing; the second and third rungs of the comparison.

@@ -1,0 +1,149 @@
+//! A model with what stands beside it: its misfit, whether it explains the data, and what something else on top of it would be worth.
+
+use bulge_effects::Effect;
+use bulge_model::ModelError;
+use std::sync::Arc;
+
+use crate::diagnosis::confirm::Confirmed;
+use crate::diagnosis::hypotheses::Tried;
+use crate::diagnosis::misfit::misfit;
+use crate::diagnosis::null::Null;
+use crate::diagnosis::scene::{Given, Scene};
+use crate::diagnosis::something_else::smooth_evidence;
+
+/// Chance with which the screen may raise a false alarm, and the smooth test.
+pub(crate) const ALARM: [f64; 2] = [0.03, 0.006];
+/// Chance with which the smooth test may raise one where effects are named: to say that they explain everything takes more than to say nothing.
+const EXPLAINED: f64 = 0.01;
+/// Log evidence of something that nobody thought of, before any data.
+const SOMETHING_ELSE: f64 = -2.0;
+/// Part of what a model explains that no comparison with something else rests on: no formula, however bent, is nearer to a real effect.
+const DIGITS: f64 = 0.002;
+/// Readings scatter about a model if the mean square of their misfit is that many standard deviations beyond 1, and larger than this.
+const SCATTERS: [f64; 2] = [6.0, 1.5];
+
+/// Whether a model explains the data.
+#[derive(Debug, Clone)]
+pub(crate) struct Adequacy {
+    pub(crate) null: Null,
+    /// Whether effects are named.
+    names: bool,
+    /// How often chance alone gives as much: the screen, the smooth test.
+    pub(crate) chance: [f64; 2],
+    /// Whether the readings scatter about the model by much more than the noise does, in whatever way.
+    pub(crate) fit_fails: bool,
+}
+
+impl Adequacy {
+    pub(crate) fn screen_fails(&self) -> bool {
+        self.chance[0] < ALARM[0]
+    }
+
+    pub(crate) fn smooth_fails(&self) -> bool {
+        self.chance[1] < if self.names { EXPLAINED } else { ALARM[1] }
+    }
+
+    pub(crate) fn holds(&self) -> bool {
+        !self.screen_fails() && !self.smooth_fails() && !self.fit_fails
+    }
+}
+
+/// A model of the path from the base to the last step.
+pub(crate) struct Stage {
+    /// Effects that were added to the base.
+    pub(crate) added: Vec<Arc<dyn Effect>>,
+    pub(crate) confirmed: Confirmed,
+    pub(crate) scene: Scene,
+    pub(crate) adequacy: Adequacy,
+    /// Whether the model explains the data.
+    pub(crate) adequate: bool,
+    /// What was tried from here.
+    pub(crate) tried: Vec<Tried>,
+}
+
+impl Stage {
+    /// The added effects but one.
+    pub(crate) fn without(&self, place: usize) -> Vec<Arc<dyn Effect>> {
+        let others = self.added.iter().enumerate().filter(|(i, _)| *i != place);
+        others.map(|(_, effect)| Arc::clone(effect)).collect()
+    }
+
+    /// Square of the misfit that smooth functions follow, beyond what chance gives.
+    pub(crate) fn excess(&self) -> f64 {
+        (self.scene.structure() - self.scene.smooth.len() as f64).max(0.0)
+    }
+
+    /// Log evidence of something that nobody thought of on top of the model; 0 where nothing is left to explain.
+    pub(crate) fn something_else(&self) -> f64 {
+        if self.adequate { 0.0 } else { (SOMETHING_ELSE + smooth_evidence(&self.scene)).max(0.0) }
+    }
+
+    /// Log evidence of the model, with or without something else on top, over that of another; implausible numbers cost nothing here.
+    pub(crate) fn value_over(&self, other: &Self) -> f64 {
+        let own = |stage: &Self| stage.confirmed.log_evidence + stage.confirmed.penalty;
+        own(self) - own(other) + self.something_else()
+    }
+
+    /// Log evidence that the last digits of a formula are worth, where a smooth misfit follows them and the formula doesn't.
+    pub(crate) fn digits_over(&self, base: &Self) -> f64 {
+        0.5 * DIGITS * (base.confirmed.bent_cost() - self.confirmed.bent_cost()).max(0.0)
+    }
+
+    /// How much more than chance the misfit scatters over the smooth functions, as a ratio of variances: 1 if the model explains the data.
+    pub(crate) fn scatter(&self) -> f64 {
+        let smooth = &self.scene.smooth;
+        if self.adequate || smooth.is_empty() {
+            return 1.0;
+        }
+        (self.scene.structure() / smooth.len() as f64).max(1.0)
+    }
+}
+/// A log evidence when the noise is larger by the ratio `scatter` of variances than the law says; `gain` is the fall of the square of the misfit in it.
+pub(crate) fn tempered(log_evidence: f64, gain: f64, scatter: f64) -> f64 {
+    log_evidence - 0.5 * gain * (1.0 - 1.0 / scatter)
+}
+impl Given<'_> {
+    /// A model with its scene and adequacy.
+    pub(crate) fn stage(
+        &self,
+        added: Vec<Arc<dyn Effect>>,
+        confirmed: Confirmed,
+    ) -> Result<Stage, ModelError> {
+        let scene = self.scene(&confirmed.prepared, &confirmed.theta)?;
+        let (null, chance) = scene.chance(self);
+        let fit_fails = self.scatters(&confirmed);
+        let adequacy = Adequacy { null, names: !added.is_empty(), chance, fit_fails };
+        let is_small =
+            || self.tolerance_n.is_some_and(|tolerance| misfit(&scene, self.seed).1[1] <= tolerance);
+        // A test may be surprised by what no smooth misfit explains: that is no structure.
+        let is_chance = || {
+            !added.is_empty()
+                && !adequacy.screen_fails()
+                && !fit_fails
+                && SOMETHING_ELSE + smooth_evidence(&scene) <= 0.0
+        };
+        let adequate = adequacy.holds() || is_small() || is_chance();
+        Ok(Stage { added, confirmed, scene, adequate, adequacy, tried: Vec::new() })
+    }
+
+    /// Whether readings scatter about a model by much more than their noise.
+    fn scatters(&self, confirmed: &Confirmed) -> bool {
+        let rows = self.record.len() as f64;
+        let ratio = confirmed.bent_cost() / rows;
+        let sd = (2.0 / rows + 2.0 / self.law.degrees_of_freedom.max(1.0)).sqrt();
+        ratio > (1.0 + SCATTERS[0] * sd).max(SCATTERS[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::tempered;
+
+    #[test]
+    fn scatter_beyond_the_noise_takes_its_part_of_the_evidence() {
+        let is = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found}");
+        // ln Z holds gain/2; with four times the variance a quarter of that is left.
+        is(tempered(10.0, 12.0, 4.0), 10.0 - 6.0 + 1.5);
+        is(tempered(10.0, 12.0, 1.0), 10.0);
+    }
+}
