@@ -2,6 +2,7 @@
 
     bulge validate --json | python validation/docs_table.py verification [--check]
     python validation/docs_table.py diagnosis SEED-1/score.json SEED-2/score.json      # of prove.py, one for each seed
+    python validation/docs_table.py forms EXACT/score.json score.json      # of the forms suite: by a program that takes formulas as exact, and by this one
 
 A table stands between `<!-- table: NAME ... -->` and `<!-- end of table -->`; all else in the file is kept. `--check` writes nothing: its status is 1 if
 the page has other checks, cases or tolerances than the program. Errors at the level of rounding differ between machines and aren't compared.
@@ -57,9 +58,31 @@ FRONT = (
 """Measures that the front page shows, titled as above."""
 
 
+FORMS = (
+    ("one effect, d 8: family right and nothing else named", ">= 95 %"),
+    ("one effect, d 12: family right and nothing else named", ">= 95 %"),
+    ("one effect, d 40: family right and nothing else named", ">= 95 %"),
+    ("one effect, d 120: family right and nothing else named", ">= 95 %"),
+    ("one effect, d 300: family right and nothing else named", ">= 95 %"),
+    ("one effect, all: family right and nothing else named", ">= 95 %"),
+    ("one effect: one claim, the hidden family in its class", ""),
+    ("one effect: called unknown", ""),
+    ("two effects: both at the level of the family, nothing else named", ">= 85 %"),
+    ("three effects: all three at the level of the family, nothing else named", ">= 75 %"),
+    ("nothing hidden: quiet", ">= 97 %"),
+    ("outside the catalogue: called unknown", ">= 95 %"),
+    ("beside a known effect: called unknown", ">= 85 %"),
+    ("wrong names, of all names (by family)", "<= 3 %"),
+    ("calibration of the family: mean distance of confidence and rate", "<= 0.05"),
+    ("seconds per case, mean", ""),
+    ("seconds per case, 95th percentile", ""),
+)
+"""What the page says of the forms suite, as score.py calls it, and the target."""
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("verification", "diagnosis"))
+    parser.add_argument("what", choices=("verification", "diagnosis", "forms"))
     parser.add_argument("scores", type=Path, nargs="*", help="score.json of seed 1 and of seed 2, for `diagnosis`")
     parser.add_argument("--check", action="store_true", help="compare the page with the program (`verification` alone)")
     parser.add_argument("--root", type=Path, default=ROOT, help="folder of README.md and docs")
@@ -69,6 +92,10 @@ def main():
         if not checks:
             parser.error("standard input holds no check: give it the output of `bulge validate --json`")
         tables = {"verification": verification(checks)}
+    elif arguments.what == "forms":
+        if len(arguments.scores) != 2:
+            parser.error("`forms` needs two files: score.json of the program with exact formulas, and of this one")
+        tables = {"forms": forms([json.loads(path.read_text(encoding="utf-8")) for path in arguments.scores])}
     else:
         if len(arguments.scores) != 2:
             parser.error("`diagnosis` needs two files: score.json of seed 1 and of seed 2")
@@ -146,6 +173,14 @@ def diagnosis(seeds):
         if "seconds" in measure:
             peers = [""] * len(peers)
         lines.append(f"| {title} | " + " | ".join([*ours, target, *peers]) + " |")
+    return "\n".join(lines)
+
+
+def forms(scores):
+    rows = [score["methods"]["diagnose"] for score in scores]
+    lines = [f"| {scores[1]['cases']} cases | exact formulas | form errors | target |", "|---|---|---|---|"]
+    for measure, target in FORMS:
+        lines.append(f"| {measure} | " + " | ".join(_cell(_row(row, measure), True) for row in rows) + f" | {target} |")
     return "\n".join(lines)
 
 

@@ -106,7 +106,7 @@ fn people_read_the_verdict_first_and_how_to_go_on() {
     let place = |part: &str| {
         lines.iter().position(|line| line.contains(part)).unwrap_or_else(|| panic!("{part}: {text}"))
     };
-    assert!(place("  missing: bladder-elasticity (on data like these") < 6);
+    assert!(place("  missing: bladder-elasticity (rubber; on data like these") < 6);
     assert!(place("+ bladder-elasticity") < place("noise floor"));
     let accept = format!("bulge diagnose {data} --muscle {muscle} --with bladder-elasticity");
     assert!(place("noise: a single reading") < place(&accept));

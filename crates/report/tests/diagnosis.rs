@@ -80,7 +80,13 @@ fn every_page_has_all_sections_and_asks_for_nothing_from_outside() {
             .filter_map(|n| n.attribute("id"))
             .filter(|id| *id != "comparison")
             .collect();
-        assert_eq!(sections, SECTIONS, "{sample}");
+        let is_bent = diagnosis.added().any(|m| m.form_error.as_ref().is_some_and(|e| !e.curves.is_empty()));
+        let expected: Vec<&str> = SECTIONS
+            .into_iter()
+            .flat_map(|id| [Some(id), (id == "explained" && is_bent).then_some("bent")])
+            .flatten()
+            .collect();
+        assert_eq!(sections, expected, "{sample}");
         let drawings = html.matches("<svg ").count();
         assert_eq!(
             html.matches("http").count(),
@@ -157,9 +163,10 @@ fn every_plot_is_well_formed_and_within_its_frame() {
 #[test]
 fn plots_are_those_for_which_there_are_numbers() {
     let names = |diagnosis: &Diagnosis| plots(diagnosis).unwrap().iter().map(|p| p.name).collect::<Vec<_>>();
-    let own = ["ladder", "explained-1", "explained-2", "candidates", "rivals", "where", "remaining"];
+    let own =
+        ["ladder", "explained-1", "explained-2", "bent-1", "candidates", "rivals", "where", "remaining"];
     let all = names(&missing(comparison()));
-    assert_eq!(all[..7], own);
+    assert_eq!(all[..8], own);
     assert!(
         ["force", "residual-map", "loops", "contributions", "parameters"]
             .iter()
@@ -171,7 +178,7 @@ fn plots_are_those_for_which_there_are_numbers() {
     assert_eq!(sorted.len(), all.len(), "each is a file of its own");
     let few = names(&cannot_tell(comparison()));
     assert_eq!(few[..2], ["ladder", "candidates"]);
-    assert!(own[1..3].iter().chain(&own[4..]).all(|name| !few.contains(name)), "{few:?}");
+    assert!(own[1..4].iter().chain(&own[5..]).all(|name| !few.contains(name)), "{few:?}");
 }
 
 #[test]
@@ -180,8 +187,8 @@ fn verdicts_stand_in_the_first_lines() {
         (
             missing(comparison()),
             &[
-                "missing: bladder-elasticity (on data like these such a claim is right 97 % of the time)",
-                "missing: coulomb-friction (on data like these such a claim is right more than 99 % of the time)",
+                "missing: bladder-elasticity (rubber; on data like these such a claim is right 97 % of the time)",
+                "missing: coulomb-friction (dry friction; by the weight of the evidence right more than 99 % of the time, not simulated)",
             ][..],
         ),
         (adequate(comparison()), &["adequate: the model explains these data within noise and tolerance"]),

@@ -23,7 +23,7 @@ const TOO_FEW: &str = "these data are too few or too noisy for a verdict";
 /// `not looked for: ` or `geometry: `.
 ///
 /// ```text
-/// missing: bladder-elasticity (on data like these such a claim is right 97 % of the time)
+/// missing: bladder-elasticity (rubber; on data like these such a claim is right 97 % of the time)
 /// ```
 /// What is missing comes first, then that something remains. Effects that were tried on the way to another verdict are `nearest: `: nothing is claimed of them.
 /// Where the diagnosis has a sentence of its own for the verdict, with numbers, it is the line. Last come effects that could be the answer and were not looked for,
