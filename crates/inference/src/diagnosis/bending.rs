@@ -12,6 +12,7 @@
 
 use bulge_effects::{Catalogue, Effect, Form, Mechanism, Needs, ParameterCard, Stage};
 use bulge_model::{ModelError, Wanted};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::chebyshev::chebyshev;
@@ -63,6 +64,9 @@ impl Kind {
     pub(crate) const ALL: [Self; 4] = [Self::State, Self::Drive, Self::Turn, Self::Kin];
 }
 
+/// Columns of kin by the name of their effect: they hardly depend on what stands beside it, and take equilibria of their own.
+pub(crate) type Kin = BTreeMap<String, Arc<Vec<Vec<f64>>>>;
+
 /// The columns of one effect.
 pub(crate) struct Bending {
     pub(crate) effect: Arc<dyn Effect>,
@@ -70,18 +74,24 @@ pub(crate) struct Bending {
     pub(crate) change: Vec<f64>,
     /// Form errors of one standard deviation, for those along the state and at turns \[N\]; those of kin have a direction only.
     pub(crate) columns: Vec<(Kind, Vec<f64>)>,
+    /// Those of kin.
+    pub(crate) kin: Arc<Vec<Vec<f64>>>,
 }
 
-/// The columns of all effects of a model whose formulas may be wrong; `tangent` is of the same model at the same numbers.
+/// The columns of all effects of a model whose formulas may be wrong; `tangent` is of the same model at the same numbers, `kin` are
+/// columns that are known already.
 pub(crate) fn bendings(
     catalogue: &Catalogue,
     prepared: &Prepared,
     theta: &[f64],
     tangent: &Tangents,
+    kin: Option<&Kin>,
 ) -> Vec<Bending> {
-    inexact(prepared)
-        .filter_map(|effect| Bent { catalogue, prepared, theta, tangent, effect }.bending())
-        .collect()
+    let bending = |effect: &Arc<dyn Effect>| {
+        let known = kin.and_then(|kin| kin.get(effect.card().name));
+        Bent { catalogue, prepared, theta, tangent, effect }.bending(known)
+    };
+    inexact(prepared).filter_map(bending).collect()
 }
 
 /// Whether a model has effects whose formulas may be wrong.
@@ -122,7 +132,7 @@ struct Number<'a> {
 }
 
 impl Bent<'_> {
-    fn bending(&self) -> Option<Bending> {
+    fn bending(&self, known: Option<&Arc<Vec<Vec<f64>>>>) -> Option<Bending> {
         let (change, off) = self.change()?;
         if change.iter().all(|c| *c == 0.0) || change.iter().any(|c| !c.is_finite()) {
             return None;
@@ -132,9 +142,18 @@ impl Bent<'_> {
         columns.extend(self.along_drive(&change).into_iter().map(|column| (Kind::Drive, column)));
         columns.extend(self.at_another_zero(&change, off.as_deref()).map(|column| (Kind::Drive, column)));
         columns.extend(self.at_turns(&change).into_iter().map(|column| (Kind::Turn, column)));
-        columns.extend(self.of_kin(&change, off.as_deref()).into_iter().map(|column| (Kind::Kin, column)));
-        columns.retain(|(_, column)| column.iter().all(|c| c.is_finite()) && dot(column, column) > 0.0);
-        Some(Bending { effect: Arc::clone(self.effect), change, columns })
+        let shows = |column: &[f64]| column.iter().all(|c| c.is_finite()) && dot(column, column) > 0.0;
+        columns.retain(|(_, column)| shows(column));
+        let kin = known.map_or_else(
+            || {
+                let mut kin = self.of_kin(&change, off.as_deref());
+                kin.retain(|column| shows(column));
+                Arc::new(kin)
+            },
+            Arc::clone,
+        );
+        columns.extend(kin.iter().map(|column| (Kind::Kin, column.clone())));
+        Some(Bending { effect: Arc::clone(self.effect), change, columns, kin })
     }
 
     /// The numbers of the effect.

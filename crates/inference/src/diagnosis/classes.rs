@@ -111,6 +111,7 @@ impl Given<'_> {
         let log_evidence =
             tempered(stage.confirmed.log_evidence - without.confirmed.log_evidence + ticket, gain, scatter);
         let margin = EVIDENCE.max(BENT * stage.confirmed.form.log_evidence);
+        let beside = Given { kin: Some(&stage.confirmed.form.kin), ..*self };
         let list = singles(&without.scene, &without.confirmed.prepared.model);
         let best = list.iter().map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let mut fitted = 0;
@@ -132,11 +133,15 @@ impl Given<'_> {
                 let (linear, gain_of) = (hypothesis.log_evidence, hypothesis.gain);
                 let place = hypothesis.effects[0];
                 let known = without.tried.iter().find(|tried| tried.hypothesis.effects == [place]);
-                let tried = near
-                    .then(|| known.cloned().unwrap_or_else(|| self.fitted(base, without, hypothesis, None)));
+                let tried = near.then(|| {
+                    known.cloned().unwrap_or_else(|| beside.fitted(base, without, hypothesis, None))
+                });
                 let fit = tried.as_ref().and_then(|tried| tried.confirmed.as_ref());
                 let own = fit.filter(|fit| fit.form.log_evidence > 0.0);
-                let own = own.map_or(Vec::new(), |fit| self.form_directions(&fit.prepared, &fit.theta));
+                let own = own.map_or(Vec::new(), |fit| {
+                    let known = Given { kin: Some(&fit.form.kin), ..*self };
+                    known.form_directions(&fit.prepared, &fit.theta)
+                });
                 let separation = if own.is_empty() {
                     separation
                 } else {

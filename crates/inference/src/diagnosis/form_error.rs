@@ -11,7 +11,7 @@ use bulge_effects::Effect;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::sync::Arc;
 
-use crate::diagnosis::bending::{Bending, Kind};
+use crate::diagnosis::bending::{Bending, Kin, Kind};
 use crate::diagnosis::space::{Space, norm};
 use crate::dot::dot;
 
@@ -56,6 +56,8 @@ pub(crate) struct FormError {
     /// Fall of the square of the misfit.
     pub(crate) fall: f64,
     pub(crate) effects: Vec<Bent>,
+    /// Columns of kin, for models with the same effects.
+    pub(crate) kin: Kin,
 }
 
 /// A form error of one standard deviation in a principal direction.
@@ -211,7 +213,9 @@ impl FormError {
                 Bent { effect, sd: *sd, part, change, bending: Vec::new(), sd_n: Vec::new() }
             })
             .collect();
-        (Self { log_evidence, fall, effects }, directions)
+        let kin = |bending: &Bending| (bending.effect.card().name.to_owned(), Arc::clone(&bending.kin));
+        let kin = bendings.iter().map(kin).collect();
+        (Self { log_evidence, fall, effects, kin }, directions)
     }
 
     /// The same with what the data add to the formulas, row by row; `misfit` is whitened, `tangents` are orthonormal columns of the model's numbers \[N\] and whitened.
@@ -317,7 +321,7 @@ mod tests {
         let made = columns(seed, kinds.len());
         let own = kinds.iter().zip(made);
         let columns = own.map(|(kind, c)| (*kind, c.iter().map(|v| 0.5 * size * v).collect())).collect();
-        Bending { effect, change, columns }
+        Bending { effect, change, columns, kin: Arc::default() }
     }
 
     /// ln N(z; 0, 1 + B D^2 B') - ln N(z; 0, 1) outside of the tangents, by the dense matrix.

@@ -77,6 +77,7 @@ impl Ground {
             tolerance_n: options.tolerance_n,
             only: None,
             progress: &options.progress,
+            kin: None,
         }
     }
 

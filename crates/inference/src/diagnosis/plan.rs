@@ -203,6 +203,7 @@ impl Planned {
             tolerance_n: None,
             only: None,
             progress: &NOBODY,
+            kin: None,
         }
     }
 }

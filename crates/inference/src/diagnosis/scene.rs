@@ -3,7 +3,7 @@
 use bulge_effects::Catalogue;
 use bulge_model::{ModelError, Record};
 
-use crate::diagnosis::bending::{bendings, may_bend};
+use crate::diagnosis::bending::{Kin, bendings, may_bend};
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::form_error::{FormDirection, FormError};
 use crate::diagnosis::null::{Chance, Null, Statistics};
@@ -43,6 +43,8 @@ pub(crate) struct Given<'a> {
     pub(crate) only: Option<&'a [String]>,
     /// Who hears of the work.
     pub(crate) progress: &'a Progress,
+    /// Columns of kin that are known already.
+    pub(crate) kin: Option<&'a Kin>,
 }
 
 /// A smooth function outside what the model's numbers can do.
@@ -96,7 +98,18 @@ impl<'a> Given<'a> {
     ) -> Self {
         let progress = &crate::progress::NOBODY;
         let row_n = law.white_n;
-        Self { catalogue, record, whitening, law, row_n, seed: 1, tolerance_n: None, only: None, progress }
+        Self {
+            catalogue,
+            record,
+            whitening,
+            law,
+            row_n,
+            seed: 1,
+            tolerance_n: None,
+            only: None,
+            progress,
+            kin: None,
+        }
     }
 }
 
@@ -156,7 +169,7 @@ impl Given<'_> {
         linearised: &Linearised,
         space: &Space,
     ) -> (FormError, Vec<FormDirection>) {
-        let bendings = bendings(self.catalogue, prepared, theta, &linearised.tangent);
+        let bendings = bendings(self.catalogue, prepared, theta, &linearised.tangent, self.kin);
         let whiten = |column: &[f64]| self.white(column, linearised.priors);
         FormError::of(&bendings, space, &linearised.misfit, &whiten)
     }

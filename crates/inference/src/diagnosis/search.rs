@@ -5,7 +5,7 @@ use bulge_model::{Model, ModelError};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-use crate::diagnosis::bending::may_bend;
+use crate::diagnosis::bending::{Kin, may_bend};
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::hypotheses::{FAR, Hypothesis, Tried, hypotheses, ticket};
 use crate::diagnosis::scene::Given;
@@ -211,7 +211,18 @@ impl Given<'_> {
     /// The best hypotheses of a stage with so much `room` for further effects, each fitted.
     fn tried(&self, base: &Model, stage: &Stage, room: usize, before: Option<&Search>) -> Vec<Tried> {
         let hypotheses = hypotheses(&stage.scene, &stage.confirmed.prepared.model, room);
-        hypotheses.into_par_iter().map(|hypothesis| self.fitted(base, stage, hypothesis, before)).collect()
+        let (singles, pairs): (Vec<_>, Vec<_>) = hypotheses.into_iter().partition(|h| h.effects.len() == 1);
+        let fitted = |list: Vec<Hypothesis>, kin: &Kin| -> Vec<Tried> {
+            let known = Given { kin: Some(kin), ..*self };
+            list.into_par_iter().map(|hypothesis| known.fitted(base, stage, hypothesis, before)).collect()
+        };
+        let mut kin = stage.confirmed.form.kin.clone();
+        let mut tried = fitted(singles, &kin);
+        for confirmed in tried.iter().filter_map(|one| one.confirmed.as_ref()) {
+            kin.extend(confirmed.form.kin.iter().map(|(name, own)| (name.clone(), Arc::clone(own))));
+        }
+        tried.extend(fitted(pairs, &kin));
+        tried
     }
 
     /// A hypothesis fitted on top of a stage.

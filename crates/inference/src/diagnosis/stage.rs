@@ -109,7 +109,8 @@ impl Given<'_> {
         added: Vec<Arc<dyn Effect>>,
         confirmed: Confirmed,
     ) -> Result<Stage, ModelError> {
-        let scene = self.scene(&confirmed.prepared, &confirmed.theta)?;
+        let known = Given { kin: Some(&confirmed.form.kin), ..*self };
+        let scene = known.scene(&confirmed.prepared, &confirmed.theta)?;
         let (null, chance) = scene.chance(self);
         let fit_fails = self.scatters(&confirmed);
         let adequacy = Adequacy { null, names: !added.is_empty(), chance, fit_fails };
