@@ -431,7 +431,9 @@ mod tests {
         for ((b, e), sd) in bent.bending.iter().zip(&expected).zip(&bent.sd_n) {
             // 0.1 with the standard deviation of one number: 1/|column|.
             assert!((b - 0.1 * e).abs() < 4.0 * e.abs() / norm(&expected) + 1e-9, "{b} {e}");
-            assert!((sd - e.abs() / norm(&expected)).abs() < 0.02 * sd + 1e-12, "{sd}");
+            let level = bent.sd[Kind::State as usize];
+            let exact = level * e.abs() / (1.0 + (level * norm(&expected)).powi(2)).sqrt();
+            assert!((sd - exact).abs() < 1e-9 * exact + 1e-12, "{sd} {exact}");
         }
     }
 }

@@ -22,6 +22,11 @@ pub(crate) fn smooth_evidence(scene: &Scene) -> f64 {
         .iter()
         .map(|d| (dot(&d.unit, &scene.z), (dot(&d.values, &d.values) / rows).sqrt()))
         .collect();
+    evidence_of(&found, largest)
+}
+
+/// Of functions with these coordinates and RMS values at one standard deviation, the smoothest first.
+fn evidence_of(found: &[(f64, f64)], largest: f64) -> f64 {
     let of = |size: f64, fade: f64| -> f64 {
         let term = |(j, (z, rms)): (usize, &(f64, f64))| {
             let t = (size * largest * (-(j as f64) / fade).exp() / rms.max(f64::MIN_POSITIVE)).powi(2);
@@ -32,4 +37,28 @@ pub(crate) fn smooth_evidence(scene: &Scene) -> f64 {
     let all: Vec<f64> = SIZES.iter().flat_map(|size| FADES.map(|fade| of(*size, fade))).collect();
     let largest = all.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     largest + (all.iter().map(|value| (value - largest).exp()).sum::<f64>() / all.len() as f64).ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn evidence_is_the_ratio_of_normal_densities() {
+        // Each coordinate has the variance 1 + t with something else, 1 without.
+        let found = [(7.0, 0.4), (-3.0, 0.7), (0.5, 0.2)];
+        let density = |z: f64, variance: f64| (-0.5 * z * z / variance).exp() / variance.sqrt();
+        let mut sum = 0.0;
+        for size in SIZES {
+            for fade in FADES {
+                let ratio = |(j, (z, rms)): (usize, &(f64, f64))| {
+                    let t = (size * 300.0 * (-(j as f64) / fade).exp() / rms).powi(2);
+                    density(*z, 1.0 + t) / density(*z, 1.0)
+                };
+                sum += found.iter().enumerate().map(ratio).product::<f64>();
+            }
+        }
+        let expected = (sum / 18.0_f64).ln();
+        assert!((evidence_of(&found, 300.0) - expected).abs() < 1e-9 * expected.abs());
+    }
 }
