@@ -299,6 +299,13 @@ def _beyond_all(gram):
 def _write(order, rng, setting, world, truth, folder, exact):
     """data.csv, muscle.toml, unseen.csv and, last, truth.json."""
     target = folder / order.name
+    unit, motion = write_data(target, rng, setting, world, exact)
+    paths.write(target / "unseen.csv", setting.unseen, world.force(setting.unseen), world.muscle.length, unit, motion)
+    (target / "truth.json").write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")
+
+
+def write_data(target, rng, setting, world, exact):
+    """data.csv and muscle.toml; the unit of the pressure and how the motion is given."""
     target.mkdir(parents=True, exist_ok=True)
     law, path = setting.law, setting.path
     force, pressure, contraction = law.sample(rng, path)
@@ -310,8 +317,6 @@ def _write(order, rng, setting, world, truth, folder, exact):
     )
     unit = ("bar", "kPa")[int(rng.integers(2))]
     motion = ("contraction", "length")[int(rng.integers(2))]
-    length = world.muscle.length
-    paths.write(target / "data.csv", readings, rounded(world.force(path) + force, law.force_step), length, unit, motion)
-    paths.write(target / "unseen.csv", setting.unseen, world.force(setting.unseen), length, unit, motion)
+    paths.write(target / "data.csv", readings, rounded(world.force(path) + force, law.force_step), world.muscle.length, unit, motion)
     (target / "muscle.toml").write_text(world.muscle.toml(exact), encoding="utf-8")
-    (target / "truth.json").write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")
+    return unit, motion

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from . import path as paths
-from .case import CLASS, CLOSE, IDENTICAL, Unsuitable, _beyond_all, _completeness, _largest_radius
+from .case import CLASS, CLOSE, IDENTICAL, Unsuitable, _beyond_all, _completeness, _largest_radius, write_data
 from .designs import LAWS, draw_law, draw_muscle, draw_nature, window, with_instruments
 from .detectability import Metric, rival_pairs, rivals, stated_widths
 from .forms import Drawn, all_forms, fold
@@ -16,7 +15,6 @@ from .forms_effects import EFFECTS, EXACT, LOOSE, family, mechanism, shows
 from .forms_rivals import columns, rival_names
 from .forms_world import FormsWorld
 from .meridian import NoEquilibrium
-from .noise import rounded
 from .surface import OutsideWindow, force_map
 from .unknown import UNKNOWN
 
@@ -352,18 +350,5 @@ def _entry(i, name, form, strength, world, gram, hidden, labels, signs):
 def _write(order, rng, setting, world, truth, folder, exact):
     """data.csv, muscle.toml and, last, truth.json."""
     target = folder / order.name
-    target.mkdir(parents=True, exist_ok=True)
-    law, path = setting.law, setting.path
-    force, pressure, contraction = law.sample(rng, path)
-    readings = replace(
-        path,
-        pressure=rounded(path.pressure + pressure, law.pressure_step),
-        contraction=path.contraction + contraction,
-        temperature=path.temperature + 0.05 * rng.standard_normal(len(path)) * path.shows_temperature,
-    )
-    unit = ("bar", "kPa")[int(rng.integers(2))]
-    motion = ("contraction", "length")[int(rng.integers(2))]
-    muscle = world.muscle
-    paths.write(target / "data.csv", readings, rounded(world.force(path) + force, law.force_step), muscle.length, unit, motion)
-    (target / "muscle.toml").write_text(muscle.toml(exact), encoding="utf-8")
+    write_data(target, rng, setting, world, exact)
     (target / "truth.json").write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")

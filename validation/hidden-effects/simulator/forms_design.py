@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from . import designs
 from .forms import Scales
 from .path import Path
 from .protocols import PAUSE, Plan
@@ -146,21 +147,13 @@ def carried(plan, path, world, static, rounds):
 
 def provides(plan, rig):
     """What effects find in this test."""
-    found = {"motion", "dwell"}
+    found = (designs.provides(plan) | {"motion", "dwell"}) - {"cloth-range", "cycles"}
     if rig != "isometric":
         found.add("cloth-range")
     if rig != "isobaric":
         found.add("pressure-path")
-    if len(set(plan.periods)) > 1:
-        found.add("rate")
     if plan.loops > 2:
         found.add("cycles")
-    if plan.specimens > 2:
-        found.add("specimens")
-    if plan.temperature_swing:
-        found.add("temperature")
-    if plan.high > (0.34 if plan.low > 0.03 else 0.24):
-        found.add("low-load")
     return found
 
 

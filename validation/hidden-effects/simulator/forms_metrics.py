@@ -10,7 +10,7 @@ from scipy.special import ndtr
 
 from .forms_effects import FAMILY, MECHANISM, family, mechanism
 from .forms_suite import STRENGTHS
-from .metrics import CONFIDENCE_BINS, mean_row, rate_row
+from .metrics import calibrated, mean_row, rate_row
 
 LEVELS = ("mechanism", "family", "form")
 KNOWN = ("one", "two", "three")
@@ -223,14 +223,7 @@ def _parts(everything):
 def _calibration(everything, level):
     """Share of right claims against the confidence stated with them."""
     pairs = [(c, a.right(claim, level)) for a in everything for claim in a.claims if (c := confidence(claim, level)) is not None]
-    rows, gap = [], 0.0
-    for low, high in zip(CONFIDENCE_BINS[:-1], CONFIDENCE_BINS[1:]):
-        inside = [(c, right) for c, right in pairs if low <= c < high]
-        if inside:
-            stated = float(np.mean([c for c, _ in inside]))
-            row = rate_row(f"{level} right when its confidence is {low:g} to {min(high, 1.0):g} (mean {stated:.3f})", [right for _, right in inside])
-            gap += len(inside) / len(pairs) * abs(row["value"] - stated)
-            rows.append(row)
+    rows, gap = calibrated(pairs, f"{level} right when its confidence")
     if pairs:
         overall = abs(np.mean([c for c, _ in pairs]) - np.mean([right for _, right in pairs]))
         rows.append({"measure": f"calibration of the {level}: mean distance of confidence and rate", "value": gap, "n": len(pairs)})

@@ -151,17 +151,21 @@ def _intervals(one):
 def _calibration(answered):
     """Share of right first names against the confidence stated with them."""
     pairs = [(item[0]["confidence"], a.first_is_right()) for a in answered if (item := a.claims) and item[0].get("confidence") is not None]
+    rows, gap = calibrated(pairs, "right when the confidence")
+    return [*rows, {"measure": "calibration: mean distance of confidence and rate", "value": gap, "n": len(pairs)}] if pairs else []
+
+
+def calibrated(pairs, title):
+    """Rates of right claims by bins of the confidence, of pairs of both, and the mean distance of the two."""
     rows, gap = [], 0.0
     for low, high in zip(CONFIDENCE_BINS[:-1], CONFIDENCE_BINS[1:]):
         inside = [(c, right) for c, right in pairs if low <= c < high]
         if inside:
             stated = float(np.mean([c for c, _ in inside]))
-            row = rate_row(f"right when the confidence is {low:g} to {min(high, 1.0):g} (mean {stated:.3f})", [right for _, right in inside])
+            row = rate_row(f"{title} is {low:g} to {min(high, 1.0):g} (mean {stated:.3f})", [right for _, right in inside])
             gap += len(inside) / len(pairs) * abs(row["value"] - stated)
             rows.append(row)
-    if pairs:
-        rows.append({"measure": "calibration: mean distance of confidence and rate", "value": gap, "n": len(pairs)})
-    return rows
+    return rows, gap
 
 
 def rate_row(title, outcomes):

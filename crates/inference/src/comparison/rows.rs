@@ -36,12 +36,12 @@ impl Used {
         self.left_out.push(LeftOut { why, lines: lines(data, &rows), rows: rows.len() });
     }
 
-    /// Leaves out rows whose gauge pressure is 0 or, by the noise of a zero, below: nothing balances the fibres there.
     /// The rows that count.
     pub(crate) fn rows(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.mask.len()).filter(|row| self.mask[*row])
     }
 
+    /// Leaves out rows whose gauge pressure is 0 or, by the noise of a zero, below: nothing balances the fibres there.
     fn leave_out_unpressurised(&mut self, data: &Data) {
         let pressure = data.pressure();
         let rows: Vec<usize> = (0..pressure.len()).filter(|row| pressure[*row] <= 0.0).collect();
