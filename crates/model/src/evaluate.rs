@@ -6,6 +6,7 @@ use bulge_numerics::{Dual, Real};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::answer::SHAPE;
 use crate::base::Equilibrium;
@@ -48,6 +49,8 @@ pub(crate) struct Run<'a> {
     shapes: Vec<usize>,
     pub(crate) equilibrium: Option<Equilibrium>,
     pub(crate) lattice: Option<Arc<Lattice>>,
+    /// Searches for rows that the lattice doesn't reach.
+    pub(crate) alone: AtomicUsize,
     /// Whether equilibria are searched for from those found before, as exactly as a fit needs them.
     pub(crate) within_fit: bool,
     /// Whether a segment ends at its first row without a state.
@@ -163,6 +166,7 @@ impl Model {
             .zip(&mut slots.rows)
             .map(|((rows, part), slots)| segment(&runs, &task, rows.clone(), part, slots))
             .collect();
+        slots.alone = runs.iter().map(|run| run.alone.load(Ordering::Relaxed)).collect();
         Ok((all, failed.into_iter().flatten().collect()))
     }
 
@@ -204,6 +208,7 @@ impl Model {
             shapes: Vec::new(),
             equilibrium: None,
             lattice: None,
+            alone: AtomicUsize::new(0),
             within_fit: false,
             all_or_none: false,
         };
@@ -231,6 +236,7 @@ impl Model {
         run.shapes = variables.iter().map(|(index, _)| *index).collect();
         if equilibrium.is_costly() && record.len() > FEWEST_NODES {
             let shape = |theta: &[f64]| self.reshape(body, theta, &[]).ok().map(|(muscle, _)| muscle);
+            run.widen(record, counts, slots);
             run.lattice = slots.held_at(body, &muscle, theta, &run.shapes, shape);
             if run.lattice.is_none() {
                 run.lattice = run.solved(record, &muscle, &equilibrium, counts, slots);
@@ -332,10 +338,36 @@ impl Run<'_> {
         slots.nodes[self.body] = starts;
         if slots.holds {
             let (shapes, theta) = (self.shapes.clone(), self.theta.to_vec());
-            slots.held[self.body] =
-                Some(Arc::new(Held { shapes, theta, muscle: muscle.clone(), lattice: Arc::clone(&lattice) }));
+            let (muscle, lattice) = (muscle.clone(), Arc::clone(&lattice));
+            slots.held[self.body] = Some(Arc::new(Held { shapes, theta, muscle, spans, lattice }));
         }
         Some(lattice)
+    }
+
+    /// Widens a held lattice to where rows have moved since it was solved, if they take more searches than it would: a zero error of the length moves all rows
+    /// of an isometric test out of it.
+    fn widen(&self, record: &Record, counts: &dyn Fn(usize) -> bool, slots: &mut Slots) {
+        let Some((held, alone)) = slots.missed(self.body) else { return };
+        let there = || {
+            let (muscle, variables) = self.model.reshape(self.body, &held.theta, &held.shapes).ok()?;
+            Model::equilibrium(&muscle, &variables).ok()
+        };
+        let Some(equilibrium) = (alone > FEWEST_NODES).then(there).flatten() else { return };
+        let unsolved = Lattice::unsolved(&equilibrium, held.shapes.len(), self.model.refinement);
+        let mut spans = self.spans(record, &self.matters(record, counts), &unsolved);
+        spans.extend(&held.spans);
+        spans.sort_unstable();
+        spans.dedup();
+        let wider = unsolved.around(&spans);
+        let needed = wider.needed();
+        if needed == held.lattice.needed() || needed >= HELD_FOR * alone {
+            return;
+        }
+        let (lattice, starts) = wider.solved(&equilibrium, &slots.nodes[self.body]);
+        slots.nodes[self.body] = starts;
+        let (shapes, theta, muscle) = (held.shapes.clone(), held.theta.clone(), held.muscle.clone());
+        slots.held[self.body] =
+            Some(Arc::new(Held { shapes, theta, muscle, spans, lattice: Arc::new(lattice) }));
     }
 
     pub(crate) fn remembers(&self) -> bool {

@@ -17,6 +17,7 @@ use bulge_fibre::{FibreError, Start};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::answer::{Answer, Graded, SHAPE};
 use crate::base::Equilibrium;
@@ -396,12 +397,13 @@ impl Lattice {
     }
 }
 
-/// Interpolated where the lattice reaches, else solved; but not where equilibria ended before, which would be searched for in vain.
+/// Interpolated where the lattice reaches, else solved, and counted as solved alone; but not where equilibria ended before, which would be searched for in vain.
 pub(crate) fn answer(
     lattice: Option<&Lattice>,
     equilibrium: &Equilibrium,
     [pressure, contraction]: [f64; 2],
     slot: &mut Option<Start>,
+    alone: &AtomicUsize,
 ) -> Result<Answer, FibreError> {
     if let Some(answer) = lattice.and_then(|lattice| lattice.answer(pressure, contraction)) {
         return Ok(answer);
@@ -409,6 +411,7 @@ pub(crate) fn answer(
     if let Some(error) = lattice.and_then(|lattice| lattice.beyond(pressure, contraction)) {
         return Err(error.clone());
     }
+    alone.fetch_add(1, Ordering::Relaxed);
     let (answer, start) = equilibrium.answer(pressure, contraction, slot.as_ref())?;
     if start.is_some() {
         *slot = start;

@@ -9,7 +9,7 @@ use bulge_fibre::Start;
 use bulge_muscles::Muscle;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::lattice::Lattice;
+use crate::lattice::{Lattice, Span};
 use crate::solved::Starts;
 
 /// Memory of the equilibria between the evaluations of one fit, for [`crate::Model::evaluate_warm`].
@@ -31,6 +31,8 @@ pub(crate) struct Slots {
     /// Whether the next lattice that is solved is held.
     pub(crate) holds: bool,
     pub(crate) held: Vec<Option<Arc<Held>>>,
+    /// Searches of the last evaluation for rows that its lattice doesn't reach, for each of the model's muscles.
+    pub(crate) alone: Vec<usize>,
     /// Whether what is held comes from another model: it then serves for the same muscle only.
     is_shared: bool,
 }
@@ -44,6 +46,8 @@ pub(crate) struct Held {
     pub(crate) theta: Vec<f64>,
     /// The muscle that they make.
     pub(crate) muscle: Muscle,
+    /// Where rows have asked for nodes.
+    pub(crate) spans: Vec<Span>,
     pub(crate) lattice: Arc<Lattice>,
 }
 
@@ -156,10 +160,18 @@ impl Slots {
         if self.is_shared { held.of(muscle, shapes) } else { held.near(theta, shapes, shape) }
     }
 
+    /// What is held of one of the model's muscles, if it may be widened: many rows were solved alone.
+    pub(crate) fn missed(&self, body: usize) -> Option<(Arc<Held>, usize)> {
+        let alone = *self.alone.get(body)?;
+        let held = self.held.get(body)?.clone().filter(|_| !self.is_shared)?;
+        Some((held, alone))
+    }
+
     /// Slots for so many muscles.
     pub(crate) fn for_bodies(&mut self, count: usize) {
         self.nodes.resize(count, Starts::default());
         self.held.resize(count, None);
+        self.alone.resize(count, 0);
     }
 
     /// One slot for each row of each segment, kept if there are as many as before.
