@@ -182,3 +182,45 @@ impl Slots {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::{Record, Wanted};
+    use bulge_effects::{Catalogue, Moment};
+    use bulge_muscles::from_toml;
+
+    /// In an isometric test all rows are of one contraction: a zero error of the length moves them out of what was solved for it.
+    #[test]
+    fn a_held_lattice_follows_rows_that_leave_it() {
+        let file = "name = \"b\"\nkind = \"braided\"\nlength = \"300 mm\"\nradius = \"10 mm\"\nwall = \"1.8 mm\"\n\
+                    braid_angle = \"28.6 deg\"\nends = \"clamped\"\n";
+        let catalogue = Catalogue::builtin();
+        let add = |model: Model, name: &str| model.with(catalogue.find(name).unwrap(), None).unwrap();
+        let model = ["radius-error", "length-zero-error"]
+            .into_iter()
+            .fold(Model::new(&from_toml(file, "braid").unwrap()), add);
+        let moment = |i: u32| Moment { begins: i == 0, ..Moment::at_rest(1e5 + 500.0 * f64::from(i), 0.01) };
+        let record = Record::from_moments(
+            (0..600).map(moment).collect(),
+            vec![0.0; 600],
+            std::iter::once(0..600).collect(),
+        );
+        let record = record.unwrap();
+        let wanted = Wanted { parameters: vec![0, 1], readings: false };
+        let warm = Warm::new();
+        warm.hold();
+        model.evaluate_warm(&record, &[0.0102, 0.0], &wanted, &warm).unwrap();
+        assert_eq!(warm.lock().alone, [0]);
+        // By 4 mm, and the radius by a part: the first such evaluation searches for each row, those after it for none.
+        let moved = [0.010_21, 4e-3];
+        let alone = model.evaluate_warm(&record, &moved, &wanted, &warm).unwrap();
+        assert!(warm.lock().alone[0] >= 600);
+        let held = model.evaluate_warm(&record, &moved, &wanted, &warm).unwrap();
+        assert!(warm.lock().alone == [0] && warm.is_held());
+        let gap = alone.force.iter().zip(&held.force).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // To first order in the radius.
+        assert!(gap < 0.01 && gap > 0.0, "{gap} N");
+    }
+}

@@ -8,18 +8,15 @@
 //! s^2 is white noise with that part of the correlated noise which has decayed since the other cycle. Cycles may differ by physics too (creep, softening): so
 //! the pure error bounds the noise from above, never from below.
 
-use bulge_effects::Moment;
 use bulge_model::Record;
 use std::collections::BTreeMap;
 
-use crate::comparison::levels::Levels;
+use crate::diagnosis::strokes::{Stroke, strokes};
 use crate::noise::law::{CorrelationTime, NoiseLaw};
 use crate::noise::whitening::moment_of;
 
 /// Neighbours further apart than this part of the range say nothing between them.
 const NEAR: f64 = 0.1;
-/// Contractions that differ by less are the same held length.
-const HELD: f64 = 2e-3;
 /// Pairs from which the pure error is believed.
 const ENOUGH: usize = 20;
 /// Pairs of two strokes of different sweeps from which a difference of the sweeps can be told: fewer share their neighbours, and their mean takes noise away with it.
@@ -40,38 +37,29 @@ pub(crate) struct BetweenCycles {
     span: f64,
 }
 
-/// A residual of one stroke.
-struct Point {
-    /// Contraction, or pressure at held length, in parts of its range.
-    place: f64,
-    residual: f64,
-    at: f64,
-}
-
-/// The way in one direction within one cycle, in the order of the places.
-struct Stroke {
-    sweep: usize,
-    points: Vec<Point>,
-}
-
 impl BetweenCycles {
     /// Of residuals \[N\], one for each row of a record; none if no cycle is repeated.
     pub(crate) fn of(record: &Record, residual: &[f64]) -> Option<Self> {
         if !record.is_path() {
             return None;
         }
+        let at = moment_of(record, seconds(record));
         let (mut sum, mut lags) = (0.0, Vec::new());
-        for strokes in strokes(record, residual) {
+        // Without the first of a sweep where there are others enough: it lacks the history of those after it.
+        let mut alike: BTreeMap<_, Vec<Stroke>> = BTreeMap::new();
+        for stroke in strokes(record).into_iter().filter(|stroke| !stroke.is_first) {
+            alike.entry(stroke.state).or_default().push(stroke);
+        }
+        for strokes in alike.into_values() {
             let half = strokes.len() / 2;
             for (place, stroke) in strokes.iter().enumerate() {
                 // The next, and one that is far in time.
                 let others = [place + 1, place + half.max(2)];
                 for other in others.iter().filter_map(|other| strokes.get(*other)) {
-                    sum += compared(stroke, other, &mut lags);
+                    sum += compared(stroke, other, residual, &at, &mut lags);
                 }
             }
         }
-        let at = moment_of(record, seconds(record));
         let of_sweep =
             |rows: &std::ops::Range<usize>| (at(rows.end.saturating_sub(1)) - at(rows.start)).max(0.0);
         let span = record.sweeps().iter().map(of_sweep).sum();
@@ -123,50 +111,14 @@ fn seconds(record: &Record) -> Option<CorrelationTime> {
     record.has_time().then_some(CorrelationTime::Seconds(1.0))
 }
 
-/// Strokes that repeat each other, without the first of a sweep where there are others enough: it lacks the history of those after it.
-fn strokes(record: &Record, residual: &[f64]) -> Vec<Vec<Stroke>> {
-    let levels = Levels::of(record, &vec![true; record.len()]);
-    let at = moment_of(record, seconds(record));
-    let width = |of: &dyn Fn(&Moment) -> f64| {
-        let ends = record.moments().iter().map(of);
-        let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
-        (high - low).max(f64::MIN_POSITIVE)
-    };
-    let [contractions, pressures] = [width(&|m| m.contraction), width(&|m| m.pressure)];
-    let mut alike: BTreeMap<(u32, bool, i64, bool), Vec<Stroke>> = BTreeMap::new();
-    for (sweep, rows) in record.sweeps().iter().enumerate() {
-        let moving: Vec<usize> = rows.clone().filter(|row| record.moments()[*row].branch() != 0.0).collect();
-        let cycle = |row: usize| record.moments()[row].cycle.floor();
-        let up = |row: usize| record.moments()[row].branch() > 0.0;
-        let last = moving.last().map_or(0.0, |row| cycle(*row));
-        let first = moving.first().map_or(0.0, |row| cycle(*row));
-        for run in moving.chunk_by(|a, b| up(*a) == up(*b) && cycle(*a).total_cmp(&cycle(*b)).is_eq()) {
-            if last >= first + 2.0 && cycle(run[0]) <= first {
-                continue;
-            }
-            let moment = &record.moments()[run[0]];
-            let is_held = moment.direction == 0.0;
-            let mut points: Vec<Point> = run
-                .iter()
-                .map(|row| {
-                    let m = &record.moments()[*row];
-                    let place = if is_held { m.pressure / pressures } else { m.contraction / contractions };
-                    Point { place, residual: residual[*row], at: at(*row) }
-                })
-                .collect();
-            points.sort_by(|a, b| a.place.total_cmp(&b.place));
-            #[expect(clippy::cast_possible_truncation, reason = "a contraction over 0.2 %")]
-            let length = (moment.contraction / HELD).round() as i64;
-            let level = if is_held { length } else { i64::try_from(levels.at(run[0])).unwrap_or(0) };
-            let key = (moment.specimen, is_held, level, up(run[0]));
-            alike.entry(key).or_default().push(Stroke { sweep, points });
-        }
-    }
-    alike.into_values().filter(|strokes| strokes.len() > 1).collect()
-}
-
 /// Sum of squared differences between two strokes, in variances of one residual; the lags go to the list.
-fn compared(one: &Stroke, other: &Stroke, lags: &mut Vec<f64>) -> f64 {
+fn compared(
+    one: &Stroke,
+    other: &Stroke,
+    residual: &[f64],
+    at: &dyn Fn(usize) -> f64,
+    lags: &mut Vec<f64>,
+) -> f64 {
     let mut found: Vec<(f64, f64, f64)> = Vec::with_capacity(one.points.len());
     for point in &one.points {
         let after = other.points.partition_point(|p| p.place < point.place);
@@ -180,8 +132,8 @@ fn compared(one: &Stroke, other: &Stroke, lags: &mut Vec<f64>) -> f64 {
             continue;
         }
         let w = (point.place - a.place) / width;
-        let difference = point.residual - (1.0 - w) * a.residual - w * b.residual;
-        found.push((difference, 1.0 + (1.0 - w).powi(2) + w * w, (point.at - a.at).abs()));
+        let difference = residual[point.row] - (1.0 - w) * residual[a.row] - w * residual[b.row];
+        found.push((difference, 1.0 + (1.0 - w).powi(2) + w * w, (at(point.row) - at(a.row)).abs()));
     }
     let mut scale = 1.0;
     if one.sweep != other.sweep && found.len() >= FEWEST {
@@ -202,6 +154,7 @@ fn compared(one: &Stroke, other: &Stroke, lags: &mut Vec<f64>) -> f64 {
 mod tests {
     use super::*;
     use crate::noise::law::NoiseSource;
+    use bulge_effects::Moment;
     use bulge_numerics::Random;
 
     /// Cycles of 80 rows in one sweep of 2 s steps.

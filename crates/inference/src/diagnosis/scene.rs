@@ -6,6 +6,7 @@ use bulge_model::{ModelError, Record};
 use crate::diagnosis::bending::{Kin, bendings, may_bend};
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::form_error::{FormDirection, FormError};
+use crate::diagnosis::lack_of_fit::lack_of_fit;
 use crate::diagnosis::null::{Chance, Null, Statistics};
 use crate::diagnosis::showing::Showings;
 use crate::diagnosis::smooth::{Variable, smooth};
@@ -83,6 +84,8 @@ pub(crate) struct Scene {
     pub(crate) bent: Vec<Vec<f64>>,
     /// The misfit in coordinates.
     pub(crate) z: Vec<f64>,
+    /// The misfit whitened, row by row, then that of priors.
+    white: Vec<f64>,
     /// Force of the model at the means \[N\].
     pub(crate) force: Vec<f64>,
 }
@@ -218,6 +221,7 @@ impl Given<'_> {
             form,
             bent: directions,
             z,
+            white: linearised.misfit,
             force: tangent.force,
         })
     }
@@ -319,6 +323,11 @@ impl Scene {
             }
         }
         sum
+    }
+
+    /// How often chance gives near replicates that miss as much in common; none if there are too few of them.
+    pub(crate) fn lack_of_fit(&self, record: &Record) -> Option<f64> {
+        lack_of_fit(record, &self.space.outside_of_left_out(&self.white), self.space.left_out())
     }
 
     fn units(&self) -> Vec<Vec<f64>> {

@@ -110,7 +110,8 @@ impl Given<'_> {
             let stage = &stages[stages.len() - 1];
             let Some((next, stands_out, worth)) = next else {
                 // The screen alone, and no effect that is worth its price: chance.
-                let is_chance = !stage.adequacy.smooth_fails() && !stage.adequacy.fit_fails;
+                let adequacy = &stage.adequacy;
+                let is_chance = !adequacy.smooth_fails() && !adequacy.fit_fails && !adequacy.repeats;
                 if let Some(stage) = stages.last_mut() {
                     stage.adequate |= is_chance;
                 }

@@ -89,15 +89,25 @@ impl Space {
 
     /// Coordinates of the part of a column within the frame.
     pub(crate) fn coordinates(&self, column: &[f64]) -> Vec<f64> {
+        let left = self.outside_of_left_out(column);
+        self.frame.iter().map(|unit| dot(unit, &left)).collect()
+    }
+
+    /// Orthonormal columns of what was left out.
+    pub(crate) fn left_out(&self) -> &[Vec<f64>] {
+        &self.tangents
+    }
+
+    /// The part of a column that is outside of what was left out.
+    pub(crate) fn outside_of_left_out(&self, column: &[f64]) -> Vec<f64> {
         let mut left = column.to_vec();
         subtract(&mut left, &self.tangents);
-        self.frame.iter().map(|unit| dot(unit, &left)).collect()
+        left
     }
 
     /// The part of a column that is outside the model's tangents and the frame.
     pub(crate) fn outside(&self, column: &[f64]) -> Vec<f64> {
-        let mut left = column.to_vec();
-        subtract(&mut left, &self.tangents);
+        let mut left = self.outside_of_left_out(column);
         subtract(&mut left, &self.frame);
         left
     }

@@ -15,6 +15,8 @@ use crate::diagnosis::something_else::smooth_evidence;
 pub(crate) const ALARM: [f64; 2] = [0.03, 0.006];
 /// Chance with which the smooth test may raise one where effects are named: to say that they explain everything takes more than to say nothing.
 const EXPLAINED: f64 = 0.01;
+/// Chance with which near replicates may raise one.
+const REPEATED: f64 = 0.003;
 /// Log evidence of something that nobody thought of, before any data.
 const SOMETHING_ELSE: f64 = -2.0;
 /// Part of what a model explains that no comparison with something else rests on: no formula, however bent, is nearer to a real effect.
@@ -32,6 +34,8 @@ pub(crate) struct Adequacy {
     pub(crate) chance: [f64; 2],
     /// Whether the readings scatter about the model by much more than the noise does, in whatever way.
     pub(crate) fit_fails: bool,
+    /// Whether near replicates miss in common what the rest doesn't see. Asked only where the rest holds.
+    pub(crate) repeats: bool,
 }
 
 impl Adequacy {
@@ -113,7 +117,7 @@ impl Given<'_> {
         let scene = known.scene(&confirmed.prepared, &confirmed.theta)?;
         let (null, chance) = scene.chance(self);
         let fit_fails = self.scatters(&confirmed);
-        let adequacy = Adequacy { null, names: !added.is_empty(), chance, fit_fails };
+        let mut adequacy = Adequacy { null, names: !added.is_empty(), chance, fit_fails, repeats: false };
         let is_small =
             || self.tolerance_n.is_some_and(|tolerance| misfit(&scene, self.seed).1[1] <= tolerance);
         // A test may be surprised by what no smooth misfit explains: that is no structure.
@@ -123,7 +127,10 @@ impl Given<'_> {
                 && !fit_fails
                 && SOMETHING_ELSE + smooth_evidence(&scene) <= 0.0
         };
-        let adequate = adequacy.holds() || is_small() || is_chance();
+        let holds = adequacy.holds() || is_chance();
+        adequacy.repeats = holds && scene.lack_of_fit(self.record).is_some_and(|chance| chance < REPEATED);
+        // What repeats beside effects that explain the rest is no reason to bend or add more of them.
+        let adequate = holds && (adequacy.names || !adequacy.repeats) || is_small();
         Ok(Stage { added, confirmed, scene, adequate, adequacy, tried: Vec::new() })
     }
 

@@ -64,7 +64,7 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
     let named = shows_effects(verdict);
     let classes = if named { classes } else { &[] };
     let last = if named { found.last() } else { &search.stages[0] };
-    let adequate = last.adequate || verdict == Verdict::Adequate;
+    let adequate = last.adequate && !last.adequacy.repeats || verdict == Verdict::Adequate;
     let (misfit_n, misfit_interval_n) = misfit(&last.scene, given.seed);
     let left = located(&last.scene);
     let added = classes.iter().map(|(class, sure)| found.missing(class, *sure));
@@ -182,9 +182,14 @@ impl Findings<'_> {
             return (
                 Verdict::Missing,
                 format!(
-                    "missing: {}; with {} the model explains the data",
+                    "missing: {}; with {} the model explains the data{}",
                     names.join(" and "),
-                    if names.len() == 1 { "it" } else { "them" }
+                    if names.len() == 1 { "it" } else { "them" },
+                    if last.adequacy.repeats {
+                        " but for what recurs in other strokes and follows no smooth function"
+                    } else {
+                        ""
+                    }
                 ),
             );
         }
@@ -215,7 +220,12 @@ impl Findings<'_> {
             );
             return (Verdict::Missing, says);
         }
-        let says = format!("these data hold a structure of {size} that no effect of the catalogue explains");
+        let structure = if last.adequacy.repeats {
+            "a misfit that recurs in other strokes, which no smooth function follows and".to_owned()
+        } else {
+            format!("a structure of {size} that")
+        };
+        let says = format!("these data hold {structure} no effect of the catalogue explains");
         (Verdict::Unknown, says)
     }
 

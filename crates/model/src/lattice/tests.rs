@@ -46,7 +46,8 @@ fn rows_beyond_the_end_change_nothing_before_it() {
     }
     assert!(force(&far, pulls).is_some(), "no whole stencil at {pulls}");
     // A row without stencil is solved itself, until it is known that there is none.
-    let rows = |contraction| answer(Some(&far), &equilibrium, [2e5, contraction], &mut None);
+    let rows =
+        |contraction| answer(Some(&far), &equilibrium, [2e5, contraction], &mut None, &AtomicUsize::new(0));
     let mut ended = None;
     for i in 0..100 {
         let contraction = pulls + (0.69 - pulls) * f64::from(i) / 100.0;

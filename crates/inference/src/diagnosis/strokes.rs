@@ -1,0 +1,76 @@
+//! Strokes of a record: the ways in one direction, and where on them each row is. Rows of different strokes in about the same state are near replicates.
+
+use bulge_effects::Moment;
+use bulge_model::Record;
+
+use crate::comparison::levels::Levels;
+
+/// Contractions that differ by less are the same held length.
+const HELD: f64 = 2e-3;
+
+/// A row of a stroke.
+pub(crate) struct Point {
+    /// Contraction, or pressure at held length, in parts of its range.
+    pub(crate) place: f64,
+    pub(crate) row: usize,
+}
+
+/// What strokes have in common that repeat each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct State {
+    pub(crate) specimen: u32,
+    /// Whether the length is held and the pressure moves.
+    pub(crate) is_held: bool,
+    /// Level of the pressure, or the held length.
+    pub(crate) level: i64,
+    /// Whether the muscle gets shorter, or the pressure rises.
+    pub(crate) is_up: bool,
+}
+
+/// The way in one direction within one cycle, in the order of the places.
+pub(crate) struct Stroke {
+    pub(crate) state: State,
+    pub(crate) sweep: usize,
+    /// Whether it is of the first of three cycles or more of its sweep.
+    pub(crate) is_first: bool,
+    pub(crate) points: Vec<Point>,
+}
+
+/// All strokes of a record.
+pub(crate) fn strokes(record: &Record) -> Vec<Stroke> {
+    let levels = Levels::of(record, &vec![true; record.len()]);
+    let width = |of: &dyn Fn(&Moment) -> f64| {
+        let ends = record.moments().iter().map(of);
+        let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
+        (high - low).max(f64::MIN_POSITIVE)
+    };
+    let [contractions, pressures] = [width(&|m| m.contraction), width(&|m| m.pressure)];
+    let mut found = Vec::new();
+    for (sweep, rows) in record.sweeps().iter().enumerate() {
+        let moving: Vec<usize> = rows.clone().filter(|row| record.moments()[*row].branch() != 0.0).collect();
+        let cycle = |row: usize| record.moments()[row].cycle.floor();
+        let up = |row: usize| record.moments()[row].branch() > 0.0;
+        let last = moving.last().map_or(0.0, |row| cycle(*row));
+        let first = moving.first().map_or(0.0, |row| cycle(*row));
+        for run in moving.chunk_by(|a, b| up(*a) == up(*b) && cycle(*a).total_cmp(&cycle(*b)).is_eq()) {
+            let moment = &record.moments()[run[0]];
+            let is_held = moment.direction == 0.0;
+            let mut points: Vec<Point> = run
+                .iter()
+                .map(|row| {
+                    let m = &record.moments()[*row];
+                    let place = if is_held { m.pressure / pressures } else { m.contraction / contractions };
+                    Point { place, row: *row }
+                })
+                .collect();
+            points.sort_by(|a, b| a.place.total_cmp(&b.place));
+            #[expect(clippy::cast_possible_truncation, reason = "a contraction over 0.2 %")]
+            let length = (moment.contraction / HELD).round() as i64;
+            let level = if is_held { length } else { i64::try_from(levels.at(run[0])).unwrap_or(0) };
+            let state = State { specimen: moment.specimen, is_held, level, is_up: up(run[0]) };
+            let is_first = last >= first + 2.0 && cycle(run[0]) <= first;
+            found.push(Stroke { state, sweep, is_first, points });
+        }
+    }
+    found
+}
