@@ -8,6 +8,7 @@ pub(crate) mod claim;
 pub(crate) mod classes;
 pub(crate) mod confidence;
 pub(crate) mod confirm;
+pub(crate) mod decision_rule;
 pub(crate) mod diagnose;
 pub(crate) mod document;
 mod either;

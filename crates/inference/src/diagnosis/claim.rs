@@ -6,16 +6,11 @@ use std::sync::Arc;
 
 use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::Confidence;
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::{FormErrorAt, FormErrorResult};
 use crate::diagnosis::explained::bent_curves;
 use crate::diagnosis::form_error::Bent;
 use crate::dot::dot;
-
-/// Evidence of effects whose formulas are not exact counts less: by the forms suite (seeds 21 and 41) a lead of 2 is right about as often as one of 1 between exact formulas.
-const TEMPERED: f64 = 2.0;
-/// Chance that a claim is wrong however far it leads, and by how much less it is right for each further effect that is named beside it; by the same suite.
-const OUTSIDE: f64 = 0.06;
-const FURTHER: f64 = 0.9;
 
 /// How often a claim is right on three levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,10 +27,11 @@ impl Levels {
         let weights = |counts: &dyn Fn(&Arc<dyn Effect>) -> bool| -> f64 {
             let rivals =
                 class.rivals.iter().filter(|rival| rival.log_evidence.is_finite() && counts(&rival.effect));
-            rivals.map(|rival| ((rival.log_evidence - class.log_evidence) / TEMPERED).exp()).sum()
+            rivals.map(|rival| ((rival.log_evidence - class.log_evidence) / RULE.tempered).exp()).sum()
         };
         let all = 1.0 + weights(&|_| true);
-        let sure = (1.0 - OUTSIDE) * FURTHER.powi(i32::try_from(named).unwrap_or(i32::MAX).saturating_sub(1));
+        let sure = (1.0 - RULE.outside)
+            * RULE.further.powi(i32::try_from(named).unwrap_or(i32::MAX).saturating_sub(1));
         let part = |counts: &dyn Fn(&Arc<dyn Effect>) -> bool| sure * (1.0 + weights(counts)) / all;
         let mechanism = part(&|effect| is_same_mechanism(effect, &class.effect));
         let family = part(&|effect| effect.card().family == own.family).min(simulated.named);

@@ -11,25 +11,13 @@ use std::sync::Arc;
 
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::confirm::Confirmed;
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::{Hypothesis, Tried, singles, ticket};
 use crate::diagnosis::scene::{Given, Scene};
-use crate::diagnosis::search::WORTH;
 use crate::diagnosis::space::Space;
 use crate::diagnosis::stage::{Stage, tempered};
 use crate::dot::dot;
 
-/// Rivals whose log evidence is less than this below stay in the class.
-pub(crate) const EVIDENCE: f64 = 3.0;
-/// Part of the log evidence of the form errors that is as much as nothing between rivals.
-const BENT: f64 = 0.02;
-/// Effects that differ by less than this many sigmas are the same on these data.
-pub(crate) const SAME: f64 = 1.0;
-/// Unless the data have decided after all: this far below they are out.
-pub(crate) const DECIDED: f64 = 6.0;
-/// And those that differ by fewer sigmas than this: one error in a thousand.
-pub(crate) const SEPARATION: f64 = 3.29;
-/// Log evidence by which a rival must be better to take the place of an effect that was accepted before the others.
-const SWAP: f64 = 1.0;
 /// Rivals this far below in linear evidence aren't fitted.
 const FITTED: f64 = 8.0;
 /// Most rivals that are fitted.
@@ -110,7 +98,7 @@ impl Given<'_> {
         let gain = without.confirmed.bent_cost() - stage.confirmed.bent_cost();
         let log_evidence =
             tempered(stage.confirmed.log_evidence - without.confirmed.log_evidence + ticket, gain, scatter);
-        let margin = EVIDENCE.max(BENT * stage.confirmed.form.log_evidence);
+        let margin = RULE.rival.max(RULE.rival_bent * stage.confirmed.form.log_evidence);
         let beside = Given { kin: Some(&stage.confirmed.form.kin), ..*self };
         let list = singles(&without.scene, &without.confirmed.prepared.model);
         let best = list.iter().map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
@@ -121,8 +109,8 @@ impl Given<'_> {
             .map(|h| {
                 let separation =
                     self.separation(&without.scene, h.effects[0], &signal, &bent) / scatter.sqrt();
-                let near =
-                    (h.log_evidence > best - FITTED * scatter || separation < SEPARATION) && fitted < MOST;
+                let near = (h.log_evidence > best - FITTED * scatter || separation < RULE.separation)
+                    && fitted < MOST;
                 fitted += usize::from(near);
                 (h, separation, near)
             })
@@ -167,7 +155,7 @@ impl Given<'_> {
 
     /// A stage without an effect that is no longer worth its price beside those which came after it (backward elimination).
     pub(crate) fn dropped(&self, base: &Model, stage: &Stage, place: usize, class: &Class) -> Option<Stage> {
-        if stage.added.len() == 1 || class.log_evidence > WORTH[1] {
+        if stage.added.len() == 1 || class.log_evidence > RULE.worth[1] {
             return None;
         }
         let others = stage.without(place);
@@ -181,7 +169,7 @@ impl Given<'_> {
         let converged = |rival: &&Rival| rival.fit.as_ref().is_some_and(|fit| fit.converged);
         let better = |a: &&Rival, b: &&Rival| a.log_evidence.total_cmp(&b.log_evidence);
         let rival = class.rivals.iter().filter(converged).max_by(better)?;
-        if rival.log_evidence <= class.log_evidence + SWAP {
+        if rival.log_evidence <= class.log_evidence + RULE.swap {
             return None;
         }
         let mut added = stage.added.clone();
@@ -237,9 +225,9 @@ impl Given<'_> {
         });
         // What is the same on these data stays, however unlikely its numbers are: priors may be wrong.
         let undecided = log_evidence > named - margin
-            || separation < SEPARATION && log_evidence > named - DECIDED.max(margin)
-            || separation < SAME;
-        let worth = WORTH[usize::from(!without.added.is_empty())];
+            || separation < RULE.separation && log_evidence > named - RULE.decided.max(margin)
+            || separation < RULE.same;
+        let worth = RULE.worth[usize::from(!without.added.is_empty())];
         let in_class = tried.is_some() && log_evidence.is_finite() && log_evidence > worth && undecided;
         let effect = Arc::clone(&without.scene.showings.effects[place].effect);
         Rival { effect, log_evidence, separation, in_class, fit: tried.and_then(|tried| tried.confirmed) }
@@ -258,7 +246,7 @@ impl Given<'_> {
         let whiten = |column: &[f64]| self.white(column, scene.priors);
         let candidates = scene.candidates.iter().filter(|c| c.effect == effect);
         if bent.is_empty() {
-            return left_of(&scene.space.coordinates(&whiten(signal)), candidates);
+            return separation(&scene.space.coordinates(&whiten(signal)), candidates);
         }
         let mut space = scene.space.clone();
         let columns: Vec<Vec<f64>> = bent.iter().map(|column| space.enter(&whiten(column))).collect();
@@ -280,12 +268,12 @@ impl Given<'_> {
         let moved: Vec<Candidate> = candidates
             .map(|c| c.with_columns(c.columns.iter().map(|column| enter(column)).collect()))
             .collect();
-        left_of(&signal, moved.iter())
+        separation(&signal, moved.iter())
     }
 }
 
-/// What is left of a signal in coordinates when the best of these candidates is taken away.
-fn left_of<'c>(signal: &[f64], candidates: impl Iterator<Item = &'c Candidate>) -> f64 {
+/// Sigmas between a signal in coordinates and the candidate that comes nearest, at its best size.
+pub(crate) fn separation<'c>(signal: &[f64], candidates: impl Iterator<Item = &'c Candidate>) -> f64 {
     let most = candidates.map(|c| c.explains(signal).gain).fold(0.0, f64::max);
     (dot(signal, signal) - most).max(0.0).sqrt()
 }

@@ -8,13 +8,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::diagnosis::candidates::{Candidate, log_evidence};
-use crate::diagnosis::classes::{Class, DECIDED, EVIDENCE, Rival, SAME, SEPARATION};
+use crate::diagnosis::classes::{Class, Rival, separation};
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::{Tried, ticket};
 use crate::diagnosis::null::{Null, Statistics};
 use crate::diagnosis::scene::{Given, Scene};
-use crate::diagnosis::search::WORTH;
 use crate::diagnosis::showing::Screened;
-use crate::diagnosis::stage::ALARM;
 use crate::dot::dot;
 use bulge_numerics::Random;
 
@@ -25,10 +24,7 @@ const PER_STREAM: usize = 100;
 /// A claim is as clear as another if the lead of its log evidence over the next effect differs by less than this part of the lead, or this much.
 const AS_CLEAR: [f64; 2] = [0.3, 1.0];
 /// A claim with a larger lead is as clear as one with this lead.
-const CLEAR: f64 = DECIDED;
-/// Chance that an effect explains the data and is the wrong one all the same, because the right one is not in the catalogue or its formula is not exact: no
-/// catalogue is complete. No claim is surer than that.
-const OUTSIDE: f64 = 0.1;
+const CLEAR: f64 = RULE.decided;
 /// Fewest claims of the same kind from which a rate is stated.
 const ENOUGH: usize = 20;
 
@@ -54,7 +50,7 @@ impl Confidence {
             |t: &&Tried| t.hypothesis.effects.iter().any(|i| effects[*i].effect.card().name == effect);
         let all: f64 = tried.iter().map(weight).sum();
         let own: f64 = tried.iter().filter(holds).map(weight).sum();
-        let share = if all > 0.0 { (1.0 - OUTSIDE) * own / all } else { 0.0 };
+        let share = if all > 0.0 { (1.0 - RULE.incomplete) * own / all } else { 0.0 };
         Self { named: share, class: share, interval: [0.0, 1.0], claims: 0 }
     }
 }
@@ -77,7 +73,7 @@ pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &
     let Some(named) = place(class.effect.card().name) else {
         return Confidence { named: 0.0, class: 0.0, interval: [0.0, 1.0], claims: 0 };
     };
-    let worth = WORTH[usize::from(class.is_further)];
+    let worth = RULE.worth[usize::from(class.is_further)];
     let tickets: Vec<f64> = (0..scene.showings.effects.len()).map(|i| ticket(scene, i)).collect();
     let truths = truths(scene, &found, &tickets, class, named);
     let family = class.effect.card().family;
@@ -114,13 +110,13 @@ pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &
                     || rival.is_some_and(|rival| rival.effect.card().family == family || counts(rival))
             };
             let right = truths.iter().filter(|t| t.effect.is_some_and(is_one));
-            (1.0 - OUTSIDE) * right.map(|t| t.weight).sum::<f64>()
+            (1.0 - RULE.incomplete) * right.map(|t| t.weight).sum::<f64>()
         };
-        let (named, class) = (of(&|rival| rival.separation < SAME), of(&|rival| rival.in_class));
+        let (named, class) = (of(&|rival| rival.separation < RULE.same), of(&|rival| rival.in_class));
         return Confidence { named, class, interval: [0.0, 1.0], claims };
     }
-    let part = |count: usize| (1.0 - OUTSIDE) * count as f64 / claims as f64;
-    let interval = wilson(right, claims).map(|end| (1.0 - OUTSIDE) * end);
+    let part = |count: usize| (1.0 - RULE.incomplete) * count as f64 / claims as f64;
+    let interval = wilson(right, claims).map(|end| (1.0 - RULE.incomplete) * end);
     Confidence { named: part(right), class: part(held), interval, claims }
 }
 
@@ -219,7 +215,7 @@ impl Claim {
     /// The decision on a misfit: none if nothing would be named.
     fn of(scene: &Scene, null: &Null, tickets: &[f64], worth: f64, z: &[f64]) -> Option<Self> {
         let statistics = Statistics::of(z, &scene.candidates, &[]);
-        if null.chance(&statistics)[0] >= ALARM[0] {
+        if null.chance(&statistics)[0] >= RULE.screen {
             return None;
         }
         let mut evidence = vec![f64::NEG_INFINITY; tickets.len()];
@@ -258,20 +254,14 @@ impl Claim {
     }
 
     fn separation(&self, scene: &Scene, effect: usize) -> f64 {
-        let most = scene
-            .candidates
-            .iter()
-            .filter(|c| c.effect == effect)
-            .map(|c| c.explains(&self.signal).gain)
-            .fold(0.0, f64::max);
-        (dot(&self.signal, &self.signal) - most).max(0.0).sqrt()
+        separation(&self.signal, scene.candidates.iter().filter(|c| c.effect == effect))
     }
 
     /// Whether the named effect is the truth, or the same as far as these data go.
     fn is_same(&self, scene: &Scene, truth: &Truth<'_>) -> bool {
         let family = |effect: usize| scene.showings.effects[effect].effect.card().family.to_owned();
         truth.effect.is_some_and(|effect| {
-            family(effect) == family(self.named) || self.separation(scene, effect) < SAME
+            family(effect) == family(self.named) || self.separation(scene, effect) < RULE.same
         })
     }
 
@@ -280,9 +270,9 @@ impl Claim {
         self.is_same(scene, truth)
             || truth.effect.is_some_and(|effect| {
                 self.evidence[effect] > self.worth
-                    && (self.evidence[effect] > self.evidence[self.named] - EVIDENCE
-                        || self.evidence[effect] > self.evidence[self.named] - DECIDED
-                            && self.separation(scene, effect) < SEPARATION)
+                    && (self.evidence[effect] > self.evidence[self.named] - RULE.rival
+                        || self.evidence[effect] > self.evidence[self.named] - RULE.decided
+                            && self.separation(scene, effect) < RULE.separation)
             })
     }
 }

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::diagnosis::candidates::log_prior;
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::form_error::FormError;
 use crate::diagnosis::scene::Given;
 use crate::diagnosis::showing::{Showing, Sign, Size, sizes};
@@ -22,8 +23,6 @@ use crate::fit::states::{is_of_rows, of_start, settled_where_possible};
 
 /// Tolerance of the fits, as a part of what the residuals are.
 const TOLERANCE: f64 = 1e-5;
-/// What a size costs that is twice as large as plausible.
-const IMPLAUSIBLE: f64 = 8.0;
 const EVALUATIONS: usize = 50;
 /// Starts that are followed to their minimum.
 const FOLLOWED: usize = 2;
@@ -307,7 +306,7 @@ fn penalty(prepared: &Prepared, theta: &[f64]) -> f64 {
     let beyond = |(index, size): (usize, Option<Size>)| {
         let size = size.filter(|_| !prepared.nuisance[index])?;
         let deviation = (theta[index] - size.off).abs();
-        (deviation > 0.0).then(|| IMPLAUSIBLE * (deviation / size.plausible - 1.0).max(0.0))
+        (deviation > 0.0).then(|| RULE.implausible * (deviation / size.plausible - 1.0).max(0.0))
     };
     let free = free(&prepared.model);
     let roles = roles(&prepared.model);

@@ -12,17 +12,12 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use std::sync::Arc;
 
 use crate::diagnosis::bending::{Bending, Kin, Kind};
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::space::{Space, norm};
 use crate::dot::dot;
 
-/// Standard deviations of a form error, as parts of the effect, and how likely each is before any data.
-const LEVELS: [(f64, f64); 5] = [(0.0, 0.5), (0.05, 0.12), (0.1, 0.15), (0.2, 0.15), (0.4, 0.08)];
 /// Times that each standard deviation is chosen anew beside the others.
 const ROUNDS: usize = 2;
-/// An effect that is bent by a larger part of it is another effect.
-const MOST_BENT: f64 = 0.4;
-/// So is one that is bent by more newtons than it has (RMS): where the noise is nearly alike in many rows, newtons may weigh little.
-const MOST_BENT_RAW: f64 = 1.0;
 /// A direction in which form errors move the readings by a smaller part of their variance says nothing.
 const NOTHING: f64 = 0.01;
 
@@ -105,8 +100,8 @@ impl Columns {
     fn evidence(&self, sds: &[[f64; 4]]) -> Option<(f64, f64, Vec<f64>)> {
         let chosen = self.chosen(sds);
         let prior = |sd: f64| {
-            let level = LEVELS.iter().find(|(level, _)| (level - sd).abs() < 1e-12);
-            level.map_or(0.0, |level| (level.1 / LEVELS[0].1).ln())
+            let level = RULE.form_errors.iter().find(|(level, _)| (level - sd).abs() < 1e-12);
+            level.map_or(0.0, |level| (level.1 / RULE.form_errors[0].1).ln())
         };
         let mut log: f64 = sds.iter().flatten().map(|sd| prior(*sd)).sum();
         let (factor, right) = self.solved(&chosen)?;
@@ -129,7 +124,8 @@ impl Columns {
         };
         let seen = parts(&self.gram, 0);
         let is_itself = |parts: &[f64], most: f64| parts.iter().all(|part| *part <= most);
-        let allowed = is_itself(&seen, MOST_BENT) && is_itself(&parts(&self.raw_gram, 1), MOST_BENT_RAW);
+        let allowed =
+            is_itself(&seen, RULE.most_bent) && is_itself(&parts(&self.raw_gram, 1), RULE.most_bent_newtons);
         allowed.then_some((log, fall, seen))
     }
 }
@@ -190,7 +186,7 @@ impl FormError {
                         continue;
                     }
                     let mut kept = sds[effect][kind as usize];
-                    for (level, _) in LEVELS.iter().filter(|(level, _)| *level <= largest) {
+                    for (level, _) in RULE.form_errors.iter().filter(|(level, _)| *level <= largest) {
                         sds[effect][kind as usize] = *level;
                         let Some(found) = columns.evidence(&sds) else { continue };
                         if found.0 > best.0 {
@@ -353,14 +349,15 @@ mod tests {
         assert!(sd[Kind::State as usize] > 0.0 && sd[Kind::Turn as usize] > 0.0, "{sd:?}");
         let white: Vec<Vec<f64>> = bent.columns.iter().map(|(_, c)| space.outside(c)).collect();
         let own: Vec<f64> = bent.columns.iter().map(|(kind, _)| sd[*kind as usize]).collect();
-        let prior =
-            |sd: f64| (LEVELS.iter().find(|level| (level.0 - sd).abs() < 1e-12).unwrap().1 / 0.5).ln();
+        let prior = |sd: f64| {
+            (RULE.form_errors.iter().find(|level| (level.0 - sd).abs() < 1e-12).unwrap().1 / 0.5).ln()
+        };
         let expected =
             dense(&white, &own, &space.outside(&misfit)) + sd.iter().map(|sd| prior(*sd)).sum::<f64>();
         assert!((found.log_evidence - expected).abs() < 1e-9, "{} {expected}", found.log_evidence);
         // No other levels are likelier.
-        for state in LEVELS {
-            for turn in LEVELS {
+        for state in RULE.form_errors {
+            for turn in RULE.form_errors {
                 let own: Vec<f64> = bent
                     .columns
                     .iter()
@@ -378,7 +375,7 @@ mod tests {
         longer.resize(ROWS + directions.len(), 0.0);
         let left = beside.outside(&longer);
         assert!((whole - dot(&left, &left) - found.fall).abs() < 1e-6 * found.fall, "{}", found.fall);
-        assert!(found.effects[0].part > 0.05 && found.effects[0].part < MOST_BENT);
+        assert!(found.effects[0].part > 0.05 && found.effects[0].part < RULE.most_bent);
     }
 
     #[test]
@@ -408,7 +405,7 @@ mod tests {
             *value += 2.0 * c;
         }
         let (found, _) = FormError::of(&[loose], &space, &misfit, &same);
-        assert!(found.effects[0].part <= MOST_BENT && !found.effects[0].may_bend());
+        assert!(found.effects[0].part <= RULE.most_bent && !found.effects[0].may_bend());
     }
 
     #[test]

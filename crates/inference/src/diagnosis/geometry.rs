@@ -17,15 +17,12 @@ use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
 use crate::comparison::analysis::Analysis;
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::{Diagnosis, Missing, Verdict};
 use crate::diagnosis::stage::Stage;
 use crate::fit::nuisance::is_geometry;
 use crate::fit::problem::free;
 
-/// Square of the sigmas from the stated geometry, beyond which another answer is asked for: of four numbers chance alone gives as much once in 300 times.
-const DEPARTED: f64 = 16.0;
-/// Usual widths beyond which a number is not doubtful but another muscle's.
-const BEYOND: f64 = 3.0;
 /// Sigmas and widths from which a number is said to have moved.
 const MOVED: [f64; 2] = [2.0, 0.3];
 
@@ -148,10 +145,11 @@ impl Doubt {
             number.by_default = self.added.iter().any(|parameter| parameter.name() == number.number);
         }
         let beyond = |number: &DoubtfulNumber| {
-            number.by_default && number.found.as_ref().is_some_and(|found| found.widths.abs() > BEYOND)
+            number.by_default
+                && number.found.as_ref().is_some_and(|found| found.widths.abs() > RULE.another_muscle)
         };
         let is_beyond = doubtful.geometry.doubtful.iter().any(beyond);
-        if self.added.is_empty() || !(is_beyond || doubtful.geometry.departure > DEPARTED) {
+        if self.added.is_empty() || !(is_beyond || doubtful.geometry.departure > RULE.departed) {
             return Ok(doubtful);
         }
         let mut exact = answer_on(&self.exact)?;

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::diagnosis::candidates::{Candidate, explained, log_evidence};
 use crate::diagnosis::confirm::{Confirmed, starts};
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::scene::Scene;
 
 /// Hypotheses whose linear evidence is this much below the best are not fitted.
@@ -13,8 +14,6 @@ const FITTED: f64 = 12.0;
 const MOST: [usize; 2] = [8, 6];
 /// Forms from which a fit of an effect starts.
 const FORMS: usize = 2;
-/// Log evidence that an effect of time must bring beyond one of the path alone.
-const SIMPLER: f64 = 0.2;
 /// A fall of the square of the misfit beyond which tangents say little: then usual numbers are starts too, and the best of each kind are fitted.
 pub(crate) const FAR: f64 = 200.0;
 
@@ -54,7 +53,7 @@ pub(crate) fn ticket(scene: &Scene, effect: usize) -> f64 {
     let is_head = effects[effect].effect.card().name == own;
     // Of two that are the same on these data, the one that takes less to be seen.
     let simple =
-        if effects[effect].effect.card().needs == bulge_effects::Needs::Time { -SIMPLER } else { 0.0 };
+        if effects[effect].effect.card().needs == bulge_effects::Needs::Time { -RULE.simpler } else { 0.0 };
     of_family
         + simple
         + match (members, heads, is_head) {

@@ -11,9 +11,10 @@ use serde::Serialize;
 use std::sync::Arc;
 
 use crate::comparison::levels::Levels;
-use crate::diagnosis::classes::{Class, SEPARATION};
+use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::confirm::Confirmed;
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::NextExperiment;
 use crate::diagnosis::scene::Given;
 use crate::fit::weights::Noise;
@@ -251,7 +252,7 @@ pub(crate) fn next_experiment(
         }
     }
     let needed =
-        |sigma: f64| ((SEPARATION.powi(2) - at_hand.powi(2)).max(0.0) / (sigma * sigma)).ceil().max(1.0);
+        |sigma: f64| ((RULE.separation.powi(2) - at_hand.powi(2)).max(0.0) / (sigma * sigma)).ceil().max(1.0);
     match best.filter(|(sigma, _)| *sigma > 0.0 && needed(*sigma) <= MOST_REPEATS as f64) {
         Some((sigma, says)) => {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 20")]

@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::sync::Arc;
 
 use crate::diagnosis::candidates::Candidate;
-use crate::diagnosis::classes::SEPARATION;
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::scene::{Given, Scene};
 use crate::diagnosis::showing::Sign;
 use crate::diagnosis::space::norm;
@@ -288,7 +288,7 @@ fn confused(scene: &Scene) -> Vec<ConfusedPair> {
                 effects: [x.card().name.to_owned(), y.card().name.to_owned()],
                 cosine,
                 sigma,
-                repeats: (sigma > NOTHING).then(|| (SEPARATION / sigma).powi(2).ceil().max(1.0)),
+                repeats: (sigma > NOTHING).then(|| (RULE.separation / sigma).powi(2).ceil().max(1.0)),
                 separate: x.card().separate.to_owned(),
             });
         }

@@ -142,9 +142,7 @@ impl Given<'_> {
 
     /// A column whitened, with zeros for so many priors.
     pub(crate) fn white(&self, column: &[f64], priors: usize) -> Vec<f64> {
-        let mut white = column.to_vec();
-        // The law was made for this record: there is nothing to go wrong.
-        let _ = self.whitening.apply(&mut white);
+        let mut white = self.whitening.whitened(column.to_vec());
         white.resize(column.len() + priors, 0.0);
         white
     }

@@ -7,30 +7,17 @@ use std::sync::Arc;
 
 use crate::diagnosis::bending::{Kin, may_bend};
 use crate::diagnosis::confirm::Confirmed;
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::{FAR, Hypothesis, Tried, hypotheses, ticket};
 use crate::diagnosis::scene::Given;
 use crate::diagnosis::stage::{Stage, tempered};
 
-/// Log evidence from which the first effect is worth naming: before any data it is seven times as likely that something is missing in a model of a real muscle
-/// as that nothing is. That a second effect is missing too is no more likely than not.
-pub(crate) const WORTH: [f64; 2] = [-2.0, 0.0];
-/// Part of what form errors bring that doesn't count when hypotheses are put in order: of two that explain as much the one whose formula is nearer.
-const BY_BENDING: f64 = 0.1;
-/// Log evidence of form errors from which another effect is looked for that makes them superfluous, and what it must bring.
-const BENT: f64 = 4.0;
-const SUPERFLUOUS: f64 = 3.0;
-/// Part of the log evidence of form errors that another effect may leave to make them superfluous.
-const LESS_BENT: f64 = 0.5;
-/// Part of what a model explains that a further effect must explain where the formulas of the model may be wrong: what explains less mends a formula.
-const MENDS: f64 = 0.02;
 /// Effects that are added at most: a misfit that takes more is one that the catalogue doesn't hold.
 pub const MOST_EFFECTS: usize = 3;
 /// Part of the fall that the tangents say, from which they hold: then no other starts are needed.
 const PROMISED: f64 = 0.95;
 /// A fall of the sum of squares from which a minimum is another one: half a unit of log evidence.
 const LOWER: f64 = 1.0;
-/// Log evidence that a second effect must bring at once to be named with the first.
-const PAIR: f64 = 3.0;
 
 /// A whole search: the base first, then each model that was accepted.
 pub(crate) struct Search {
@@ -93,7 +80,7 @@ impl Given<'_> {
         let mut something_else = None;
         while let [.., stage] = &mut stages[..] {
             // A form error may be another effect.
-            let is_bent = stage.confirmed.form.log_evidence > BENT;
+            let is_bent = stage.confirmed.form.log_evidence > RULE.bent;
             let room = MOST_EFFECTS - stage.added.len();
             if stage.adequate && !is_bent || room == 0 || something_else.is_some() {
                 break;
@@ -119,7 +106,7 @@ impl Given<'_> {
             };
             let replaces_bending = || {
                 let [bent, left] = [stage, &next].map(|stage| stage.confirmed.form.log_evidence);
-                next.adequate && worth > SUPERFLUOUS && left < LESS_BENT * bent
+                next.adequate && worth > RULE.superfluous && left < RULE.less_bent * bent
             };
             if stage.adequate && !replaces_bending() {
                 break;
@@ -159,7 +146,7 @@ impl Given<'_> {
     /// can be seen from there.
     fn step(&self, stages: &[Stage], tried: &Tried, confirmed: &Confirmed) -> Option<(Stage, bool, f64)> {
         let (base, stage) = (stages.first()?, stages.last()?);
-        let worth = WORTH[usize::from(!stage.added.is_empty())];
+        let worth = RULE.worth[usize::from(!stage.added.is_empty())];
         let effects = &stage.scene.showings.effects;
         let new: Vec<Arc<dyn Effect>> =
             tried.hypothesis.effects.iter().map(|i| Arc::clone(&effects[*i].effect)).collect();
@@ -169,7 +156,7 @@ impl Given<'_> {
         let gain = stage.confirmed.bent_cost() - confirmed.bent_cost();
         let mends = |first: &Confirmed| {
             let explained = base.confirmed.bent_cost() - first.bent_cost();
-            may_bend(&first.prepared) && first.bent_cost() - confirmed.bent_cost() < MENDS * explained
+            may_bend(&first.prepared) && first.bent_cost() - confirmed.bent_cost() < RULE.mends * explained
         };
         let member = |one: &&Tried| matches!(&one.hypothesis.effects[..], [only] if new.len() > 1 && tried.hypothesis.effects.contains(only));
         let alone = stage.tried.iter().filter(member).filter_map(|one| one.confirmed.as_ref());
@@ -201,7 +188,8 @@ impl Given<'_> {
         let margin = stages.first().map_or(0.0, |base| pair.0.digits_over(base));
         match half {
             Some(half)
-                if half.0.adequate || half.0.value_over(stage) > pair.0.value_over(stage) - PAIR + margin =>
+                if half.0.adequate
+                    || half.0.value_over(stage) > pair.0.value_over(stage) - RULE.pair + margin =>
             {
                 half
             }
@@ -311,7 +299,9 @@ fn ranked(tried: &[Tried]) -> Vec<(&Tried, &Confirmed)> {
     let mut list: Vec<(&Tried, &Confirmed)> =
         tried.iter().filter_map(|t| Some((t, t.confirmed.as_ref()?))).collect();
     let worth = |(t, c): &(&Tried, &Confirmed)| {
-        t.log_evidence - PAIR * (t.hypothesis.effects.len() as f64 - 1.0) - BY_BENDING * c.form.log_evidence
+        t.log_evidence
+            - RULE.pair * (t.hypothesis.effects.len() as f64 - 1.0)
+            - RULE.by_bending * c.form.log_evidence
     };
     list.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     list

@@ -5,24 +5,12 @@ use bulge_model::ModelError;
 use std::sync::Arc;
 
 use crate::diagnosis::confirm::Confirmed;
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::Tried;
 use crate::diagnosis::misfit::misfit;
 use crate::diagnosis::null::Null;
 use crate::diagnosis::scene::{Given, Scene};
 use crate::diagnosis::something_else::smooth_evidence;
-
-/// Chance with which the screen may raise a false alarm, and the smooth test.
-pub(crate) const ALARM: [f64; 2] = [0.03, 0.006];
-/// Chance with which the smooth test may raise one where effects are named: to say that they explain everything takes more than to say nothing.
-const EXPLAINED: f64 = 0.01;
-/// Chance with which near replicates may raise one.
-const REPEATED: f64 = 0.003;
-/// Log evidence of something that nobody thought of, before any data.
-const SOMETHING_ELSE: f64 = -2.0;
-/// Part of what a model explains that no comparison with something else rests on: no formula, however bent, is nearer to a real effect.
-const DIGITS: f64 = 0.002;
-/// Readings scatter about a model if the mean square of their misfit is that many standard deviations beyond 1, and larger than this.
-const SCATTERS: [f64; 2] = [6.0, 1.5];
 
 /// Whether a model explains the data.
 #[derive(Debug, Clone)]
@@ -40,11 +28,11 @@ pub(crate) struct Adequacy {
 
 impl Adequacy {
     pub(crate) fn screen_fails(&self) -> bool {
-        self.chance[0] < ALARM[0]
+        self.chance[0] < RULE.screen
     }
 
     pub(crate) fn smooth_fails(&self) -> bool {
-        self.chance[1] < if self.names { EXPLAINED } else { ALARM[1] }
+        self.chance[1] < if self.names { RULE.smooth_beside_names } else { RULE.smooth }
     }
 
     pub(crate) fn holds(&self) -> bool {
@@ -79,7 +67,7 @@ impl Stage {
 
     /// Log evidence of something that nobody thought of on top of the model; 0 where nothing is left to explain.
     pub(crate) fn something_else(&self) -> f64 {
-        if self.adequate { 0.0 } else { (SOMETHING_ELSE + smooth_evidence(&self.scene)).max(0.0) }
+        if self.adequate { 0.0 } else { (RULE.something_else + smooth_evidence(&self.scene)).max(0.0) }
     }
 
     /// Log evidence of the model, with or without something else on top, over that of another; implausible numbers cost nothing here.
@@ -90,7 +78,7 @@ impl Stage {
 
     /// Log evidence that the last digits of a formula are worth, where a smooth misfit follows them and the formula doesn't.
     pub(crate) fn digits_over(&self, base: &Self) -> f64 {
-        0.5 * DIGITS * (base.confirmed.bent_cost() - self.confirmed.bent_cost()).max(0.0)
+        0.5 * RULE.digits * (base.confirmed.bent_cost() - self.confirmed.bent_cost()).max(0.0)
     }
 
     /// How much more than chance the misfit scatters over the smooth functions, as a ratio of variances: 1 if the model explains the data.
@@ -125,10 +113,11 @@ impl Given<'_> {
             !added.is_empty()
                 && !adequacy.screen_fails()
                 && !fit_fails
-                && SOMETHING_ELSE + smooth_evidence(&scene) <= 0.0
+                && RULE.something_else + smooth_evidence(&scene) <= 0.0
         };
         let holds = adequacy.holds() || is_chance();
-        adequacy.repeats = holds && scene.lack_of_fit(self.record).is_some_and(|chance| chance < REPEATED);
+        adequacy.repeats =
+            holds && scene.lack_of_fit(self.record).is_some_and(|chance| chance < RULE.near_replicates);
         // What repeats beside effects that explain the rest is no reason to bend or add more of them.
         let adequate = holds && (adequacy.names || !adequacy.repeats) || is_small();
         Ok(Stage { added, confirmed, scene, adequate, adequacy, tried: Vec::new() })
@@ -139,7 +128,7 @@ impl Given<'_> {
         let rows = self.record.len() as f64;
         let ratio = confirmed.bent_cost() / rows;
         let sd = (2.0 / rows + 2.0 / self.law.degrees_of_freedom.max(1.0)).sqrt();
-        ratio > (1.0 + SCATTERS[0] * sd).max(SCATTERS[1])
+        ratio > (1.0 + RULE.scatters[0] * sd).max(RULE.scatters[1])
     }
 }
 

@@ -10,6 +10,7 @@ use crate::comparison::document::Comparison;
 use crate::diagnosis::claim::{Levels, form_error};
 use crate::diagnosis::classes::{Class, Rival};
 use crate::diagnosis::confidence::Confidence;
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::{
     CandidateResult, DiagnosedData, DiagnosedNoise, Diagnosis, ExplainedStep, LadderStep, Missing,
     NextExperiment, ParameterResult, Remaining, RivalResult, Verdict,
@@ -34,13 +35,6 @@ const HYSTERESIS: &str = "presliding-hysteresis";
 const COULOMB: &str = "coulomb-friction";
 /// A transition shorter than this part of the stroke is none.
 const SHORT: f64 = 0.025;
-/// Part of the square of the misfit that may be left where effects are named though something remains.
-const FORWARD: f64 = 0.02;
-
-/// Log evidence of a structure that is left below which it takes nothing away from what is named.
-const WEAK: f64 = 20.0;
-/// Part of the log evidence of the effects that their formulas must bring as they are: with less the claim rests on the form errors.
-const EXACT: f64 = 0.75;
 
 /// Everything that was found.
 pub(crate) struct Findings<'a> {
@@ -193,7 +187,8 @@ impl Findings<'_> {
                 ),
             );
         }
-        let most = last.excess() < FORWARD * self.search.stages[0].excess() || last.something_else() < WEAK;
+        let most =
+            last.excess() < RULE.left * self.search.stages[0].excess() || last.something_else() < RULE.weak;
         let most = most && !bent && self.search.something_else != Some(0);
         let (sound, odd): (Vec<_>, Vec<_>) =
             last.added.iter().partition(|effect| self.plausible(effect.card().name));
@@ -233,7 +228,7 @@ impl Findings<'_> {
     fn is_bent(&self) -> bool {
         let (base, last) = (&self.search.stages[0].confirmed, &self.last().confirmed);
         let (form, base_form) = (last.form.log_evidence, base.form.log_evidence);
-        form - base_form > (1.0 - EXACT) * (last.log_evidence - base.log_evidence)
+        form - base_form > (1.0 - RULE.exact) * (last.log_evidence - base.log_evidence)
     }
 
     /// Each step of the search with what it explained.

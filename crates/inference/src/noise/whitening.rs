@@ -99,9 +99,22 @@ impl Whitening {
                 instead: "give every column one value for each used row",
             });
         }
-        if k == 0 {
-            return Ok(());
+        if k > 0 {
+            self.whiten(columns, k);
         }
+        Ok(())
+    }
+
+    /// A column of one value for each used row, whitened.
+    pub(crate) fn whitened(&self, mut column: Vec<f64>) -> Vec<f64> {
+        column.resize(self.rows(), 0.0);
+        if !column.is_empty() {
+            self.whiten(&mut column, 1);
+        }
+        column
+    }
+
+    fn whiten(&self, columns: &mut [f64], k: usize) {
         let mut parts = Vec::with_capacity(self.blocks.len());
         let mut rest = columns;
         for block in &self.blocks {
@@ -110,7 +123,6 @@ impl Whitening {
             rest = after;
         }
         parts.into_par_iter().for_each(|(part, steps)| filter(part, steps, k));
-        Ok(())
     }
 
     /// ln det K, with variances in N^2.
@@ -129,11 +141,10 @@ impl Whitening {
     #[must_use]
     pub fn effective_rows(&self) -> f64 {
         let n = self.rows() as f64;
-        let mut ones = vec![1.0; self.rows()];
-        // One value for each row can always be whitened.
-        if self.apply(&mut ones).is_err() || n == 0.0 {
+        if n == 0.0 {
             return n;
         }
+        let ones = self.whitened(vec![1.0; self.rows()]);
         (n * ones.iter().map(|x| x * x).sum::<f64>() / self.information).min(n)
     }
 }
