@@ -277,6 +277,8 @@ pub struct Remaining {
     pub misfit_n: f64,
     /// Its 95 % interval \[N\].
     pub misfit_interval_n: [f64; 2],
+    /// A further effect that changes less than this is not told from an error of the formulas that are named (RMS) \[N\]; none where those are exact.
+    pub unseen_below_n: Option<f64>,
     /// What it looks like, in words.
     pub hints: Vec<String>,
     /// The systematic misfit over pressure, contraction and direction, where there is structure.

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::comparison::document::Comparison;
+use crate::diagnosis::bending::may_bend;
 use crate::diagnosis::claim::{Levels, form_error};
 use crate::diagnosis::classes::{Class, Rival};
 use crate::diagnosis::confidence::Confidence;
@@ -98,6 +99,7 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
             structured: !adequate,
             misfit_n,
             misfit_interval_n,
+            unseen_below_n: if named { found.unseen_below_n() } else { None },
             hints: if adequate { Vec::new() } else { hints(given.record, &last.scene, &left) },
             surface: surface(given.record, &last.scene),
         },
@@ -229,6 +231,15 @@ impl Findings<'_> {
         let (base, last) = (&self.search.stages[0].confirmed, &self.last().confirmed);
         let (form, base_form) = (last.form.log_evidence, base.form.log_evidence);
         form - base_form > (1.0 - RULE.exact) * (last.log_evidence - base.log_evidence)
+    }
+
+    /// What a further effect must change to count beside those that are named: less could be an error of their formulas.
+    fn unseen_below_n(&self) -> Option<f64> {
+        let (base, last) = (&self.search.stages[0].scene, self.last());
+        let changes =
+            last.scene.force.iter().zip(&base.force).map(|(with, without)| (with - without).powi(2));
+        let mean = changes.sum::<f64>() / base.force.len().max(1) as f64;
+        (!last.added.is_empty() && may_bend(&last.confirmed.prepared)).then(|| (RULE.mends * mean).sqrt())
     }
 
     /// Each step of the search with what it explained.

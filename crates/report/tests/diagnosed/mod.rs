@@ -46,6 +46,7 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
             structured: false,
             misfit_n: 0.4,
             misfit_interval_n: [0.0, 1.2],
+            unseen_below_n: Some(0.32),
             hints: vec!["grows with the pressure".to_owned()],
             surface: surface(),
         },
