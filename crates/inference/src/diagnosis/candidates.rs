@@ -52,10 +52,14 @@ impl Candidate {
     ) -> Vec<Self> {
         let forms = |effect: usize| showings.showings.iter().filter(|s| s.effect == effect).count() as f64;
         let mut all = Vec::with_capacity(showings.showings.len());
+        let white: Vec<Vec<f64>> =
+            showings.showings.iter().flat_map(|s| s.columns.iter().map(|column| whiten(column))).collect();
+        let mut entered = space.enter_all(&white).into_iter();
+        let mut white = white.into_iter();
         for (place, showing) in showings.showings.iter().enumerate() {
             let Showing { effect, sizes, columns, whole, .. } = showing;
-            let white: Vec<Vec<f64>> = columns.iter().map(|column| whiten(column)).collect();
-            let seen: Vec<Vec<f64>> = white.iter().map(|column| space.enter(column)).collect();
+            let white: Vec<Vec<f64>> = white.by_ref().take(columns.len()).collect();
+            let seen: Vec<Vec<f64>> = entered.by_ref().take(columns.len()).collect();
             let left: f64 = seen.iter().map(|c| dot(c, c)).sum();
             let all_of_it: f64 = white.iter().map(|c| dot(c, c)).sum();
             if left <= VISIBLE * VISIBLE * all_of_it {

@@ -91,6 +91,7 @@ impl Given<'_> {
         };
         let signal = self.signal(&stage.confirmed, &without.scene).ok()?;
         let bent: Vec<&Vec<f64>> = stage.scene.bent.iter().collect();
+        let plain = self.beside(&without.scene, &signal, &bent);
         let name = effect.card().name;
         let own = without.scene.showings.effects.iter().position(|s| s.effect.card().name == name);
         let ticket = own.map_or(0.0, |own| ticket(&without.scene, own));
@@ -107,8 +108,7 @@ impl Given<'_> {
             .into_iter()
             .filter(|h| Some(h.effects[0]) != own)
             .map(|h| {
-                let separation =
-                    self.separation(&without.scene, h.effects[0], &signal, &bent) / scatter.sqrt();
+                let separation = plain.separation(&without.scene, h.effects[0]) / scatter.sqrt();
                 let near = (h.log_evidence > best - FITTED * scatter || separation < RULE.separation)
                     && fitted < MOST;
                 fitted += usize::from(near);
@@ -134,7 +134,8 @@ impl Given<'_> {
                     separation
                 } else {
                     let both: Vec<&Vec<f64>> = bent.iter().copied().chain(&own).collect();
-                    self.separation(&without.scene, place, &signal, &both) / scatter.sqrt()
+                    self.beside(&without.scene, &signal, &both).separation(&without.scene, place)
+                        / scatter.sqrt()
                 };
                 Self::rival(
                     without,
@@ -240,35 +241,64 @@ impl Given<'_> {
         Ok(force.iter().zip(&without.force).map(|(with, without)| with - without).collect())
     }
 
-    /// What is left of a signal \[N\] when an effect does its best to stand in for it, in sigmas; what form errors `bent` of one standard deviation make of the two is no
-    /// difference between them.
-    pub(crate) fn separation(&self, scene: &Scene, effect: usize, signal: &[f64], bent: &[&Vec<f64>]) -> f64 {
+    /// A signal \[N\] beside a scene and form errors `bent` of one standard deviation \[N\].
+    pub(crate) fn beside(&self, scene: &Scene, signal: &[f64], bent: &[&Vec<f64>]) -> Beside {
         let whiten = |column: &[f64]| self.white(column, scene.priors);
-        let candidates = scene.candidates.iter().filter(|c| c.effect == effect);
+        let signal = whiten(signal);
         if bent.is_empty() {
-            return separation(&scene.space.coordinates(&whiten(signal)), candidates);
+            return Beside {
+                signal: scene.space.coordinates(&signal),
+                length: 0,
+                bent: 0,
+                space: Space::default(),
+            };
         }
         let mut space = scene.space.clone();
-        let columns: Vec<Vec<f64>> = bent.iter().map(|column| space.enter(&whiten(column))).collect();
-        let signal = space.coordinates(&whiten(signal));
+        let white: Vec<Vec<f64>> = bent.iter().map(|column| whiten(column)).collect();
+        let columns = space.enter_all(&white);
         let length = space.len();
-        let prior = |place: usize, mut column: Vec<f64>| {
-            column.resize(length + columns.len(), 0.0);
+        let prior = |(place, mut column): (usize, Vec<f64>)| {
+            column.resize(length + bent.len(), 0.0);
             column[length + place] = 1.0;
             column
         };
-        let bent: Vec<Vec<f64>> = columns.iter().cloned().enumerate().map(|(i, c)| prior(i, c)).collect();
-        let mut beside = Space::without(&bent);
-        let mut enter = |column: &[f64]| {
-            let mut column = column.to_vec();
-            column.resize(length + columns.len(), 0.0);
-            beside.enter(&column)
-        };
-        let signal = enter(&signal);
+        let columns: Vec<Vec<f64>> = columns.into_iter().enumerate().map(prior).collect();
+        let mut beside =
+            Beside { signal: Vec::new(), length, bent: bent.len(), space: Space::without(&columns) };
+        let mut own = beside.space.clone();
+        beside.signal = beside.enter(&mut own, &space.coordinates(&signal));
+        beside.space = own;
+        beside
+    }
+}
+
+/// What an effect changes, in coordinates beside form errors: what those make of it is no difference between it and another.
+pub(crate) struct Beside {
+    signal: Vec<f64>,
+    /// Coordinates of the scene, and form errors with a prior each.
+    length: usize,
+    bent: usize,
+    space: Space,
+}
+
+impl Beside {
+    fn enter(&self, space: &mut Space, column: &[f64]) -> Vec<f64> {
+        let mut column = column.to_vec();
+        column.resize(self.length + self.bent, 0.0);
+        space.enter(&column)
+    }
+
+    /// What is left of the signal when an effect does its best to stand in for it, in sigmas.
+    pub(crate) fn separation(&self, scene: &Scene, effect: usize) -> f64 {
+        let candidates = scene.candidates.iter().filter(|c| c.effect == effect);
+        if self.bent == 0 {
+            return separation(&self.signal, candidates);
+        }
+        let mut space = self.space.clone();
         let moved: Vec<Candidate> = candidates
-            .map(|c| c.with_columns(c.columns.iter().map(|column| enter(column)).collect()))
+            .map(|c| c.with_columns(c.columns.iter().map(|column| self.enter(&mut space, column)).collect()))
             .collect();
-        separation(&signal, moved.iter())
+        separation(&self.signal, moved.iter())
     }
 }
 

@@ -322,10 +322,11 @@ fn least_separation(
     let planned = Given { record: &record, whitening: &whitening, law: &law, only: Some(&only), ..*given };
     let scene = planned.scene(&without.prepared, &without.theta).ok()?;
     let signal = planned.signal(with, &scene).ok()?;
+    let beside = planned.beside(&scene, &signal, &[]);
     let is_rival = |effect: &usize| scene.showings.effects[*effect].effect.card().name != named.as_str();
     let least = (0..scene.showings.effects.len())
         .filter(is_rival)
-        .map(|effect| planned.separation(&scene, effect, &signal, &[]))
+        .map(|effect| beside.separation(&scene, effect))
         .fold(f64::INFINITY, f64::min);
     least.is_finite().then_some(least)
 }

@@ -6,6 +6,8 @@
 //! Priors of the model's numbers are further rows. The coordinates are those of an orthonormal frame over all columns that were asked for: thousands
 //! of rows become about a hundred numbers, in which bootstraps and all pairs cost next to nothing.
 
+use nalgebra::DMatrix;
+
 use crate::dot::dot;
 
 /// A column whose part outside the frame is smaller than this part of it lies within the frame.
@@ -13,6 +15,9 @@ const WITHIN: f64 = 1e-7;
 
 /// A part that is taken out only once leaves this much of a column at least: rounding is then no larger in it than in the column (Daniel and others 1976).
 pub(crate) const ENOUGH: f64 = 0.5;
+
+/// Columns that go against the frame together.
+const BLOCK: usize = 24;
 
 /// Orthonormal columns: those of the model first, then the frame.
 #[derive(Debug, Clone, Default)]
@@ -85,6 +90,55 @@ impl Space {
             coordinates.push(length);
         }
         coordinates
+    }
+
+    /// Coordinates of many columns; the frame grows by what lies outside. As one [`Space::enter`] after the other, but columns go against what is there block by block: then the
+    /// processor multiplies instead of waiting for its memory.
+    pub(crate) fn enter_all(&mut self, columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let rows = columns.first().map_or(0, Vec::len);
+        let mut units = DMatrix::zeros(rows, self.tangents.len() + self.frame.len() + columns.len());
+        for (place, unit) in self.tangents.iter().chain(&self.frame).enumerate() {
+            units.column_mut(place).copy_from_slice(unit);
+        }
+        let mut found = Vec::with_capacity(columns.len());
+        for block in columns.chunks(BLOCK) {
+            let (tangents, known) = (self.tangents.len(), self.frame.len());
+            let there = units.columns(0, tangents + known);
+            let mut left = DMatrix::from_fn(rows, block.len(), |row, column| block[column][row]);
+            let mut parts = DMatrix::zeros(tangents + known, block.len());
+            for _ in 0..2 {
+                let again = there.tr_mul(&left);
+                left.gemm(-1.0, &there, &again, 1.0);
+                parts += again;
+            }
+            for (place, column) in block.iter().enumerate() {
+                let mut own = left.column(place).as_slice().to_vec();
+                // What is outside the tangents, before the frame takes its part.
+                let along: Vec<f64> = parts.column(place).iter().skip(tangents).copied().collect();
+                let size = norm(&along).hypot(norm(&own));
+                let mut coordinates = along;
+                if size <= WITHIN * norm(column) {
+                    // Rounding is no direction.
+                    found.push(vec![0.0; self.frame.len()]);
+                    continue;
+                }
+                let whole = norm(&own);
+                coordinates.extend(subtract(&mut own, &self.frame[known..]));
+                if norm(&own) < ENOUGH * whole {
+                    let again = subtract(&mut own, &self.frame[known..]);
+                    add(&mut coordinates[known..], &again);
+                }
+                let length = norm(&own);
+                if length > WITHIN * size {
+                    coordinates.push(length);
+                    let unit = scaled(own, 1.0 / length);
+                    units.column_mut(tangents + self.frame.len()).copy_from_slice(&unit);
+                    self.frame.push(unit);
+                }
+                found.push(coordinates);
+            }
+        }
+        found
     }
 
     /// Coordinates of the part of a column within the frame.
@@ -171,6 +225,20 @@ mod tests {
         assert!((dot(&ca, &cb) - dot(&outside(&a), &outside(&b))).abs() < 1e-12);
         assert!((norm(&cb) - norm(&outside(&b))).abs() < 1e-12);
         assert_eq!((space.len(), ca.len(), cb.len()), (2, 1, 2));
+        // All together as one after the other.
+        let mut together = Space::without(&tangents);
+        let again = together.enter_all(&[a.clone(), tangents[1].clone(), b.clone()]);
+        let gap = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(gap(&again[0], &ca) < 1e-12 && gap(&again[2], &cb) < 1e-12 && norm(&again[1]) < 1e-12);
+        assert_eq!([again[0].len(), again[1].len(), again[2].len()], [1, 1, 2]);
+        let many: Vec<Vec<f64>> = (10..80).map(column).collect();
+        let at_once = Space::without(&tangents).enter_all(&many);
+        let mut one_by_one = Space::without(&tangents);
+        for (place, (once, column)) in at_once.iter().zip(&many).enumerate() {
+            let one = one_by_one.enter(column);
+            assert!(gap(once, &one) < 1e-11 * norm(column) && once.len() == one.len(), "{place}");
+        }
+        assert_eq!(one_by_one.len(), 48);
         // A combination of all has nothing outside, and nothing of the tangents.
         let sum: Vec<f64> = (0..50).map(|i| 3.0 * tangents[0][i] + 2.0 * a[i] - b[i]).collect();
         let c = space.enter(&sum);

@@ -233,13 +233,12 @@ impl Findings<'_> {
         form - base_form > (1.0 - RULE.exact) * (last.log_evidence - base.log_evidence)
     }
 
-    /// What a further effect must change to count beside those that are named: less could be an error of their formulas.
+    /// What a further effect must change to count beside those that are named: less could be an error of their formulas. As a part of what they explain, squares count.
     fn unseen_below_n(&self) -> Option<f64> {
-        let (base, last) = (&self.search.stages[0].scene, self.last());
-        let changes =
-            last.scene.force.iter().zip(&base.force).map(|(with, without)| (with - without).powi(2));
-        let mean = changes.sum::<f64>() / base.force.len().max(1) as f64;
-        (!last.added.is_empty() && may_bend(&last.confirmed.prepared)).then(|| (RULE.mends * mean).sqrt())
+        let last = self.last();
+        let (explained_n, _) = misfit(&self.search.stages[0].scene, self.given.seed);
+        (!last.added.is_empty() && may_bend(&last.confirmed.prepared))
+            .then(|| RULE.mends.sqrt() * explained_n)
     }
 
     /// Each step of the search with what it explained.
