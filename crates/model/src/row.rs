@@ -152,8 +152,9 @@ impl Run<'_> {
                 // Only a fit is content with the derivatives of an equilibrium in closed form that was found from another.
                 let mut none = None;
                 let slot = if self.within_fit || equilibrium.is_costly() { slot } else { &mut none };
-                let answer = lattice::answer(self.lattice.as_deref(), equilibrium, [p, at], slot, &self.alone)
-                    .map_err(|source| RowError::Solver { pressure: p, contraction: at, source })?;
+                let answer =
+                    lattice::answer(self.lattice.as_deref(), equilibrium, [p, at], slot, &self.alone)
+                        .map_err(|source| RowError::Solver { pressure: p, contraction: at, source })?;
                 let lanes = &pass.shape_lanes;
                 Ok(Carried {
                     force: answer.force.carry(pressure, e, lanes),

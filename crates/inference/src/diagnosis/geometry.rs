@@ -21,6 +21,7 @@ use crate::diagnosis::document::{Diagnosis, Missing, Verdict};
 use crate::diagnosis::stage::Stage;
 use crate::fit::nuisance::is_geometry;
 use crate::fit::problem::free;
+use crate::noise::law::NoiseSource;
 
 /// Square of the sigmas from the stated geometry, beyond which another answer is asked for: of four numbers chance alone gives as much once in 300 times.
 const DEPARTED: f64 = 16.0;
@@ -155,7 +156,8 @@ impl Doubt {
             return Ok(doubtful);
         }
         let mut exact = answer_on(&self.exact)?;
-        if is_beyond && exact.verdict != Verdict::CannotTell {
+        // What counts is whether there was an answer, and not how much of it matters.
+        if is_beyond && exact.noise.law.source != NoiseSource::Instruments {
             let if_doubtful = Some(OtherAnswer::of(&doubtful, &exact));
             exact.geometry = Geometry { if_doubtful, ..doubtful.geometry };
             return Ok(exact);

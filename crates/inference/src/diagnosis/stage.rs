@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::hypotheses::Tried;
-use crate::diagnosis::misfit::misfit;
 use crate::diagnosis::null::Null;
 use crate::diagnosis::scene::{Given, Scene};
 use crate::diagnosis::something_else::smooth_evidence;
@@ -114,8 +113,6 @@ impl Given<'_> {
         let (null, chance) = scene.chance(self);
         let fit_fails = self.scatters(&confirmed);
         let adequacy = Adequacy { null, names: !added.is_empty(), chance, fit_fails };
-        let is_small =
-            || self.tolerance_n.is_some_and(|tolerance| misfit(&scene, self.seed).1[1] <= tolerance);
         // A test may be surprised by what no smooth misfit explains: that is no structure.
         let is_chance = || {
             !added.is_empty()
@@ -123,7 +120,7 @@ impl Given<'_> {
                 && !fit_fails
                 && SOMETHING_ELSE + smooth_evidence(&scene) <= 0.0
         };
-        let adequate = adequacy.holds() || is_small() || is_chance();
+        let adequate = adequacy.holds() || is_chance();
         Ok(Stage { added, confirmed, scene, adequate, adequacy, tried: Vec::new() })
     }
 
