@@ -168,6 +168,7 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
         let block = Block::isometric([from, high_pressure], held.collect(), period);
         Block { cycles: 2, rows: ROWS, ..block }
     };
+    let third_of_stroke = [whole[0], whole[0] + (whole[1] - whole[0]) / 3.0];
     let small = [whole[0], (whole[0] + 0.25 * (high - whole[0])).max(whole[0] + 0.01)];
     vec![
         one(
@@ -185,6 +186,19 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
         one(
             "the same loops, and then ten times faster, at two pressures",
             vec![block(2, whole, Path::Triangle, slow, 1), block(2, whole, Path::Triangle, slow / 10.0, 1)],
+        ),
+        one(
+            "the same loops, and then ten times slower and ten times faster, at two pressures",
+            [slow, 10.0 * slow, slow / 10.0]
+                .map(|period| block(2, whole, Path::Triangle, period, 1))
+                .to_vec(),
+        ),
+        one(
+            "loops over a third of the stroke, and over all of it at the same speed, at two pressures",
+            vec![
+                block(2, third_of_stroke, Path::Triangle, slow / 3.0, 2),
+                block(2, whole, Path::Triangle, slow, 1),
+            ],
         ),
         one(
             "sines at three pressures, whose speed goes through 0 at the ends",
@@ -210,6 +224,10 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
         one(
             "filling and venting at two held lengths, and then ten times slower",
             vec![filling(low_pressure, 2, slow), filling(low_pressure, 2, 10.0 * slow)],
+        ),
+        one(
+            "filling and venting at two held lengths, and then ten times slower and ten times faster",
+            [slow, 10.0 * slow, slow / 10.0].map(|period| filling(low_pressure, 2, period)).to_vec(),
         ),
         one("a static map of eight pressures", vec![Block::map(limits.pressures(8), whole, 20)]),
     ]
