@@ -5,6 +5,7 @@
 mod support;
 
 use serde_json::Value;
+use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use support::{Folder, bulge, failure, json};
@@ -182,7 +183,7 @@ fn a_report_that_has_no_place_is_refused_and_nothing_is_written() {
     assert_eq!(fs::read_dir(folder.0.join("out")).unwrap().count(), 1);
 }
 
-/// Loops at four pressures of the textbook cylinder, each sweep off by so much \[N\]; every seventh reading or so is changed by `change`.
+/// Loops at four pressures of the textbook cylinder, each sweep off by so much \[N\], and each reading changed.
 fn loops(off: [f64; 4], change: impl Fn(usize, f64) -> f64) -> String {
     let mut text = String::from("sweep,time [s],pressure [bar],contraction [%],force [N]\n");
     let angle = 25.0_f64.to_radians();
@@ -197,7 +198,8 @@ fn loops(off: [f64; 4], change: impl Fn(usize, f64) -> f64) -> String {
         // Noise of 2 N without a pattern.
         let noise = 2.0 * (f64::from(row * row % 97) / 48.0 - 1.0);
         let force = change(row as usize, exact + off[level as usize] + noise);
-        text += &format!("{level},{:.1},{},{:.4},{force:.3}\n", 0.2 * f64::from(row), level + 1, 100.0 * e);
+        let (time, percent) = (0.2 * f64::from(row), 100.0 * e);
+        let _ = writeln!(text, "{level},{time:.1},{},{percent:.4},{force:.3}", level + 1);
     }
     text
 }
@@ -344,7 +346,7 @@ fn sentences_of_a_diagnosis_agree_with_each_other_and_a_tolerance_only_weakens_t
     };
     let muscle = folder.write("c.toml", CYLINDER);
     let off = folder.write("off.csv", &loops([90.0, -80.0, 110.0, -60.0], |_, force| force));
-    // Friction, readings that stand still, and a spike.
+    // Friction and a spike.
     let disturbed = |row: usize, force: f64| match row {
         30 => force + 900.0,
         _ => force - if row % 40 < 20 { 8.0 } else { -8.0 },
