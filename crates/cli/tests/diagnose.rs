@@ -5,6 +5,7 @@
 mod support;
 
 use serde_json::Value;
+use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use support::{Folder, bulge, failure, json};
@@ -180,4 +181,202 @@ fn a_report_that_has_no_place_is_refused_and_nothing_is_written() {
     let (status, message) = failure(&["diagnose", &data, "--muscle", &muscle, "--out", &folder.path("out")]);
     assert!(status == 1 && message.contains("where.svg") && message.contains("move it away"), "{message}");
     assert_eq!(fs::read_dir(folder.0.join("out")).unwrap().count(), 1);
+}
+
+/// Loops at four pressures of the textbook cylinder, each sweep off by so much \[N\], and each reading changed.
+fn loops(off: [f64; 4], change: impl Fn(usize, f64) -> f64) -> String {
+    let mut text = String::from("sweep,time [s],pressure [bar],contraction [%],force [N]\n");
+    let angle = 25.0_f64.to_radians();
+    for row in 0..160_u32 {
+        let (level, i) = (row / 40, row % 40);
+        let e = 0.01 + 0.15 * (1.0 - (f64::from(i) / 20.0 - 1.0).abs());
+        let p = 1e5 * f64::from(level + 1);
+        let exact = std::f64::consts::PI
+            * 1e-4
+            * p
+            * (3.0 * (1.0 - e).powi(2) / angle.tan().powi(2) - angle.sin().powi(-2));
+        // Noise of 2 N without a pattern.
+        let noise = 2.0 * (f64::from(row * row % 97) / 48.0 - 1.0);
+        let force = change(row as usize, exact + off[level as usize] + noise);
+        let (time, percent) = (0.2 * f64::from(row), 100.0 * e);
+        let _ = writeln!(text, "{level},{time:.1},{},{percent:.4},{force:.3}", level + 1);
+    }
+    text
+}
+
+const CYLINDER: &str = "name = \"c\"\nkind = \"braided\"\nlength = \"250 mm +- 0\"\nradius = \"10 mm +- 0\"\nbraid_angle = \"25 deg +- 0\"\nends = \"cylinder\"\n";
+
+/// A diagnosis as text, as JSON and as a page.
+struct Answer {
+    text: String,
+    json: Value,
+    page: String,
+    tolerance_n: f64,
+}
+
+impl Answer {
+    fn of(folder: &Folder, [data, muscle]: &[String; 2], tolerance_n: f64) -> Self {
+        let tolerance = format!("{tolerance_n} N");
+        let out = folder.path("out");
+        let mut call = vec!["diagnose", data, "--muscle", muscle, "--out", &out];
+        if tolerance_n > 0.0 {
+            call.extend(["--tolerance", &tolerance]);
+        }
+        let output = bulge(&call);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let read = |name: &str| fs::read_to_string(Path::new(&out).join(name)).unwrap();
+        let json = serde_json::from_str(&read("diagnosis.json")).unwrap();
+        Self { text, json, page: read("report.html"), tolerance_n }
+    }
+
+    fn verdict(&self) -> &str {
+        self.json["verdict"].as_str().unwrap()
+    }
+
+    fn list(&self, key: &str) -> &[Value] {
+        self.json[key].as_array().unwrap()
+    }
+
+    fn names(&self, key: &str) -> Vec<&str> {
+        self.list(key).iter().map(|missing| missing["effect"].as_str().unwrap()).collect()
+    }
+
+    /// What a reader takes from one place holds in the others.
+    fn agrees(&self) {
+        let (text, json) = (&self.text, &self.json);
+        let says = |part: &str| assert!(text.contains(part), "no {part:?} in {text}");
+        let never = |part: &str| assert!(!text.contains(part), "{part:?} in {text}");
+        for (verdict, headline) in
+            [("adequate", "adequate: "), ("unknown", "unknown: "), ("cannot-tell", "cannot tell: ")]
+        {
+            assert_eq!(text.contains(&format!(" {headline}")), self.verdict() == verdict, "{text}");
+        }
+        assert_eq!(self.list("missing").is_empty(), self.verdict() != "missing", "{text}");
+        for part in ["structure of 0 N", "structure of 0.00", "NaN", "inf "] {
+            never(part);
+        }
+        // A percentage that nobody simulated says so.
+        for missing in self.list("missing") {
+            let name = missing["effect"].as_str().unwrap();
+            let claims = missing["simulated"]["claims"].as_u64().unwrap();
+            let start = text.find(&format!("missing: {name} (")).unwrap();
+            let claim = &text[start..(start + 200).min(text.len())];
+            assert_eq!(claim.contains("not simulated"), claims == 0, "{claim}");
+        }
+        for nearest in self.names("nearest") {
+            says(&format!("nearest: {nearest} ("));
+        }
+        // Each rung lowers something; only the last can be enough.
+        let ladder = self.list("ladder");
+        for pair in ladder.windows(2) {
+            let [before, after] = [&pair[0], &pair[1]].map(|rung| rung["rmse_n"].as_f64().unwrap());
+            assert!(after < before || ladder.len() == 2, "{ladder:?}");
+            assert_eq!(pair[0]["adequate"], false);
+        }
+        let remaining = &json["remaining"];
+        let structured = remaining["structured"].as_bool().unwrap();
+        let ends = &remaining["misfit_interval_n"];
+        match self.verdict() {
+            "adequate" => {
+                let [low, high] = [0, 1].map(|end| ends[end].as_f64().unwrap());
+                assert!(!structured && (high <= self.tolerance_n || low < 5.0), "{remaining}");
+                assert!(low <= 0.0 || !text.contains("no structure beyond chance"), "{text}");
+            }
+            "unknown" => assert!(structured, "{remaining}"),
+            "cannot-tell" => assert!(ladder.iter().all(|rung| rung["adequate"] == false)),
+            _ => {
+                assert_eq!(text.contains("remains: a structure"), structured, "{text}");
+                let fitted: Vec<&str> =
+                    self.list("missing").iter().map(|m| m["fitted"].as_str().unwrap()).collect();
+                says(&format!("--with {}", fitted.join(",")));
+                if self.list("missing").len() + self.list("nearest").len() == 3 && structured {
+                    says("where the search stops");
+                }
+            }
+        }
+        assert_eq!(text.contains("to accept this step"), self.verdict() == "missing", "{text}");
+        // What the data check found stands everywhere.
+        let quality = json["data"]["quality"].as_array().unwrap();
+        for finding in quality.iter().take(6) {
+            says(finding["says"].as_str().unwrap());
+        }
+        assert_eq!(self.page.contains("What the check of the data found"), !quality.is_empty());
+        if let Some(next) = json["next_experiment"].as_object() {
+            says("next experiment: ");
+            for name in next["separates"].as_array().unwrap() {
+                says(name.as_str().unwrap());
+            }
+        }
+    }
+
+    /// A tolerance takes claims away, and makes none.
+    fn is_no_stronger_than(&self, other: &Self) {
+        let pair = [other.verdict(), self.verdict()];
+        let allowed = [["missing", "adequate"], ["unknown", "adequate"], ["adequate", "cannot-tell"]];
+        assert!(
+            pair[0] == pair[1] || allowed.contains(&pair) || pair == ["cannot-tell", "adequate"],
+            "{pair:?}"
+        );
+        let named = other.names("missing");
+        assert!(self.names("missing").iter().all(|name| named.contains(name)), "{named:?}");
+        for missing in self.list("missing").iter().chain(self.list("nearest")) {
+            let is_same = |before: &&Value| before["effect"] == missing["effect"];
+            let mut all = other.list("missing").iter().chain(other.list("nearest"));
+            let before = all.find(is_same).unwrap();
+            for level in ["confidence", "confidence_mechanism", "confidence_form"] {
+                assert!(missing[level].as_f64() <= before[level].as_f64(), "{level}: {missing}");
+            }
+            for (name, number) in missing["parameters"].as_object().unwrap() {
+                let old = &before["parameters"][name];
+                assert!(number["low"].as_f64() <= old["low"].as_f64(), "{name}: {number} was {old}");
+                assert!(number["high"].as_f64() >= old["high"].as_f64(), "{name}: {number} was {old}");
+            }
+        }
+    }
+}
+
+#[test]
+fn sentences_of_a_diagnosis_agree_with_each_other_and_a_tolerance_only_weakens_them() {
+    let folder = Folder::new("diagnose-agree");
+    let case = |name: &str| {
+        let path = format!("{}/../../validation/hidden-effects/cases/{name}", env!("CARGO_MANIFEST_DIR"));
+        ["data.csv", "muscle.toml"].map(|file| format!("{path}/{file}"))
+    };
+    let muscle = folder.write("c.toml", CYLINDER);
+    let off = folder.write("off.csv", &loops([90.0, -80.0, 110.0, -60.0], |_, force| force));
+    // Friction and a spike.
+    let disturbed = |row: usize, force: f64| match row {
+        30 => force + 900.0,
+        _ => force - if row % 40 < 20 { 8.0 } else { -8.0 },
+    };
+    let spiked = folder.write("spiked.csv", &loops([0.0; 4], disturbed));
+    let three = simulated(&folder, "bladder-elasticity=0.31 MPa,coulomb-friction=14 N,force-lag=0.3 s");
+    let cases = [
+        ("adequate", case("null-005")),
+        ("missing", case("confusable-011")),
+        ("missing", case("confusable-002")),
+        ("missing", case("pair-010")),
+        ("unknown", case("unknown-pressure-squared-0")),
+        ("cannot-tell", [off, muscle.clone()]),
+        ("missing", [spiked, muscle]),
+        ("missing", three),
+    ];
+    let mut found = 0;
+    for (verdict, files) in cases {
+        let answer = Answer::of(&folder, &files, 0.0);
+        assert_eq!(answer.verdict(), verdict, "{}", answer.text);
+        answer.agrees();
+        found += answer.json["data"]["quality"].as_array().unwrap().len();
+        for tolerance in [4.0, 60.0] {
+            let within = Answer::of(&folder, &files, tolerance);
+            within.agrees();
+            within.is_no_stronger_than(&answer);
+        }
+        if verdict == "cannot-tell" {
+            assert!(answer.text.contains("furthest off is sweep 3 (`2`)"), "{}", answer.text);
+        }
+    }
+    assert!(found > 0);
 }

@@ -82,6 +82,11 @@ fn proposed(says: &str) -> String {
     if says.contains("sines at three pressures") {
         return block("2,3.5,5", "wave = \"sine\"\nperiod = \"50 s\"\ncycles = 2");
     }
+    if says.contains("the same loops, and then ten times slower and ten times faster") {
+        return ["50 s", "500 s", "5 s"]
+            .map(|period| block("2,5", &format!("period = \"{period}\"")))
+            .concat();
+    }
     for (speed, period) in [("ten times slower", "500 s"), ("ten times faster", "5 s")] {
         if says.contains(&format!("the same loops, and then {speed}")) {
             return block("2,5", "period = \"50 s\"") + &block("2,5", &format!("period = \"{period}\""));
@@ -120,6 +125,44 @@ fn what_is_proposed_decides_what_was_open() {
     let left = after["missing"][0]["class"].as_array().unwrap();
     for name in ["pressure-friction", "viscous-damping", "force-lag"] {
         assert!(!left.contains(&name.into()), "{left:?}");
+    }
+}
+
+#[test]
+fn rivals_that_differ_by_their_rate_alone_are_measured_slower_and_faster() {
+    let folder = Folder::new("next-rate");
+    // At one speed drag is dry friction.
+    let [data, muscle] = simulated(&folder, "one", PROTOCOL, "viscous-damping", "7");
+    let found = json(&["next", &data, "--muscle", &muscle, "--json"]);
+    let class = class(&found);
+    assert!(class.contains(&"coulomb-friction") && class.contains(&"viscous-damping"), "{class:?}");
+    let next = &found["next_experiment"];
+    let says = next["says"].as_str().unwrap();
+    assert!(says.contains("ten times slower and ten times faster"), "{says}");
+    assert!(next["sigma"].as_f64().unwrap() > 3.29 && next["repeats"].as_u64() == Some(1), "{next}");
+    let second = folder.write("second.toml", &(proposed(says) + NOISE));
+    let [more, _] = simulated(&folder, "second", &second, "viscous-damping", "12");
+    let after = json(&["next", &data, &more, "--muscle", &muscle, "--json"]);
+    let left = after["missing"][0]["class"].as_array().unwrap();
+    assert!(
+        left.contains(&"viscous-damping".into()) && !left.contains(&"coulomb-friction".into()),
+        "{left:?}"
+    );
+}
+
+#[test]
+fn a_held_length_or_another_stroke_is_proposed_where_that_separates_best() {
+    let folder = Folder::new("next-held");
+    let one = folder.write("one.toml", &format!("{LOOP}{NOISE}"));
+    for (hidden, proposal) in [
+        ("pressure-offset", "filling and venting at two held lengths"),
+        ("force-gain", "loops over a third of the stroke, and over all of it"),
+    ] {
+        let [data, muscle] = simulated(&folder, hidden, &one, hidden, "7");
+        let found = json(&["next", &data, "--muscle", &muscle, "--pressure", "2 bar..5 bar", "--json"]);
+        let next = &found["next_experiment"];
+        assert!(next["says"].as_str().unwrap().contains(proposal), "{hidden}: {next}");
+        assert!(next["sigma"].as_f64().unwrap() > 3.29, "{next}");
     }
 }
 

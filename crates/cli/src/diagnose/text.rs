@@ -18,6 +18,7 @@ const MOST_HINTS: usize = 3;
 const MOST_RIVALS: usize = 3;
 const MOST_LIMITS: usize = 5;
 const MOST_WARNINGS: usize = 6;
+const MOST_FINDINGS: usize = 6;
 /// What stands before the effects that could not be looked for.
 const UNTESTED: &str = "  could not be looked for ";
 
@@ -79,6 +80,13 @@ fn measured(out: &mut String, diagnosis: &Diagnosis) {
     );
     for left in &data.left_out {
         let _ = writeln!(out, "  left out {} rows (line {}): {}", left.rows, left.lines, left.why);
+    }
+    let found = &diagnosis.data.quality;
+    for finding in found.iter().take(MOST_FINDINGS) {
+        paragraph(out, "  ", &finding.says);
+    }
+    if let Some(more) = found.len().checked_sub(MOST_FINDINGS).filter(|more| *more > 0) {
+        let _ = writeln!(out, "  {more} more findings of the data check: see --json");
     }
 }
 
@@ -430,7 +438,7 @@ mod tests {
         more.remaining.structured = true;
         let lines = lines(&more);
         let remains =
-            place(&lines, "  remains: a structure of 0.400 N that no other effect of the catalogue explains");
+            place(&lines, "  remains: a structure of 0.400 N beside which no further effect is named");
         assert!(
             place(&lines, "  missing: coulomb-friction") < remains && remains < place(&lines, "noise floor")
         );

@@ -58,6 +58,12 @@ impl Step {
     }
 }
 
+/// What the data check finds, with the length of the muscle.
+pub(crate) fn quality(data: &Data, muscle: &Muscle) -> Vec<Finding> {
+    let known = QualityOptions { l0_m: Some(muscle.length().si()), ..QualityOptions::default() };
+    data.quality(&known).findings
+}
+
 impl<'a> Comparing<'a> {
     /// Compares with the base alone; the effects of `options` aren't asked for yet.
     ///
@@ -75,9 +81,7 @@ impl<'a> Comparing<'a> {
         // Weights follow from the noise: the first rung again if it fits anything.
         let climbed = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
         let base = Arc::new(Step { rung: analysis.rung(0, &climbed), climbed });
-        let quality =
-            QualityOptions { l0_m: Some(analysis.muscle.length().si()), ..QualityOptions::default() };
-        let quality = analysis.data.quality(&quality).findings;
+        let quality = quality(&analysis.data, analysis.muscle);
         Ok(Self { analysis, floor, quality, base, steps: Mutex::default() })
     }
 

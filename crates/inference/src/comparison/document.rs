@@ -128,7 +128,7 @@ pub struct NoiseFloor {
 }
 
 /// One rung of the ladder.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Rung {
     /// The effect added; none for the base.
     pub added: Option<String>,

@@ -59,6 +59,15 @@ pub(crate) struct DecisionRule {
     /// Log evidence of a structure that is left below which it takes nothing away from what is named (forms suite).
     pub(crate) weak: f64,
 
+    /// Part of the full scale that the misfit surely has (the lower end of its interval) from which no model is called adequate: where nothing is hidden it is 0 in nearly
+    /// all tests (suite).
+    pub(crate) surely: f64,
+    /// Part of the full scale that the misfit may have (the upper end) from which no model is called adequate beside slow noise: nobody has seen it apart from the misfit that
+    /// it explains (suite).
+    pub(crate) maybe: f64,
+    /// How much larger than the scatter of single readings that noise then is (suite).
+    pub(crate) slow: f64,
+
     /// Rivals whose log evidence is less than this below stay in the class: one in twenty (Kass and Raftery 1995: from 3 on strong).
     pub(crate) rival: f64,
     /// Part of the log evidence of the form errors that is as much as nothing between rivals (pilot).
@@ -113,6 +122,9 @@ pub(crate) const RULE: DecisionRule = DecisionRule {
     digits: 0.002,
     left: 0.02,
     weak: 20.0,
+    surely: 0.005,
+    maybe: 0.03,
+    slow: 3.0,
     rival: 3.0,
     rival_bent: 0.02,
     separation: 3.29,

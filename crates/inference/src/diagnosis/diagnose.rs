@@ -39,7 +39,7 @@ const MOST_CHANGES: usize = 3;
 pub struct DiagnoseOptions {
     /// Effects that the base has (`--with`), known ones, catalogue and law.
     pub base: Options,
-    /// RMS misfit that doesn't matter \[N\].
+    /// RMS misfit that doesn't matter \[N\]: it can take claims away, and makes none.
     pub tolerance_n: Option<f64>,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -239,9 +239,7 @@ fn concluded(
     let comparison = compare_near(analysis, &compared, last.numbers())?;
     progress.at(1.0, "done");
     let mut diagnosis = document(analysis.muscle, &found, comparison);
-    let shown =
-        if found.shown().is_empty() { &search.stages[0] } else { &search.stages[search.stages.len() - 1] };
-    diagnosis.geometry = geometry(analysis, shown);
+    diagnosis.geometry = geometry(analysis, found.regardless());
     Ok(diagnosis)
 }
 

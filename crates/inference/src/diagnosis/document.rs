@@ -1,7 +1,7 @@
 //! A diagnosis as a value: everything that text, JSON and report show.
 
 use bulge_effects::Mechanism;
-use bulge_measurements::Reading;
+use bulge_measurements::{Finding, Reading};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -28,7 +28,8 @@ pub struct Diagnosis {
     pub says: String,
     /// Effects that are missing, in the order of adding.
     pub missing: Vec<Missing>,
-    /// Effects that lower the error and are no claim: where the verdict is *unknown*, and where something remains and their numbers are implausible.
+    /// Effects that lower the error and are no claim: where the verdict is *unknown*, where something remains and their numbers are implausible, and where
+    /// what is left without them is within the tolerance.
     pub nearest: Vec<Missing>,
     /// All effects that were looked at.
     pub candidates: Vec<CandidateResult>,
@@ -76,6 +77,13 @@ pub enum Verdict {
     CannotTell,
 }
 
+impl Verdict {
+    /// Whether effects are shown beside it, as claims or as the nearest.
+    pub(crate) const fn shows_effects(self) -> bool {
+        matches!(self, Self::Missing | Self::Unknown)
+    }
+}
+
 /// What was measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DiagnosedData {
@@ -98,6 +106,8 @@ pub struct DiagnosedData {
     pub left_out: Vec<LeftOut>,
     /// Units, signs and scales that can't be true, with the evidence.
     pub findings: Vec<Mismatch>,
+    /// What the data check found: spikes, readings that are clipped, frozen, there twice, or shifted.
+    pub quality: Vec<Finding>,
 }
 
 /// The noise.

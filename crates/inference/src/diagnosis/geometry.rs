@@ -22,6 +22,7 @@ use crate::diagnosis::document::{Diagnosis, Missing, Verdict};
 use crate::diagnosis::stage::Stage;
 use crate::fit::nuisance::is_geometry;
 use crate::fit::problem::free;
+use crate::noise::law::NoiseSource;
 
 /// Sigmas and widths from which a number is said to have moved.
 const MOVED: [f64; 2] = [2.0, 0.3];
@@ -153,7 +154,8 @@ impl Doubt {
             return Ok(doubtful);
         }
         let mut exact = answer_on(&self.exact)?;
-        if is_beyond && exact.verdict != Verdict::CannotTell {
+        // What counts is whether there was an answer, and not how much of it matters.
+        if is_beyond && exact.noise.law.source != NoiseSource::Instruments {
             let if_doubtful = Some(OtherAnswer::of(&doubtful, &exact));
             exact.geometry = Geometry { if_doubtful, ..doubtful.geometry };
             return Ok(exact);

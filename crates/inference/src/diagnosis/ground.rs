@@ -74,7 +74,6 @@ impl Ground {
             law,
             row_n: (white_of_row(law, self) - self.stated).max(law.white_n.powi(2)).sqrt(),
             seed: options.seed,
-            tolerance_n: options.tolerance_n,
             only: None,
             progress: &options.progress,
             kin: None,

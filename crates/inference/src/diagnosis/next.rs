@@ -160,15 +160,7 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
     };
     let slow = limits.period_s;
     let one = |says, blocks: Vec<Block>| Proposal { says, protocol: Protocol::new(blocks) };
-    let [low_pressure, high_pressure] = limits.pressure_pa;
-    let third = low_pressure.max(high_pressure / 3.0);
-    let filling = |from: f64, lengths: u32, period: f64| {
-        let from = from.min(0.9 * high_pressure);
-        let held = (0..lengths)
-            .map(|i| whole[0] + (whole[1] - whole[0]) * (0.1 + 0.8 * f64::from(i) / f64::from(lengths - 1)));
-        let block = Block::isometric([from, high_pressure], held.collect(), period);
-        Block { cycles: 2, rows: ROWS, ..block }
-    };
+    let third_of_stroke = [whole[0], whole[0] + (whole[1] - whole[0]) / 3.0];
     let small = [whole[0], (whole[0] + 0.25 * (high - whole[0])).max(whole[0] + 0.01)];
     vec![
         one(
@@ -188,6 +180,19 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
             vec![block(2, whole, Path::Triangle, slow, 1), block(2, whole, Path::Triangle, slow / 10.0, 1)],
         ),
         one(
+            "the same loops, and then ten times slower and ten times faster, at two pressures",
+            [slow, 10.0 * slow, slow / 10.0]
+                .map(|period| block(2, whole, Path::Triangle, period, 1))
+                .to_vec(),
+        ),
+        one(
+            "loops over a third of the stroke, and over all of it at the same speed, at two pressures",
+            vec![
+                block(2, third_of_stroke, Path::Triangle, slow / 3.0, 2),
+                block(2, whole, Path::Triangle, slow, 1),
+            ],
+        ),
+        one(
             "sines at three pressures, whose speed goes through 0 at the ends",
             vec![block(3, whole, Path::Sine, slow, 2)],
         ),
@@ -203,6 +208,27 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
             "twelve loops at one pressure, one after the other",
             vec![block(1, whole, Path::Triangle, slow, 12)],
         ),
+        one("a static map of eight pressures", vec![Block::map(limits.pressures(8), whole, 20)]),
+    ]
+    .into_iter()
+    .chain(filled(limits, whole))
+    .collect()
+}
+
+/// Experiments in which the length is held and the pressure goes to and fro.
+fn filled(limits: &Limits, whole: [f64; 2]) -> Vec<Proposal> {
+    let slow = limits.period_s;
+    let one = |says, blocks: Vec<Block>| Proposal { says, protocol: Protocol::new(blocks) };
+    let [low_pressure, high_pressure] = limits.pressure_pa;
+    let third = low_pressure.max(high_pressure / 3.0);
+    let filling = |from: f64, lengths: u32, period: f64| {
+        let from = from.min(0.9 * high_pressure);
+        let held = (0..lengths)
+            .map(|i| whole[0] + (whole[1] - whole[0]) * (0.1 + 0.8 * f64::from(i) / f64::from(lengths - 1)));
+        let block = Block::isometric([from, high_pressure], held.collect(), period);
+        Block { cycles: 2, rows: ROWS, ..block }
+    };
+    vec![
         one("filling and venting at three held lengths, twice each", vec![filling(low_pressure, 3, slow)]),
         one(
             "filling and venting at two held lengths, from the lowest pressure and from a third of the highest",
@@ -212,7 +238,10 @@ fn proposals(limits: &Limits) -> Vec<Proposal> {
             "filling and venting at two held lengths, and then ten times slower",
             vec![filling(low_pressure, 2, slow), filling(low_pressure, 2, 10.0 * slow)],
         ),
-        one("a static map of eight pressures", vec![Block::map(limits.pressures(8), whole, 20)]),
+        one(
+            "filling and venting at two held lengths, and then ten times slower and ten times faster",
+            [slow, 10.0 * slow, slow / 10.0].map(|period| filling(low_pressure, 2, period)).to_vec(),
+        ),
     ]
 }
 

@@ -200,7 +200,6 @@ impl Planned {
             law: &self.law,
             seed: 1,
             row_n: self.law.white_n,
-            tolerance_n: None,
             only: None,
             progress: &NOBODY,
             kin: None,

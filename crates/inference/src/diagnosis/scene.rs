@@ -38,8 +38,6 @@ pub(crate) struct Given<'a> {
     /// White noise of a single reading, with that of inputs which no data sheet states \[N\].
     pub(crate) row_n: f64,
     pub(crate) seed: u64,
-    /// RMS misfit that doesn't matter \[N\].
-    pub(crate) tolerance_n: Option<f64>,
     /// Looks for these effects only.
     pub(crate) only: Option<&'a [String]>,
     /// Who hears of the work.
@@ -101,18 +99,7 @@ impl<'a> Given<'a> {
     ) -> Self {
         let progress = &crate::progress::NOBODY;
         let row_n = law.white_n;
-        Self {
-            catalogue,
-            record,
-            whitening,
-            law,
-            row_n,
-            seed: 1,
-            tolerance_n: None,
-            only: None,
-            progress,
-            kin: None,
-        }
+        Self { catalogue, record, whitening, law, row_n, seed: 1, only: None, progress, kin: None }
     }
 }
 

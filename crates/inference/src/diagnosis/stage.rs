@@ -7,7 +7,6 @@ use std::sync::Arc;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::Tried;
-use crate::diagnosis::misfit::misfit;
 use crate::diagnosis::null::Null;
 use crate::diagnosis::scene::{Given, Scene};
 use crate::diagnosis::something_else::smooth_evidence;
@@ -106,8 +105,6 @@ impl Given<'_> {
         let (null, chance) = scene.chance(self);
         let fit_fails = self.scatters(&confirmed);
         let mut adequacy = Adequacy { null, names: !added.is_empty(), chance, fit_fails, repeats: false };
-        let is_small =
-            || self.tolerance_n.is_some_and(|tolerance| misfit(&scene, self.seed).1[1] <= tolerance);
         // A test may be surprised by what no smooth misfit explains: that is no structure.
         let is_chance = || {
             !added.is_empty()
@@ -119,7 +116,7 @@ impl Given<'_> {
         adequacy.repeats =
             holds && scene.lack_of_fit(self.record).is_some_and(|chance| chance < RULE.near_replicates);
         // What repeats beside effects that explain the rest is no reason to bend or add more of them.
-        let adequate = holds && (adequacy.names || !adequacy.repeats) || is_small();
+        let adequate = holds && (adequacy.names || !adequacy.repeats);
         Ok(Stage { added, confirmed, scene, adequate, adequacy, tried: Vec::new() })
     }
 

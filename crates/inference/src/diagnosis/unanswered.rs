@@ -3,6 +3,7 @@
 use bulge_measurements::Data;
 use bulge_muscles::{Muscle, Quantity};
 
+use crate::comparison::compare::quality;
 use crate::comparison::document::{Comparison, DataSummary};
 use crate::comparison::loops::branches;
 use crate::comparison::rows::full_scale;
@@ -28,6 +29,7 @@ pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnos
             specimens: data.specimens().len(),
             left_out: Vec::new(),
             findings: Vec::new(),
+            quality: quality(data, muscle),
         },
         noise: DiagnosedNoise { sd_n: stated, correlated: false, source: source(law.source).to_owned(), law },
         verdict: Verdict::CannotTell,
@@ -70,6 +72,7 @@ pub(crate) fn unanswered(data: &Data, muscle: &Muscle, comparison: Comparison) -
             used: comparison.data.used,
             left_out: comparison.data.left_out.clone(),
             findings: comparison.data.findings.clone(),
+            quality: comparison.quality.clone(),
             ..diagnosis.data
         },
         warnings: comparison.warnings.clone(),
@@ -106,7 +109,7 @@ fn nothing_compared(data: &Data, muscle: &Muscle) -> Comparison {
         muscle: muscle.name().to_owned(),
         base: "equilibrium".to_owned(),
         data: summary,
-        quality: Vec::new(),
+        quality: quality(data, muscle),
         noise_floor: None,
         ladder: Vec::new(),
         by: Vec::new(),

@@ -2,7 +2,6 @@
 
 use bulge_effects::Effect;
 use bulge_muscles::Muscle;
-use bulge_muscles::units::significant;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -22,9 +21,11 @@ use crate::diagnosis::hints::hints;
 use crate::diagnosis::hypotheses::singles;
 use crate::diagnosis::misfit::{located, misfit};
 use crate::diagnosis::plan::SEEN;
+use crate::diagnosis::rungs::{TOGETHER, join_useless};
 use crate::diagnosis::scene::Given;
-use crate::diagnosis::search::{MOST_EFFECTS, Search};
+use crate::diagnosis::search::Search;
 use crate::diagnosis::stage::Stage;
+use crate::diagnosis::verdict::furthest;
 use crate::dot::dot;
 use crate::fit::interval;
 use crate::fit::problem::{FitProblem, free};
@@ -47,25 +48,28 @@ pub(crate) struct Findings<'a> {
     pub(crate) effective_rows: f64,
     /// How many effects the base has.
     pub(crate) known: usize,
+    /// RMS misfit that doesn't matter \[N\].
     pub(crate) tolerance_n: Option<f64>,
     pub(crate) next: Option<NextExperiment>,
 }
 
 /// The diagnosis.
-pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Comparison) -> Diagnosis {
+pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, mut comparison: Comparison) -> Diagnosis {
     let Findings { given, search, classes, sd_n, .. } = *found;
-    let (verdict, says) = found.verdict();
+    join_useless(&mut comparison.ladder, found.known);
+    let (verdict, mut says, claimed) = found.verdict();
+    if verdict == Verdict::CannotTell && found.is_large() {
+        says += &furthest(&comparison);
+    }
     // Where no effect is named, none is shown: what is left is what the base leaves.
-    let named = shows_effects(verdict);
+    let named = verdict.shows_effects();
     let classes = if named { classes } else { &[] };
     let last = if named { found.last() } else { &search.stages[0] };
     let adequate = last.adequate && !last.adequacy.repeats || verdict == Verdict::Adequate;
     let (misfit_n, misfit_interval_n) = misfit(&last.scene, given.seed);
     let left = located(&last.scene);
     let added = classes.iter().map(|(class, sure)| found.missing(class, *sure));
-    // Where something remains, numbers that no muscle has stand in for something else: no claim.
-    let (missing, nearest): (Vec<Missing>, Vec<Missing>) =
-        added.partition(|m| verdict == Verdict::Missing && (last.adequate || m.plausible));
+    let (missing, nearest): (Vec<Missing>, Vec<Missing>) = added.partition(|m| claimed.contains(&m.fitted));
     Diagnosis {
         schema: "bulge.diagnosis/1",
         muscle: muscle.name().to_owned(),
@@ -79,6 +83,7 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
             specimens: comparison.data.specimens.len(),
             left_out: comparison.data.left_out.clone(),
             findings: comparison.data.findings.clone(),
+            quality: comparison.quality.clone(),
         },
         noise: DiagnosedNoise {
             sd_n,
@@ -91,7 +96,7 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
         candidates: found.candidates(classes, &missing),
         missing,
         nearest,
-        ladder: found.ladder(&comparison, last.added.len(), adequate && verdict != Verdict::CannotTell),
+        ladder: found.ladder(&comparison, adequate && verdict != Verdict::CannotTell),
         noise_floor_n: sd_n,
         r#where: located(&search.stages[0].scene),
         explained: if named { found.explained() } else { Vec::new() },
@@ -111,10 +116,6 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, comparison: Compar
     }
 }
 
-const fn shows_effects(verdict: Verdict) -> bool {
-    matches!(verdict, Verdict::Missing | Verdict::Unknown)
-}
-
 pub(crate) const fn source(source: NoiseSource) -> &'static str {
     match source {
         NoiseSource::Repeats => "repeats",
@@ -124,115 +125,6 @@ pub(crate) const fn source(source: NoiseSource) -> &'static str {
 }
 
 impl Findings<'_> {
-    /// Effects that the answer shows as added.
-    pub(crate) fn shown(&self) -> &[Arc<dyn Effect>] {
-        if shows_effects(self.verdict().0) { &self.last().added } else { &[] }
-    }
-
-    fn last(&self) -> &Stage {
-        &self.search.stages[self.search.stages.len() - 1]
-    }
-
-    /// The verdict, and a sentence or two.
-    fn verdict(&self) -> (Verdict, String) {
-        let last = self.last();
-        let (misfit_n, interval) = misfit(&last.scene, self.given.seed);
-        let size = format!(
-            "{} N ({} to {})",
-            significant(misfit_n, 2),
-            significant(interval[0], 2),
-            significant(interval[1], 2)
-        );
-        if self.given.law.source == NoiseSource::Instruments {
-            let says = "these rows are too few to know their noise, and data sheets allow a ranking but no verdict: measure at least three pressures \
-                        with 20 rows each, or repeat some rows";
-            return (Verdict::CannotTell, says.to_owned());
-        }
-        if let Some(tolerance) = self.tolerance_n {
-            let (base, small) = (&self.search.stages[0], format!("{} N", significant(tolerance, 3)));
-            let (base_misfit, base_interval) = misfit(&base.scene, self.given.seed);
-            if base_interval[1] <= tolerance {
-                let says = format!(
-                    "the model explains these data within the tolerance of {small}: its systematic misfit is {} N (at most {})",
-                    significant(base_misfit, 2),
-                    significant(base_interval[1], 2)
-                );
-                return (Verdict::Adequate, says);
-            }
-            if last.added.is_empty() && last.adequate {
-                let says = format!(
-                    "nothing is seen, but these data can't exclude a systematic misfit above the tolerance of {small}: it is {size}; measure more rows"
-                );
-                return (Verdict::CannotTell, says);
-            }
-        }
-        let names: Vec<String> = last.added.iter().map(|effect| self.label(effect)).collect();
-        if last.adequate && names.is_empty() {
-            let says = format!(
-                "the model explains these data: nothing is missing that they could show; its systematic misfit is {size}"
-            );
-            return (Verdict::Adequate, says);
-        }
-        let bent = self.is_bent();
-        if last.adequate && !bent && self.search.something_else.is_none() {
-            return (
-                Verdict::Missing,
-                format!(
-                    "missing: {}; with {} the model explains the data{}",
-                    names.join(" and "),
-                    if names.len() == 1 { "it" } else { "them" },
-                    if last.adequacy.repeats {
-                        " but for what recurs in other strokes and follows no smooth function"
-                    } else {
-                        ""
-                    }
-                ),
-            );
-        }
-        let most =
-            last.excess() < RULE.left * self.search.stages[0].excess() || last.something_else() < RULE.weak;
-        let most = most && !bent && self.search.something_else != Some(0);
-        let (sound, odd): (Vec<_>, Vec<_>) =
-            last.added.iter().partition(|effect| self.plausible(effect.card().name));
-        if !sound.is_empty() && most {
-            let listed = |effects: Vec<&Arc<dyn Effect>>| {
-                effects.into_iter().map(|effect| self.label(effect)).collect::<Vec<_>>().join(" and ")
-            };
-            let beside = if odd.is_empty() {
-                "that explains".to_owned()
-            } else {
-                format!(
-                    "with {}, whose numbers no muscle has and which stands in for something else, that explains",
-                    listed(odd)
-                )
-            };
-            let further = if last.added.len() < MOST_EFFECTS {
-                "that no further effect explains"
-            } else {
-                "after three effects, where the search stops: accept them and ask again"
-            };
-            let says = format!(
-                "missing: {}; {beside} most of the misfit, and {size} of structure remain {further}",
-                listed(sound)
-            );
-            return (Verdict::Missing, says);
-        }
-        let structure = if last.adequacy.repeats {
-            "a misfit that recurs in other strokes, which no smooth function follows and".to_owned()
-        } else {
-            format!("a structure of {size} that")
-        };
-        let says = format!("these data hold {structure} no effect of the catalogue explains");
-        (Verdict::Unknown, says)
-    }
-
-    /// Whether the claim rests on bending the formulas: then they are the nearest, and not what is missing.
-    fn is_bent(&self) -> bool {
-        let (base, last) = (&self.search.stages[0].confirmed, &self.last().confirmed);
-        let (form, base_form) = (last.form.log_evidence, base.form.log_evidence);
-        form - base_form > (1.0 - RULE.exact) * (last.log_evidence - base.log_evidence)
-    }
-
     /// What a further effect must change to count beside those that are named: less could be an error of their formulas. As a part of what they explain, squares count.
     fn unseen_below_n(&self) -> Option<f64> {
         let last = self.last();
@@ -254,23 +146,34 @@ impl Findings<'_> {
         self.search.stages.windows(2).map(step).collect()
     }
 
-    /// The rungs of the base and of the first `added` effects.
-    fn ladder(&self, comparison: &Comparison, added: usize, adequate: bool) -> Vec<LadderStep> {
-        let (steps, last) = (self.known + 1 + added, self.last());
-        let rungs = comparison.ladder.iter().enumerate().take(steps).skip(self.known);
+    /// The rungs of the base and of the effects that were added.
+    fn ladder(&self, comparison: &Comparison, adequate: bool) -> Vec<LadderStep> {
+        let label = |name: &str| {
+            let own = self.last().added.iter().find(|effect| effect.card().name == name);
+            own.map_or_else(|| name.to_owned(), |effect| self.label(effect))
+        };
+        let last = comparison.ladder.len().saturating_sub(1);
+        let rungs = comparison.ladder.iter().enumerate().skip(self.known);
         rungs
             .map(|(i, rung)| LadderStep {
-                added: i.checked_sub(self.known + 1).and_then(|step| Some(self.label(last.added.get(step)?))),
+                added: (i > self.known).then(|| {
+                    rung.added
+                        .iter()
+                        .flat_map(|added| added.split(TOGETHER))
+                        .map(label)
+                        .collect::<Vec<_>>()
+                        .join(TOGETHER)
+                }),
                 rmse_n: rung.rmse_n,
                 held_out_rmse_n: rung.held_out_rmse_n,
-                adequate: i + 1 == steps && adequate,
+                adequate: i == last && adequate,
             })
             .collect()
     }
 
     /// The name under which an effect is reported: hysteresis whose transition is much shorter than the stroke is Coulomb's friction to all intents, with the
     /// transition that every real contact has.
-    fn label(&self, effect: &Arc<dyn Effect>) -> String {
+    pub(crate) fn label(&self, effect: &Arc<dyn Effect>) -> String {
         let card = effect.card();
         let confirmed = &self.last().confirmed;
         let distance = confirmed
@@ -394,7 +297,7 @@ impl Findings<'_> {
         found
     }
 
-    fn plausible(&self, effect: &str) -> bool {
+    pub(crate) fn plausible(&self, effect: &str) -> bool {
         let confirmed = &self.last().confirmed;
         let numbers = confirmed.prepared.model.parameters().iter().zip(&confirmed.theta);
         numbers.filter(|(p, _)| p.effect == effect).all(|(p, value)| {

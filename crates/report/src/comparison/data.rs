@@ -17,7 +17,7 @@ const MOST_NAMES: usize = 12;
 
 /// One finding.
 #[derive(Debug, Serialize)]
-pub(super) struct Row {
+pub(crate) struct Row {
     severity: &'static str,
     says: String,
     instead: String,
@@ -120,7 +120,7 @@ pub(super) fn set_apart(comparison: &Comparison) -> Vec<[String; 2]> {
 }
 
 /// What the quality gate found, the worst first.
-pub(super) fn findings(comparison: &Comparison) -> Vec<Row> {
+pub(crate) fn findings(comparison: &Comparison) -> Vec<Row> {
     let mut findings: Vec<&Finding> = comparison.quality.iter().collect();
     findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     findings.into_iter().map(|finding| row(finding, &comparison.data.files)).collect()

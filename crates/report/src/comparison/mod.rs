@@ -12,7 +12,7 @@ pub(crate) mod check;
 mod contributions;
 mod convergence;
 mod correlations;
-mod data;
+pub(crate) mod data;
 mod force;
 mod headline;
 mod held_length;

@@ -57,14 +57,25 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
     let (verdict, says, rest) = match diagnosis.verdict {
         Verdict::Missing => {
             let mut lines: Vec<String> = diagnosis.missing.iter().map(claim).collect();
-            lines.extend(nearest("its numbers are implausible: it stands in for something else"));
-            if diagnosis.remaining.structured {
-                let what = if diagnosis.added().count() < MOST_EFFECTS {
-                    "that no other effect of the catalogue explains".to_owned()
+            lines.extend(diagnosis.nearest.iter().map(|missing| {
+                let why = if missing.plausible {
+                    "not needed: what is left without it is within the tolerance"
                 } else {
+                    "its numbers are implausible: it stands in for something else"
+                };
+                format!("nearest: {} ({why})", missing.effect)
+            }));
+            if diagnosis.remaining.structured {
+                let may_bend = diagnosis.added().any(|added| added.form_error.is_some());
+                let what = if diagnosis.added().count() >= MOST_EFFECTS {
                     format!(
                         "after {MOST_EFFECTS} effects, where the search stops: accept them with `--with` and ask again"
                     )
+                } else if may_bend {
+                    "beside which no further effect is named while these formulas may be a little wrong: accept them with `--with` and ask again"
+                        .to_owned()
+                } else {
+                    "that no other effect of the catalogue explains".to_owned()
                 };
                 lines.push(format!("remains: a structure of {} {what}", structure(&diagnosis.remaining)));
             }

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use crate::PlotError;
 use crate::comparison::Plot;
+use crate::comparison::data;
 use crate::comparison::number::{and, count, newton, three};
 use crate::comparison::page::{Figure, filled, model_and_measurement};
 use crate::comparison::wording::sentence;
@@ -65,6 +66,7 @@ struct Page<'a> {
     next_says: String,
     next: Vec<(&'static str, String)>,
     comparison: Vec<Figure>,
+    findings: Vec<data::Row>,
     warnings: &'a [String],
     files: &'a [String],
     sha256: &'a str,
@@ -125,6 +127,7 @@ fn page(diagnosis: &Diagnosis) -> Result<Page<'_>, PlotError> {
         next_says: next_says(diagnosis.next_experiment.as_ref()),
         next: diagnosis.next_experiment.as_ref().map(next).unwrap_or_default(),
         comparison: model_and_measurement(&comparison)?,
+        findings: data::findings(&diagnosis.comparison),
         warnings: &diagnosis.warnings,
         files: &diagnosis.comparison.data.files,
         sha256: &diagnosis.data.sha256,

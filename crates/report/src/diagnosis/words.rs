@@ -81,9 +81,12 @@ pub fn remains_says(diagnosis: &Diagnosis) -> String {
     let ends = remaining.misfit_interval_n;
     let [value, low, high] = with_interval(remaining.misfit_n, ends)
         .unwrap_or_else(|| [remaining.misfit_n, ends[0], ends[1]].map(three));
+    let low_n = ends[0];
     let structure = match remaining.structured {
         _ if diagnosis.verdict == Verdict::CannotTell => "whether it has a structure cannot be told",
         true => "it has a structure beyond chance",
+        // A tolerance, or chance that is seldom.
+        false if diagnosis.verdict == Verdict::Adequate && low_n > 0.0 => "no structure that counts",
         false => "no structure beyond chance",
     };
     format!("{value} N of systematic misfit (RMS; 95 % interval {low} to {high} N): {structure}")

@@ -24,6 +24,7 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
             specimens: comparison.data.specimens.len(),
             left_out: comparison.data.left_out.clone(),
             findings: comparison.data.findings.clone(),
+            quality: comparison.quality.clone(),
         },
         noise: noise(),
         verdict: Verdict::Missing,

@@ -1,0 +1,231 @@
+//! The verdict on what a search has found. A tolerance comes last: it can only take claims away.
+
+use bulge_effects::Effect;
+use bulge_muscles::units::significant;
+use std::sync::Arc;
+
+use crate::comparison::document::{Bin, Comparison};
+use crate::comparison::rows::full_scale;
+use crate::diagnosis::bending::may_bend;
+use crate::diagnosis::decision_rule::RULE;
+use crate::diagnosis::document::Verdict;
+use crate::diagnosis::misfit::misfit;
+use crate::diagnosis::search::MOST_EFFECTS;
+use crate::diagnosis::stage::Stage;
+use crate::diagnosis::write::Findings;
+use crate::noise::law::NoiseSource;
+
+/// What is said, without regard to a tolerance.
+struct Said {
+    verdict: Verdict,
+    says: String,
+    /// Names of the effects that are claimed.
+    claimed: Vec<String>,
+}
+
+impl Said {
+    fn nothing(verdict: Verdict, says: String) -> Self {
+        Self { verdict, says, claimed: Vec::new() }
+    }
+}
+
+impl Findings<'_> {
+    /// Effects that the answer shows as added.
+    pub(crate) fn shown(&self) -> &[Arc<dyn Effect>] {
+        if self.verdict().0.shows_effects() { &self.last().added } else { &[] }
+    }
+
+    pub(crate) fn last(&self) -> &Stage {
+        &self.search.stages[self.search.stages.len() - 1]
+    }
+
+    /// The model that the geometry is read from, whatever doesn't matter.
+    pub(crate) fn regardless(&self) -> &Stage {
+        if self.said().verdict.shows_effects() { self.last() } else { &self.search.stages[0] }
+    }
+
+    /// The verdict, a sentence or two, and the names of the effects that are claimed.
+    pub(crate) fn verdict(&self) -> (Verdict, String, Vec<String>) {
+        let Said { verdict, says, claimed } = self.said();
+        let is_known = self.given.law.source != NoiseSource::Instruments;
+        let Some(tolerance) = self.tolerance_n.filter(|_| is_known) else {
+            return (verdict, says, claimed);
+        };
+        let small = format!("{} N", significant(tolerance, 3));
+        let within = |stage: &Stage| {
+            let (left, interval) = misfit(&stage.scene, self.given.seed);
+            (interval[1] <= tolerance)
+                .then(|| format!("{} N (at most {})", significant(left, 2), significant(interval[1], 2)))
+        };
+        if let Some(left) = within(&self.search.stages[0]) {
+            let says = format!(
+                "the model explains these data within the tolerance of {small}: its systematic misfit is {left}"
+            );
+            return (Verdict::Adequate, says, Vec::new());
+        }
+        match verdict {
+            Verdict::Adequate => {
+                let says = format!(
+                    "nothing is seen, but these data can't exclude a systematic misfit above the tolerance of {small}: it is {}; measure more rows",
+                    self.size()
+                );
+                (Verdict::CannotTell, says, Vec::new())
+            }
+            Verdict::Missing => {
+                // What comes after a model that is good enough needs no claim.
+                let enough = self.search.stages.iter().skip(1).find_map(|stage| {
+                    let is_needed =
+                        |name: &&String| stage.added.iter().any(|e| e.card().name == name.as_str());
+                    let needed: Vec<String> = claimed.iter().filter(is_needed).cloned().collect();
+                    Some((needed, within(stage)?)).filter(|(needed, _)| !needed.is_empty())
+                });
+                match enough.filter(|(needed, _)| needed.len() < claimed.len()) {
+                    Some((needed, left)) => {
+                        let labels = self.labels(&needed);
+                        let says = format!(
+                            "missing: {labels}; what that leaves, {left} of systematic misfit, is within the tolerance of {small}"
+                        );
+                        (verdict, says, needed)
+                    }
+                    None => (verdict, says, claimed),
+                }
+            }
+            Verdict::Unknown | Verdict::CannotTell => (verdict, says, claimed),
+        }
+    }
+
+    /// The systematic misfit of the last model with its interval.
+    fn size(&self) -> String {
+        let (misfit_n, interval) = misfit(&self.last().scene, self.given.seed);
+        format!(
+            "{} N ({} to {})",
+            significant(misfit_n, 2),
+            significant(interval[0], 2),
+            significant(interval[1], 2)
+        )
+    }
+
+    /// The names under which effects of the last model are reported.
+    fn labels(&self, names: &[String]) -> String {
+        let is_one = |effect: &&Arc<dyn Effect>| names.iter().any(|name| name == effect.card().name);
+        self.last()
+            .added
+            .iter()
+            .filter(is_one)
+            .map(|effect| self.label(effect))
+            .collect::<Vec<_>>()
+            .join(" and ")
+    }
+
+    /// The verdict without a tolerance.
+    fn said(&self) -> Said {
+        let last = self.last();
+        if self.given.law.source == NoiseSource::Instruments {
+            let says = "these rows are too few to know their noise, and data sheets allow a ranking but no verdict: measure at least three pressures \
+                        with 20 rows each, or repeat some rows";
+            return Said::nothing(Verdict::CannotTell, says.to_owned());
+        }
+        let size = self.size();
+        let all: Vec<String> = last.added.iter().map(|effect| effect.card().name.to_owned()).collect();
+        if last.adequate && all.is_empty() {
+            if self.is_large() {
+                let says = format!(
+                    "noise as large as the misfit itself would explain it ({} N of it shared by neighbouring readings or by whole sweeps), and so would something \
+                     that is missing: the systematic misfit is {size}, and these data don't tell the two apart",
+                    significant(self.slow_n(), 2)
+                );
+                return Said::nothing(Verdict::CannotTell, says);
+            }
+            let says = format!(
+                "the model explains these data: nothing is missing that they could show; its systematic misfit is {size}"
+            );
+            return Said::nothing(Verdict::Adequate, says);
+        }
+        let bent = self.is_bent();
+        if last.adequate && !bent && self.search.something_else.is_none() {
+            let with = if all.len() == 1 { "it" } else { "them" };
+            let but = if last.adequacy.repeats {
+                ", but for what recurs in other strokes and follows no smooth function"
+            } else {
+                ""
+            };
+            let says =
+                format!("missing: {}; with {with} the model explains the data{but}", self.labels(&all));
+            return Said { verdict: Verdict::Missing, says, claimed: all };
+        }
+        let most =
+            last.excess() < RULE.left * self.search.stages[0].excess() || last.something_else() < RULE.weak;
+        let most = most && !bent && self.search.something_else != Some(0);
+        let (sound, odd): (Vec<String>, Vec<String>) = all.into_iter().partition(|name| self.plausible(name));
+        if !sound.is_empty() && most {
+            let beside = if odd.is_empty() {
+                "that explains".to_owned()
+            } else {
+                format!(
+                    "with {}, whose numbers no muscle has and which stands in for something else, that explains",
+                    self.labels(&odd)
+                )
+            };
+            let further = if last.added.len() >= MOST_EFFECTS {
+                "after three effects, where the search stops: accept them and ask again"
+            } else if may_bend(&last.confirmed.prepared) {
+                "beside which no further effect is named while these formulas may be a little wrong: accept them and ask again"
+            } else {
+                "that no further effect explains"
+            };
+            let says = format!(
+                "missing: {}; {beside} most of the misfit, and {size} of structure remain {further}",
+                self.labels(&sound)
+            );
+            // Where something remains, numbers that no muscle has stand in for something else: no claim.
+            let claimed = if last.adequate { sound.into_iter().chain(odd).collect() } else { sound };
+            return Said { verdict: Verdict::Missing, says, claimed };
+        }
+        let structure = if last.adequacy.repeats {
+            "a misfit that recurs in other strokes, which no smooth function follows and".to_owned()
+        } else {
+            format!("a structure of {size} that")
+        };
+        let says = format!("these data hold {structure} no effect of the catalogue explains");
+        Said::nothing(Verdict::Unknown, says)
+    }
+
+    /// Whether a misfit that passed for noise is too large to be called none.
+    pub(crate) fn is_large(&self) -> bool {
+        let (_, [low, high]) = misfit(&self.last().scene, self.given.seed);
+        let force = self.given.record.force();
+        let full = full_scale(force, 0..force.len());
+        let has_none = self.search.stages.len() == 1;
+        has_none
+            && (low > RULE.surely * full
+                || high > RULE.maybe * full && self.slow_n() > RULE.slow * self.given.row_n)
+    }
+
+    /// Noise that readings share with their neighbours \[N\].
+    fn slow_n(&self) -> f64 {
+        self.given.law.correlated_n.hypot(self.given.law.offset_n)
+    }
+
+    /// Whether the claim rests on bending the formulas: then they are the nearest, and not what is missing.
+    fn is_bent(&self) -> bool {
+        let (base, last) = (&self.search.stages[0].confirmed, &self.last().confirmed);
+        let (form, base_form) = (last.form.log_evidence, base.form.log_evidence);
+        form - base_form > (1.0 - RULE.exact) * (last.log_evidence - base.log_evidence)
+    }
+}
+
+/// The sweep that is furthest off, or the pressure where there is one sweep, in a sentence to go on with.
+pub(crate) fn furthest(comparison: &Comparison) -> String {
+    let of = |variable: &str| {
+        let bins = comparison.by.iter().find(|by| by.variable == variable).map(|by| (&by.bins, by.unit))?;
+        let furthest = |a: &&Bin, b: &&Bin| a.rmse_n[1].total_cmp(&b.rmse_n[1]);
+        Some((bins.0.iter().max_by(furthest)?, bins.1))
+    };
+    let Some((bin, what)) = of("sweep")
+        .map(|(bin, _)| (bin, format!("sweep {:.0} (`{}`)", bin.at, bin.label)))
+        .or_else(|| of("pressure").map(|(bin, unit)| (bin, format!("{} {unit}", bin.label))))
+    else {
+        return String::new();
+    };
+    format!("; furthest off is {what}, by {} N on average: repeat it", significant(bin.bias_n[1], 2))
+}
