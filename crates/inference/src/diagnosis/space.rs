@@ -95,7 +95,7 @@ impl Space {
     /// Coordinates of many columns; the frame grows by what lies outside. As one [`Space::enter`] after the other, but columns go against what is there block by block: then the
     /// processor multiplies instead of waiting for its memory.
     pub(crate) fn enter_all(&mut self, columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let rows = columns.first().map_or(0, Vec::len);
+        let Some(rows) = columns.first().map(Vec::len) else { return Vec::new() };
         let mut units = DMatrix::zeros(rows, self.tangents.len() + self.frame.len() + columns.len());
         for (place, unit) in self.tangents.iter().chain(&self.frame).enumerate() {
             units.column_mut(place).copy_from_slice(unit);
