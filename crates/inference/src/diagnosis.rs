@@ -10,6 +10,7 @@ pub(crate) mod confidence;
 pub(crate) mod confirm;
 pub(crate) mod diagnose;
 pub(crate) mod document;
+pub(crate) mod drawn;
 mod either;
 pub(crate) mod explained;
 pub(crate) mod form_error;
