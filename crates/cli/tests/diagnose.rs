@@ -256,6 +256,9 @@ fn the_page_on_drawn_forms_says_what_the_commands_say() {
     let page = include_str!("../../../docs/drawn-form.md");
     let folder = Folder::new("drawn-form");
     let [data, muscle] = gent(&folder, "gent", "150 N,1");
+    // They are what the tour ships.
+    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/data/own-form/data.csv");
+    assert_eq!(fs::read_to_string(&data).unwrap(), fs::read_to_string(shipped).unwrap());
     let about = [&data[..], "--muscle", &muscle, "--json"];
     let first = json(&[&["diagnose"], &about[..]].concat());
     let named = &first["missing"][0];
