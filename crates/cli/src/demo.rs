@@ -1,6 +1,7 @@
 //! `bulge demo`: the tour, on shipped muscles.
 
 mod hidden;
+mod own_form;
 mod tabulated;
 
 use bulge_effects::Catalogue;
@@ -71,6 +72,8 @@ struct Document {
     ladder: Vec<(String, f64)>,
     /// What was found in measurements with a hidden effect, and what when it was added.
     hidden: [Found; 2],
+    /// The same where the hidden effect has a form of its own, and where that was written as an effect.
+    own_form: [Found; 2],
     /// The table of a family of muscles.
     table: TableDescription,
     files: Vec<PathBuf>,
@@ -106,6 +109,7 @@ impl Demo {
         let braid = braid(&self.out, &mut text, &mut written)?;
         let comparison = measured(&self.out, &mut text, &mut written)?;
         let hidden = hidden::hidden(&self.out, &mut text, &mut written)?;
+        let own_form = own_form::own_form(&self.out, &mut text, &mut written)?;
         let table = tabulated::tabulated(&self.out, &mut text, &mut written)?;
         if self.json {
             let document = Document {
@@ -114,7 +118,8 @@ impl Demo {
                 shooting_minus_closed_form: difference,
                 braid,
                 ladder: comparison.ladder.iter().map(|rung| (rung.title.clone(), rung.rmse_n)).collect(),
-                hidden: [Found::of(&hidden[0]), Found::of(&hidden[1])],
+                hidden: hidden.each_ref().map(Found::of),
+                own_form: own_form.each_ref().map(Found::of),
                 table,
                 files: written,
             };

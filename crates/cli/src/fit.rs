@@ -1,13 +1,13 @@
 //! `bulge fit`: effects fitted to measurements, and the muscle file that holds them.
 
 use bulge_effects::{Catalogue, Effect, known};
-use bulge_inference::{Options, fit_effects};
+use bulge_inference::{DrawnForms, Options, drawn_forms, fit_effects};
 use bulge_measurements::Data;
 use bulge_muscles::Muscle;
 use bulge_report::Learnt;
 use clap::Args;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::arguments;
@@ -30,6 +30,9 @@ pub(crate) struct FitCommand {
     /// Your own effects, as expressions in a TOML file
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
+    /// Draw the form that the data want of each effect, and write it to FILE as an effect of your own, for `--effects FILE --with EFFECT-bent` in the place of EFFECT
+    #[arg(long, value_name = "FILE")]
+    form_error: Option<PathBuf>,
     /// The muscle file to write [default: on standard output]
     #[arg(long, value_name = "MODEL.toml")]
     out: Option<PathBuf>,
@@ -44,16 +47,25 @@ impl FitCommand {
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = self.data.read(&muscle)?;
-        let learnt = learn(&data, &muscle, effects, catalogue)?;
+        let learnt = learn(&data, &muscle, effects.clone(), catalogue.clone())?;
+        let drawn = match &self.form_error {
+            Some(path) => Some(drawn(&data, &muscle, effects, catalogue, path)?),
+            None => None,
+        };
         if let Some(path) = &self.out {
             files::write(path, learnt.model.as_bytes())?;
         }
         if self.json {
-            return Ok(serde_json::to_string_pretty(&learnt.document())? + "\n");
+            let mut document = serde_json::to_value(learnt.document())?;
+            if let (Some(document), Some((drawn, _))) = (document.as_object_mut(), &drawn) {
+                document.insert("drawn".to_owned(), serde_json::to_value(drawn)?);
+            }
+            return Ok(serde_json::to_string_pretty(&document)? + "\n");
         }
         if self.out.is_none() {
             // A file as it is, so that it can be piped into one; the numbers are in its comments.
             eprint!("{}", told(data.reading()));
+            eprint!("{}", drawn.map_or_else(String::new, |(_, says)| says));
             return Ok(learnt.model);
         }
         let mut text = format!("{} fitted to {}\n\n", muscle.name(), learnt.fitting.data.files.join(", "));
@@ -62,11 +74,40 @@ impl FitCommand {
         for (name, why) in &learnt.extension.left_out {
             let _ = writeln!(text, "  {name} is not in the file: {why}");
         }
+        text.push_str(&drawn.map_or_else(String::new, |(_, says)| says));
         if let Some(path) = &self.out {
             let _ = writeln!(text, "\n  wrote {}", path.display());
         }
         Ok(text)
     }
+}
+
+/// Draws the forms that the data want, and writes those that an expression can follow. Returns them, and what to say of them.
+fn drawn(
+    data: &Data,
+    muscle: &Muscle,
+    effects: Vec<Arc<dyn Effect>>,
+    catalogue: Catalogue,
+    path: &Path,
+) -> Result<(DrawnForms, String), Failure> {
+    let known = known(muscle, &catalogue)?;
+    let drawn = drawn_forms(data, muscle, &Options { known, ..Options::new(catalogue, effects) })?;
+    let mut text = format!(
+        "\n  RMS error with the formulas {:.3} N, with the forms that the data want {:.3} N\n",
+        drawn.rmse_n, drawn.bent_rmse_n
+    );
+    for form in &drawn.forms {
+        let _ = writeln!(text, "  {}", form.says);
+    }
+    let written: Vec<&str> =
+        drawn.forms.iter().map(|form| form.toml.as_str()).filter(|toml| !toml.is_empty()).collect();
+    if written.is_empty() {
+        let _ = writeln!(text, "  {} is not written: there is no form to write", path.display());
+    } else {
+        files::write(path, written.join("\n").as_bytes())?;
+        let _ = writeln!(text, "  wrote {}", path.display());
+    }
+    Ok((drawn, text))
 }
 
 /// Fits effects to data.

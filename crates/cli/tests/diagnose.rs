@@ -380,3 +380,117 @@ fn sentences_of_a_diagnosis_agree_with_each_other_and_a_tolerance_only_weakens_t
     }
     assert!(found > 0);
 }
+
+/// Friction of a form that the catalogue lacks: it grows with the square root of the pressure, and with the contraction.
+const OWN_FRICTION: &str = "\
+[effects.own-friction]
+title = \"Friction of its own\"
+force = \"-direction * mu * sqrt(p / 300000 [Pa]) * (0.55 + 5 * eps)\"
+parameters.mu = { unit = \"N\", typical = \"40 N\", low = \"0 N\", high = \"500 N\" }
+";
+
+#[test]
+fn a_form_that_the_data_want_becomes_an_effect_of_ones_own() {
+    let folder = Folder::new("fit-form-error");
+    let own = folder.write("own.toml", OWN_FRICTION);
+    let trial = folder.path("trial");
+    let hidden = ["simulate", MUSCLE, "--protocol", PROTOCOL, "--out", &trial, "--seed", "7"];
+    let output = bulge(&[&hidden[..], &["--effects", &own, "--with", "own-friction=40 N"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let (data, muscle) = (folder.path("trial/data.csv"), folder.path("trial/muscle.toml"));
+    let bent = folder.path("bent.toml");
+    let about = [&data[..], "--muscle", &muscle, "--json"];
+    let fit = ["--with", "coulomb-friction", "--form-error", &bent];
+    let found = json(&[&["fit"], &about[..], &fit].concat());
+    let drawn = &found["drawn"];
+    let form = &drawn["forms"][0];
+    assert_eq!(form["written"], "coulomb-friction-bent", "{form}");
+    let (exact, wanted) = (drawn["rmse_n"].as_f64().unwrap(), drawn["bent_rmse_n"].as_f64().unwrap());
+    assert!(wanted < 0.5 * exact, "{exact} {wanted}");
+    // The drawing has the hidden form within its intervals, and the file explains the data as the bent fit does.
+    let curves = form["form_error"]["curves"].as_array().unwrap();
+    assert!(!curves.is_empty());
+    for curve in curves {
+        let number = |key: &str| curve[key].as_f64().unwrap();
+        let list = |key: &str| -> Vec<f64> {
+            curve[key].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
+        };
+        let strength = -number("direction") * 40.0 * (number("pressure_pa") / 3e5).sqrt();
+        for ((eps, drawn), sd) in list("contraction").iter().zip(list("bent_n")).zip(list("sd_n")) {
+            let hidden = strength * (0.55 + 5.0 * eps);
+            // Means of a few rows each; a bin may hold a reading at a turn.
+            assert!((drawn - hidden).abs() < 5.0 * sd + 0.01 * hidden.abs(), "{eps} {drawn} {hidden} {sd}");
+        }
+    }
+    let compared =
+        json(&[&["compare"], &about[..], &["--effects", &bent, "--with", "coulomb-friction-bent"]].concat());
+    let rungs = compared["ladder"].as_array().unwrap();
+    let rmse = |rung: &Value| rung["rmse_n"].as_f64().unwrap();
+    let (before, after) = (rmse(&rungs[0]), rmse(&rungs[rungs.len() - 1]));
+    assert!(after < 0.2 * before && (after / wanted - 1.0).abs() < 0.1, "{before} {exact} {after} {wanted}");
+    let size = &rungs[rungs.len() - 1]["fit"]["parameters"][0];
+    assert_eq!(size["effect"], "coulomb-friction-bent");
+    // A formula that holds is not written.
+    let none = folder.path("none.toml");
+    let radius = json(&[&["fit"], &about[..], &["--with", "radius-error", "--form-error", &none]].concat());
+    let says = radius["drawn"]["forms"][0]["says"].as_str().unwrap();
+    assert!(says.contains("its formula is exact"), "{says}");
+    assert!(!Path::new(&none).exists());
+}
+
+/// Rubber of another form than the catalogue's, by Gent (1996).
+const GENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/gent-liner.toml");
+
+fn gent(folder: &Folder, name: &str, numbers: &str) -> [String; 2] {
+    let out = folder.path(name);
+    let hidden = format!("gent-liner={numbers}");
+    let arguments = ["simulate", MUSCLE, "--protocol", PROTOCOL, "--out", &out, "--seed", "7"];
+    let output = bulge(&[&arguments[..], &["--effects", GENT, "--with", &hidden]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    ["data.csv", "muscle.toml"].map(|file| folder.path(&format!("{name}/{file}")))
+}
+
+#[test]
+fn the_page_on_drawn_forms_says_what_the_commands_say() {
+    let page = include_str!("../../../docs/drawn-form.md");
+    let folder = Folder::new("drawn-form");
+    let [data, muscle] = gent(&folder, "gent", "150 N,1");
+    // They are what the tour ships.
+    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/data/own-form/data.csv");
+    assert_eq!(fs::read_to_string(&data).unwrap(), fs::read_to_string(shipped).unwrap());
+    let about = [&data[..], "--muscle", &muscle, "--json"];
+    let first = json(&[&["diagnose"], &about[..]].concat());
+    let named = &first["missing"][0];
+    assert_eq!((&named["mechanism"], &named["fitted"]), (&"rubber".into(), &"bladder-axial".into()));
+    let (bent, learnt) = (folder.path("bent.toml"), folder.path("learnt.toml"));
+    let fit = ["--with", "bladder-axial", "--form-error", &bent, "--out", &learnt];
+    let fitted = json(&[&["fit"], &about[..], &fit].concat());
+    let with = ["--effects", &bent, "--with", "bladder-axial-bent"];
+    let compared = json(&[&["compare"], &about[..], &with].concat());
+    let row = |model: &str, error: &Value| {
+        let error = error.as_f64().unwrap();
+        let digits = if error < 10.0 { 2 } else { 1 };
+        format!("| {model} | {error:.digits$} N |")
+    };
+    for row in [
+        row("equilibrium", &fitted["before_rmse_n"]),
+        row("+ bladder-axial, by its formula", &fitted["rmse_n"]),
+        row("+ bladder-axial-bent, as the data want it", &compared["ladder"][1]["rmse_n"]),
+    ] {
+        assert!(page.contains(&row), "{row}");
+    }
+    let again = json(&[&["diagnose"], &about[..], &with].concat());
+    assert_eq!(again["verdict"], "adequate");
+    // What the page says of shorter chains: that rubber is not named.
+    for (numbers, verdict, name) in
+        [("150 N,0.3", "missing", Some("standard-linear-solid")), ("150 N,0.6", "unknown", None)]
+    {
+        let [data, muscle] = gent(&folder, "shorter", numbers);
+        let found = json(&["diagnose", &data, "--muscle", &muscle, "--json"]);
+        assert_eq!(found["verdict"], verdict, "{numbers}");
+        if let Some(name) = name {
+            assert_eq!(found["missing"][0]["effect"], name);
+        }
+        assert!(page.contains(numbers));
+    }
+}

@@ -11,6 +11,7 @@ pub(crate) mod confirm;
 pub(crate) mod decision_rule;
 pub(crate) mod diagnose;
 pub(crate) mod document;
+pub(crate) mod drawn;
 mod either;
 pub(crate) mod explained;
 pub(crate) mod form_error;

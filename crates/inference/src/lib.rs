@@ -33,6 +33,7 @@ pub use comparison::rows::UNPRESSURISED;
 pub use diagnosis::confidence::Confidence;
 pub use diagnosis::diagnose::{DiagnoseOptions, diagnose};
 pub use diagnosis::document::*;
+pub use diagnosis::drawn::{DrawnForm, DrawnForms, drawn_forms};
 pub use diagnosis::geometry::{AssumedNumber, DoubtfulNumber, Geometry, MovedNumber, OtherAnswer};
 pub use diagnosis::next::NextLimits;
 pub use diagnosis::not_looked_for::NotLookedFor;

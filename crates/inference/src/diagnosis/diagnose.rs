@@ -114,14 +114,25 @@ fn diagnosed(
     analysis.measure_noise(&first);
     let mut base = analysis.climb(options.base.effects.len(), Some(&first))?;
     drop(first);
+    let (diagnosis, used) =
+        where_it_has_a_state(&analysis, &mut base, |base, used| on_rows(&analysis, base, used, options))?;
+    Ok(diagnosis.without(&analysis, &used))
+}
+
+/// What is found on the rows at which a base has a state, and those rows.
+pub(crate) fn where_it_has_a_state<T>(
+    analysis: &Analysis<'_>,
+    base: &mut Climbed,
+    mut find: impl FnMut(&mut Climbed, &[bool]) -> Result<T, Stop>,
+) -> Result<(T, Vec<bool>), InferenceError> {
     // Of rows without a state the base says nothing: what the catalogue could say there, nothing could be compared with.
     let mut used = vec![false; analysis.record.len()];
     for row in analysis.with_state(&[&base.force]) {
         used[row] = true;
     }
     for _ in 0..MOST_LEFT_OUT {
-        match on_rows(&analysis, &mut base, &used, options) {
-            Ok(diagnosis) => return Ok(diagnosis.without(&analysis, &used)),
+        match find(base, &used) {
+            Ok(found) => return Ok((found, used)),
             Err(Stop::Error(error)) => return Err(error),
             Err(Stop::Rows(rows)) => {
                 for row in rows {

@@ -1,0 +1,372 @@
+//! The forms that the data want of a model's effects, as expressions that a file of effects can hold.
+//!
+//! ```text
+//! s + B c = size (E(x, y) + direction O(x, y)),   x, y contraction and pressure over their ranges, held beyond them
+//! ```
+//! E and O are polynomials of the least degree that follows the form as closely as the data know it.
+
+use bulge_effects::{Effect, Form, Mechanism};
+use bulge_measurements::Data;
+use bulge_model::{ModelError, Record};
+use bulge_muscles::Muscle;
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+use std::sync::Arc;
+
+use crate::comparison::analysis::{Analysis, Options};
+use crate::diagnosis::as_set::as_set;
+use crate::diagnosis::claim::form_error;
+use crate::diagnosis::diagnose::{DiagnoseOptions, where_it_has_a_state};
+use crate::diagnosis::document::FormErrorResult;
+use crate::diagnosis::form_error::Bent;
+use crate::diagnosis::ground::{Stop, ground};
+use crate::diagnosis::scene::Given;
+use crate::dot::dot;
+use crate::error::InferenceError;
+
+/// Highest degree over contraction and pressure together, and over the pressure alone: the form errors have 4 and 2 on top of what a formula has.
+const DEGREES: [usize; 2] = [7, 3];
+/// What an expression may miss, as a part of the noise of a reading: many rows see a tenth.
+const UNSEEN: f64 = 0.05;
+/// An expression that misses more than this part of the effect (RMS) is another effect.
+const ANOTHER: f64 = 0.5;
+/// Singular values below this part of the largest are rounding.
+const ROUNDING: f64 = 1e-10;
+/// Half of the 95 % interval in standard deviations.
+const SURE: f64 = 1.96;
+/// The size of a written effect may be that many times what it was.
+const LARGEST: f64 = 5.0;
+
+/// The forms of a model's effects by some data.
+#[derive(Debug, Clone, Serialize)]
+pub struct DrawnForms {
+    /// RMS error with the formulas of the catalogue, on means of rows \[N\].
+    pub rmse_n: f64,
+    /// The same with the forms that the data want \[N\].
+    pub bent_rmse_n: f64,
+    /// One for each effect that was asked for.
+    pub forms: Vec<DrawnForm>,
+}
+
+/// The form of one effect.
+#[derive(Debug, Clone, Serialize)]
+pub struct DrawnForm {
+    /// The effect.
+    pub effect: String,
+    /// How much the data bend its formula, where and with which standard deviation; none where the formula holds, or is exact.
+    pub form_error: Option<FormErrorResult>,
+    /// Name of the effect that is written; none where none is.
+    pub written: Option<String>,
+    /// RMS of what its expression misses of the form \[N\].
+    pub missed_n: Option<f64>,
+    /// In a sentence: what is written, or why nothing is.
+    pub says: String,
+    /// The effect in a file of effects; empty where none is written.
+    pub toml: String,
+}
+
+/// Fits effects with their form errors, and writes the forms that the data want as effects of one's own.
+///
+/// # Errors
+/// As [`crate::diagnose`]; rows too few to know their noise are an error here.
+pub fn drawn_forms(data: &Data, muscle: &Muscle, options: &Options) -> Result<DrawnForms, InferenceError> {
+    rayon::scope(|_| {
+        let options = DiagnoseOptions::new(options.clone());
+        let mut analysis = Analysis::new(data, muscle, &options.base)?;
+        analysis.ask()?;
+        let first = analysis.climb(0, None)?;
+        analysis.measure_noise(&first);
+        let mut base = analysis.climb(options.base.effects.len(), Some(&first))?;
+        let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
+        let found = where_it_has_a_state(&analysis, &mut base, |base, used| {
+            let ground = ground(&analysis, base, used, &options)?;
+            let Some(law) = &ground.law else {
+                return Err(InferenceError::TooFewRows {
+                    rows: ground.record.len(),
+                    numbers: base.theta.len(),
+                }
+                .into());
+            };
+            let nothing: [String; 0] = [];
+            let given = Given { only: Some(&nothing), ..ground.given(law, &options) };
+            let near = (&base.prepared.model, &base.theta[..]);
+            let drawn = given
+                .confirm(&model, &[], Some(near), &[])
+                .and_then(|confirmed| given.scene(&confirmed.prepared, &confirmed.theta))
+                .map(|scene| given.drawn(&scene.force, &scene.form.effects, &options.base.effects));
+            drawn.map_err(|error: ModelError| Stop::at_means(error, &ground.averaged, &analysis))
+        });
+        Ok(found?.0)
+    })
+}
+
+impl DrawnForm {
+    /// Of an effect that isn't written.
+    fn none(effect: &Arc<dyn Effect>, why: &str) -> Self {
+        let effect = effect.card().name.to_owned();
+        let says = format!("{effect} is not written: {why}");
+        Self { effect, form_error: None, written: None, missed_n: None, says, toml: String::new() }
+    }
+}
+
+/// Why an effect has no form errors.
+fn without_columns(effect: &Arc<dyn Effect>) -> &'static str {
+    if effect.card().form == Form::Exact {
+        "its formula is exact, only its numbers can be wrong"
+    } else {
+        "at its best numbers it changes nothing"
+    }
+}
+
+impl Given<'_> {
+    fn drawn(&self, force: &[f64], bent: &[Bent], asked: &[Arc<dyn Effect>]) -> DrawnForms {
+        let record = self.record;
+        let residual: Vec<f64> = record.force().iter().zip(force).map(|(y, f)| y - f).collect();
+        let mut left = residual.clone();
+        for effect in bent.iter().filter(|bent| bent.may_bend()) {
+            for (left, bending) in left.iter_mut().zip(&effect.bending) {
+                *left -= bending;
+            }
+        }
+        let state = State::of(&as_set(record));
+        let form = |effect: &Arc<dyn Effect>| {
+            let own = bent.iter().find(|bent| bent.effect.card().name == effect.card().name);
+            own.map_or_else(
+                || DrawnForm::none(effect, without_columns(effect)),
+                |bent| self.form(&state, bent),
+            )
+        };
+        let forms = asked.iter().map(form).collect();
+        DrawnForms { rmse_n: rms(&residual), bent_rmse_n: rms(&left), forms }
+    }
+
+    fn form(&self, state: &State, bent: &Bent) -> DrawnForm {
+        let name = bent.effect.card().name;
+        if !bent.may_bend() {
+            return DrawnForm::none(&bent.effect, "its formula holds: the data want no other form");
+        }
+        let whole: Vec<f64> = bent.change.iter().zip(&bent.bending).map(|(s, b)| s + b).collect();
+        let expression = Expression::of(state, &whole, UNSEEN * self.row_n);
+        let (size, missed) = (rms(&whole), expression.missed_n);
+        let form_error = form_error(self.record, bent);
+        let bends = form_error.rms_n;
+        if missed > ANOTHER * size {
+            let says = format!(
+                "{name} is not written: {missed:.3} N of its {size:.3} N (RMS) lie at turns or along the time, where an expression over contraction, pressure and direction can't follow"
+            );
+            let none = DrawnForm::none(&bent.effect, "");
+            return DrawnForm { form_error: Some(form_error), missed_n: Some(missed), says, ..none };
+        }
+        let written = self.free_name(name);
+        let beside = if missed > UNSEEN * self.row_n {
+            format!("; {missed:.3} N of it lie at turns or along the time and are not in the expression")
+        } else {
+            String::new()
+        };
+        let says = format!(
+            "{written}: {name} as the data want it, {size:.3} N (RMS), of which {bends:.3} N are not in its formula{beside}"
+        );
+        let toml = file(&bent.effect, &written, &form_error, &says, &expression.text(state, size), size);
+        DrawnForm {
+            effect: name.to_owned(),
+            form_error: Some(form_error),
+            written: Some(written),
+            missed_n: Some(missed),
+            says,
+            toml,
+        }
+    }
+
+    /// A name that the catalogue doesn't have.
+    fn free_name(&self, name: &str) -> String {
+        let first = format!("{name}-bent");
+        let mut free = first.clone();
+        for number in 2.. {
+            if self.catalogue.find(&free).is_err() {
+                break;
+            }
+            free = format!("{first}-{number}");
+        }
+        free
+    }
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (dot(values, values) / values.len().max(1) as f64).sqrt()
+}
+
+/// Contraction and pressure over their ranges, and the direction, row by row.
+struct State {
+    /// Ends of contraction and pressure, in SI.
+    ends: [[f64; 2]; 2],
+    scaled: [Vec<f64>; 2],
+    direction: Vec<f64>,
+}
+
+impl State {
+    fn of(set: &Record) -> Self {
+        let moments = set.moments();
+        let values = [
+            moments.iter().map(|m| m.contraction).collect::<Vec<_>>(),
+            moments.iter().map(|m| m.pressure).collect(),
+        ];
+        let ends = values.each_ref().map(|values| {
+            let of = |pick: fn(f64, f64) -> f64, first| values.iter().copied().fold(first, pick);
+            [of(f64::min, f64::INFINITY), of(f64::max, f64::NEG_INFINITY)]
+        });
+        let scaled = [0, 1].map(|axis: usize| {
+            let [low, high] = ends[axis];
+            let half = 0.5 * (high - low);
+            let of = |v: &f64| if half > 0.0 { (v - low) / half - 1.0 } else { 0.0 };
+            values[axis].iter().map(of).collect()
+        });
+        let direction = moments.iter().map(|m| m.direction).collect();
+        Self { ends, scaled, direction }
+    }
+
+    fn is_moved(&self, axis: usize) -> bool {
+        self.ends[axis][1] > self.ends[axis][0]
+    }
+
+    /// x or y of a formula.
+    fn text(&self, axis: usize) -> String {
+        let (name, unit) = [("eps", ""), ("p", " [Pa]")][axis];
+        let [low, high] = self.ends[axis];
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        format!(
+            "((clamp({name}, {low:.9e}{unit}, {high:.9e}{unit}) - {middle:.9e}{unit}) / {half:.9e}{unit})"
+        )
+    }
+}
+
+/// A polynomial over contraction and pressure, and one that turns its sign with the direction.
+struct Expression {
+    /// (whether it turns with the direction, degree over contraction, degree over pressure), coefficient.
+    terms: Vec<((bool, usize, usize), f64)>,
+    missed_n: f64,
+}
+
+impl Expression {
+    /// The shortest that misses less than `unseen` (RMS) of these forces; else the closest.
+    fn of(state: &State, whole: &[f64], unseen: f64) -> Self {
+        let parts: &[&[bool]] = if state.direction.iter().any(|d| *d != 0.0) {
+            &[&[false], &[true], &[false, true]]
+        } else {
+            &[&[false]]
+        };
+        let powers = |total: usize| {
+            let highest = move |axis: usize| if state.is_moved(axis) { DEGREES[axis].min(total) } else { 0 };
+            (0..=highest(1)).flat_map(move |j| (0..=highest(0).min(total - j)).map(move |i| (i, j)))
+        };
+        let mut bases: Vec<Vec<(bool, usize, usize)>> = (0..=DEGREES[0])
+            .flat_map(|total| {
+                parts.iter().map(move |parts| {
+                    parts.iter().flat_map(|turns| powers(total).map(|(i, j)| (*turns, i, j))).collect()
+                })
+            })
+            .collect();
+        bases.sort_by_key(Vec::len);
+        let mut best: Option<Self> = None;
+        for basis in bases.into_iter().filter(|basis| basis.len() < whole.len()) {
+            let Some(found) = Self::fitted(state, whole, basis) else { continue };
+            let is_enough = found.missed_n <= unseen;
+            if best.as_ref().is_none_or(|best| found.missed_n < best.missed_n) {
+                best = Some(found);
+            }
+            if is_enough {
+                break;
+            }
+        }
+        best.unwrap_or_else(|| Self { terms: Vec::new(), missed_n: rms(whole) })
+    }
+
+    fn fitted(state: &State, whole: &[f64], basis: Vec<(bool, usize, usize)>) -> Option<Self> {
+        let power =
+            |axis: usize, row: usize, n: usize| (0..n).fold(1.0, |sum, _| sum * state.scaled[axis][row]);
+        let design = DMatrix::from_fn(whole.len(), basis.len(), |row, column| {
+            let (turns, i, j) = basis[column];
+            let sign = if turns { state.direction[row] } else { 1.0 };
+            sign * power(0, row, i) * power(1, row, j)
+        });
+        let wanted = DVector::from_column_slice(whole);
+        let svd = design.clone().svd(true, true);
+        let smallest = ROUNDING * svd.singular_values.max();
+        let found = svd.solve(&wanted, smallest).ok()?;
+        let missed_n = rms((wanted - design * &found).as_slice());
+        Some(Self { terms: basis.into_iter().zip(found.iter().copied()).collect(), missed_n })
+    }
+
+    /// As a formula of the parameter `size`, which is `size` now \[N\].
+    fn text(&self, state: &State, size: f64) -> String {
+        let polynomial = |turns: bool| -> Option<String> {
+            let of =
+                |power: usize| self.terms.iter().filter(move |((t, _, j), _)| *t == turns && *j == power);
+            let rows: Vec<String> = (0..=DEGREES[1])
+                .map(|j| {
+                    // Horner's scheme: few operations, and no exponents to read.
+                    of(j).rev().fold(String::new(), |inner, (_, c)| {
+                        let c = c / size;
+                        let x = state.text(0);
+                        if inner.is_empty() {
+                            format!("({c:.9e})")
+                        } else {
+                            format!("({c:.9e} + {x} * {inner})")
+                        }
+                    })
+                })
+                .collect();
+            rows.into_iter().rev().fold(None, |inner, own| match inner {
+                None => Some(own).filter(|own| !own.is_empty()),
+                Some(inner) => Some(format!("({own} + {} * {inner})", state.text(1))),
+            })
+        };
+        let parts = [polynomial(false), polynomial(true).map(|odd| format!("direction * {odd}"))];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        format!("size * ({})", parts.join(" + "))
+    }
+}
+
+/// An effect in a file of effects, below the drawing that it follows, with its interval.
+fn file(
+    effect: &Arc<dyn Effect>,
+    name: &str,
+    drawn: &FormErrorResult,
+    says: &str,
+    formula: &str,
+    size: f64,
+) -> String {
+    let card = effect.card();
+    let mut lines = vec![
+        format!("# {says}."),
+        "# Beyond the contractions and pressures that were measured it stays as at the last of them.".to_owned(),
+        "#".to_owned(),
+        "# pressure [bar]  direction  contraction [%]  by its formula [N]  as the data want it [N]  95 % interval [N]".to_owned(),
+    ];
+    for curve in &drawn.curves {
+        let points = curve.contraction.iter().zip(&curve.formula_n).zip(curve.bent_n.iter().zip(&curve.sd_n));
+        lines.extend(points.map(|((contraction, formula), (bent, sd))| {
+            format!(
+                "# {:14.4}  {:9}  {:15.3}  {formula:18.3}  {bent:23.3}  {:.3} to {:.3}",
+                1e-5 * curve.pressure_pa,
+                curve.direction,
+                100.0 * contraction,
+                bent - SURE * sd,
+                bent + SURE * sd,
+            )
+        }));
+    }
+    lines.push(String::new());
+    lines.push(format!("[effects.{name}]"));
+    lines.push(format!("title = \"{} as the data want it\"", card.name));
+    lines.push(format!("family = \"{}\"", card.family));
+    if card.mechanism != Mechanism::User {
+        lines.push(format!("mechanism = \"{}\"", card.mechanism.name().replace(' ', "-")));
+    }
+    lines.push("form = \"near\"".to_owned());
+    lines.push(format!("force = \"{formula}\""));
+    lines.push(format!(
+        "parameters.size = {{ unit = \"N\", typical = \"{size:.9e} N\", low = \"0 N\", high = \"{:.9e} N\", about = \"RMS of the effect over the rows that it was drawn from\" }}\n",
+        LARGEST * size,
+    ));
+    lines.join("\n")
+}
