@@ -178,7 +178,7 @@ impl Given<'_> {
         added.push(Arc::clone(&rival.effect));
         let fit = rival.fit.as_ref()?;
         let new = [Arc::clone(&rival.effect)];
-        if fit.is_absurd(&new) || fit.is_idle(&new) {
+        if fit.is_absurd(&new, self.record) || fit.is_idle(&new) {
             return None;
         }
         let other = self.stage(added, fit.clone()).ok()?;

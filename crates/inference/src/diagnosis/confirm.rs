@@ -4,10 +4,11 @@
 //! log Z = -chi^2/2 + log prior + (k/2) log 2 pi - (1/2) log |H|        (Laplace),   H = J' J + the curvature of the priors
 //! ```
 
-use bulge_effects::Effect;
-use bulge_model::{Model, ModelError};
+use bulge_effects::{Effect, Mechanism};
+use bulge_model::{Model, ModelError, Record};
 use bulge_numerics::least_squares::{Bounds, Minimum, Options, Reason};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::diagnosis::candidates::log_prior;
@@ -49,13 +50,21 @@ impl Confirmed {
         (&self.prepared.model, &self.theta)
     }
 
-    /// Whether a number of these effects is at the end of all that was searched, and beyond what is plausible: that explains nothing.
-    pub(crate) fn is_absurd(&self, effects: &[Arc<dyn Effect>]) -> bool {
+    /// Whether a number of these effects is at the end of all that was searched, and beyond what is plausible, or a relaxation takes longer than any sweep of the record: then it is
+    /// a spring, and in the place of one. That explains nothing.
+    pub(crate) fn is_absurd(&self, effects: &[Arc<dyn Effect>], record: &Record) -> bool {
         let model = &self.prepared.model;
+        let moments = record.moments();
+        let lasts = |rows: &Range<usize>| moments[rows.end - 1].clock - moments[rows.start].clock;
+        let longest = record.sweeps().iter().map(lasts).fold(0.0, f64::max);
         free(model).into_iter().zip(&self.minimum.certificate.at_bound).any(|(index, at_bound)| {
             let (p, value) = (&model.parameters()[index], self.theta[index]);
-            let is_of = effects.iter().any(|effect| effect.card().name == p.effect);
-            is_of && at_bound.is_some() && !(p.plausible.0..=p.plausible.1).contains(&value)
+            let Some(effect) = effects.iter().find(|effect| effect.card().name == p.effect) else {
+                return false;
+            };
+            let relaxes = effect.card().mechanism == Mechanism::Relaxation && p.name == "time";
+            relaxes && record.has_time() && value > longest
+                || at_bound.is_some() && !(p.plausible.0..=p.plausible.1).contains(&value)
         })
     }
 

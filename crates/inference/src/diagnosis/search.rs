@@ -150,7 +150,7 @@ impl Given<'_> {
         let effects = &stage.scene.showings.effects;
         let new: Vec<Arc<dyn Effect>> =
             tried.hypothesis.effects.iter().map(|i| Arc::clone(&effects[*i].effect)).collect();
-        if tried.log_evidence <= worth || confirmed.is_absurd(&new) || confirmed.is_idle(&new) {
+        if tried.log_evidence <= worth || confirmed.is_absurd(&new, self.record) || confirmed.is_idle(&new) {
             return None;
         }
         let gain = stage.confirmed.bent_cost() - confirmed.bent_cost();
