@@ -123,34 +123,43 @@ fn traces(cells: &[Cell]) -> [f64; 2] {
     sums
 }
 
-/// How often chance gives as large a statistic of these cells.
-fn chance(cells: &[Cell], left: &[f64], columns: &DMatrix<f64>) -> Option<f64> {
+/// Traces of P W, of its square and of its third power; the columns are Q.
+fn traces_outside(cells: &[Cell], columns: &DMatrix<f64>) -> [f64; 3] {
     let [two, three] = traces(cells);
-    let freedom = (left.len() - columns.ncols()) as f64;
-    if two < ENOUGH || freedom < 1.0 {
-        return None;
-    }
-    let images: Vec<f64> =
-        columns.column_iter().flat_map(|column| coupled(cells, column.as_slice())).collect();
-    let once = DMatrix::from_vec(columns.nrows(), columns.ncols(), images);
-    let images: Vec<f64> = once.column_iter().flat_map(|column| coupled(cells, column.as_slice())).collect();
-    let twice = DMatrix::from_vec(columns.nrows(), columns.ncols(), images);
-    // Q' W^k Q, and from them the traces of (P W)^k.
+    let image = |of: &DMatrix<f64>| {
+        let images = of.column_iter().flat_map(|column| coupled(cells, column.as_slice())).collect();
+        DMatrix::from_vec(of.nrows(), of.ncols(), images)
+    };
+    let once = image(columns);
+    let twice = image(&once);
+    // Q' W^k Q.
     let (a, b, c) = (columns.tr_mul(&once), once.tr_mul(&once), once.tr_mul(&twice));
-    let [one, two, three] = [
+    [
         -a.trace(),
         two - 2.0 * b.trace() + a.dot(&a),
         three - 3.0 * c.trace() + 3.0 * a.dot(&b) - (&a * &a).dot(&a),
-    ];
-    // Cumulants of T at noise of variance 1, then moments of I.
+    ]
+}
+
+/// Mean, second and third moment of I from those traces: of e' W e under normal noise, over those of e' e, which doesn't depend on the ratio.
+fn moments([one, two, three]: [f64; 3], freedom: f64) -> [f64; 3] {
     let (k2, k3) = (2.0 * two, 8.0 * three);
-    let moments = [k2 + one * one, k3 + 3.0 * one * k2 + one.powi(3)];
-    let second = moments[0] * freedom / (freedom + 2.0);
-    let third = moments[1] * freedom * freedom / ((freedom + 2.0) * (freedom + 4.0));
-    let sd = (second - one * one).max(0.0).sqrt();
-    let skewness = (third - 3.0 * one * sd * sd - one.powi(3)) / sd.powi(3);
+    let second = (k2 + one * one) * freedom / (freedom + 2.0);
+    let third = (k3 + 3.0 * one * k2 + one.powi(3)) * freedom * freedom / ((freedom + 2.0) * (freedom + 4.0));
+    [one, second, third]
+}
+
+/// How often chance gives as large a statistic of these cells.
+fn chance(cells: &[Cell], left: &[f64], columns: &DMatrix<f64>) -> Option<f64> {
+    let freedom = (left.len() - columns.ncols()) as f64;
+    if traces(cells)[0] < ENOUGH || freedom < 1.0 {
+        return None;
+    }
+    let [mean, second, third] = moments(traces_outside(cells, columns), freedom);
+    let sd = (second - mean * mean).max(0.0).sqrt();
+    let skewness = (third - 3.0 * mean * sd * sd - mean.powi(3)) / sd.powi(3);
     let found = dot(left, &coupled(cells, left)) * freedom / dot(left, left);
-    beyond((found - one) / sd, skewness)
+    beyond((found - mean) / sd, skewness)
 }
 
 /// How often a number of mean 0 and variance 1 is larger, with a skewness: Pearson's third distribution.
@@ -224,6 +233,47 @@ mod tests {
         let mut e: Vec<f64> = record.moments().iter().map(|m| of(m, random.normal())).collect();
         without(&mut e, units);
         e
+    }
+
+    #[test]
+    fn traces_are_those_of_whole_matrices() {
+        // Three cells of 2 to 4 strokes, two rows alone.
+        let cells: Vec<Cell> = vec![
+            vec![vec![0, 1], vec![2]],
+            vec![vec![3], vec![4, 5], vec![6, 7, 8]],
+            vec![vec![9], vec![10], vec![11], vec![12]],
+        ];
+        let n = 15;
+        let unit = |place: usize| (0..n).map(|row| f64::from(row == place)).collect::<Vec<f64>>();
+        let w = DMatrix::from_vec(n, n, (0..n).flat_map(|place| coupled(&cells, &unit(place))).collect());
+        assert!((&w - w.transpose()).norm() < 1e-15 && w.trace().abs() < 1e-15);
+        assert!((w[(0, 2)] - 1.0 / 3.0).abs() < 1e-15 && (w[(3, 8)] - 1.0 / 6.0).abs() < 1e-15);
+        assert!((w[(9, 12)] - 0.25).abs() < 1e-15 && w[(6, 7)].abs() < 1e-15);
+        let mut random = Random::new(2, 0);
+        let q = DMatrix::from_fn(n, 3, |_, _| random.normal()).qr().q();
+        let pw = (DMatrix::identity(n, n) - &q * q.transpose()) * w;
+        let expected = [pw.trace(), (&pw * &pw).trace(), (&pw * &pw * &pw).trace()];
+        for (found, expected) in traces_outside(&cells, &q).iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_ratio_that_is_always_one_has_no_other_moments() {
+        // With P itself in the place of W, I is the number of degrees of freedom whatever the noise.
+        for freedom in [1.0, 4.0, 300.0_f64] {
+            let found = moments([freedom; 3], freedom);
+            for (power, found) in (1..).zip(found) {
+                assert!((found / freedom.powi(power) - 1.0).abs() < 1e-12, "{power}: {found}");
+            }
+        }
+        // A gamma distribution of the shape 4 has the skewness 1: P(x > 4 + 2 u) by its closed form.
+        let x = 4.0 + 2.0 * 1.5_f64;
+        let closed = (-x).exp() * (1.0 + x + x * x / 2.0 + x.powi(3) / 6.0);
+        assert!((beyond(1.5, 1.0).unwrap() - closed).abs() < 1e-12);
+        assert!((beyond(1.644_853_626_951_472_2, 0.0).unwrap() - 0.05).abs() < 1e-9);
+        // Of equal chances the combination is that chance.
+        assert!((combined(&[0.02; 7]).unwrap() - 0.02).abs() < 1e-12);
     }
 
     #[test]
