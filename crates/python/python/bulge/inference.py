@@ -182,8 +182,9 @@ class Fit(Result):
     def bent(self) -> list[dict[str, Any]]:
         """How much the data bend the formula of each effect that was fitted.
 
-        ``effect`` is its name, ``share`` the part of the effect by which it is bent (0 where the formula holds, or is exact), ``newtons`` the RMS of
-        what is added to the formula, ``written`` the name of the effect in :attr:`drawn` (None where none is written), ``says`` the same in a sentence.
+        ``effect`` is its name, ``share`` the part of the effect by which it is bent, in units of the noise (0 where the formula holds, or is exact),
+        ``newtons`` the RMS of what is added to the formula, ``written`` the name of the effect in :attr:`drawn` (None where none is written),
+        ``says`` the same in a sentence.
         """
 
         def one(form: dict[str, Any]) -> dict[str, Any]:
