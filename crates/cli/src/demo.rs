@@ -84,7 +84,7 @@ struct Document {
 struct Found {
     verdict: Verdict,
     missing: Vec<String>,
-    /// Error of the model with what is missing, and of the noise \[N\].
+    /// Error of the model with what is missing, by its formula, and of the noise \[N\].
     rmse_n: f64,
     noise_floor_n: f64,
 }
@@ -94,7 +94,7 @@ impl Found {
         Self {
             verdict: diagnosis.verdict,
             missing: diagnosis.missing.iter().map(|missing| missing.effect.clone()).collect(),
-            rmse_n: diagnosis.ladder.last().map_or(0.0, |step| step.rmse_n),
+            rmse_n: diagnosis.ladder.iter().rfind(|step| !step.bent).map_or(0.0, |step| step.rmse_n),
             noise_floor_n: diagnosis.noise_floor_n,
         }
     }

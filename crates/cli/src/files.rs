@@ -107,6 +107,30 @@ pub(crate) fn remove(paths: &[PathBuf]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// A file that a command writes or reads, by what the command line calls it.
+pub(crate) type Named<'a> = (&'static str, &'a Path);
+
+/// Refuses to write one file twice, or over a file that is read: before anything is computed. Whether a file is there already makes no difference, and links are followed.
+pub(crate) fn are_apart(written: &[Named<'_>], read: &[Named<'_>]) -> Result<(), Failure> {
+    let is_same = |a: &Path, b: &Path| {
+        is_stdout(a) && is_stdout(b)
+            || output::file_of(a).is_some_and(|file| output::file_of(b) == Some(file))
+    };
+    for (place, (option, path)) in written.iter().enumerate() {
+        let refuse = |what: String| {
+            let what = format!("{} is {what}; give the name of another file", path.display());
+            Err(Failure::Value { option, what })
+        };
+        if let Some((what, _)) = read.iter().find(|(_, read)| read.exists() && is_same(path, read)) {
+            return refuse(format!("{what}, which is read"));
+        }
+        if let Some((other, _)) = written[..place].iter().find(|(_, other)| is_same(path, other)) {
+            return refuse(format!("what {other} writes"));
+        }
+    }
+    Ok(())
+}
+
 /// Refuses a file that could not be written at the end of a long run.
 pub(crate) fn can_be_written(path: &Path) -> Result<(), Failure> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));

@@ -14,7 +14,7 @@ use crate::arguments;
 use crate::compare::parameters;
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
-use crate::files;
+use crate::files::{self, Named};
 
 /// Fits the named effects, and writes the muscle with what was learnt: a file for `shape`, `curve` and the next `compare`.
 #[derive(Debug, Args)]
@@ -43,6 +43,7 @@ pub(crate) struct FitCommand {
 
 impl FitCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
+        self.check_files()?;
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
@@ -56,10 +57,7 @@ impl FitCommand {
             files::write(path, learnt.model.as_bytes())?;
         }
         if self.json {
-            let mut document = serde_json::to_value(learnt.document())?;
-            if let (Some(document), Some((drawn, _))) = (document.as_object_mut(), &drawn) {
-                document.insert("drawn".to_owned(), serde_json::to_value(drawn)?);
-            }
+            let document = learnt.document().with_drawn(drawn.as_ref().map(|(drawn, _)| drawn));
             return Ok(serde_json::to_string_pretty(&document)? + "\n");
         }
         if self.out.is_none() {
@@ -79,6 +77,23 @@ impl FitCommand {
             let _ = writeln!(text, "\n  wrote {}", path.display());
         }
         Ok(text)
+    }
+
+    /// Refuses files that could not be written, or that would be written over: before hours of work, and before one of two is written. A learnt muscle may take the
+    /// place of the muscle that was read.
+    fn check_files(&self) -> Result<(), Failure> {
+        let read: Vec<Named<'_>> = (self.data.data.iter().map(|path| ("the data file", path.as_path())))
+            .chain(self.effects.as_deref().map(|path| ("the file of --effects", path)))
+            .collect();
+        let form_error: Vec<Named<'_>> =
+            self.form_error.as_deref().map(|path| ("--form-error", path)).into_iter().collect();
+        files::are_apart(&form_error, &[("the muscle file", Path::new(&self.muscle))])?;
+        // Without a name and without JSON the learnt muscle goes to standard output.
+        let out = self.out.as_deref().or((!self.json).then_some(Path::new("-")));
+        let out = out.map(|path| ("--out", path));
+        let written: Vec<Named<'_>> = form_error.into_iter().chain(out).collect();
+        files::are_apart(&written, &read)?;
+        written.iter().try_for_each(|(_, path)| files::can_be_written(path))
     }
 }
 

@@ -438,6 +438,112 @@ fn a_form_that_the_data_want_becomes_an_effect_of_ones_own() {
     assert!(!Path::new(&none).exists());
 }
 
+/// A hum, and one that grows: functions of the time alone.
+const HUMS: &str = "\
+[effects.hum]
+title = \"A hum\"
+force = \"a * sin(time / tau)\"
+parameters.a = { unit = \"N\", typical = \"30 N\", low = \"0 N\", high = \"500 N\" }
+parameters.tau = { unit = \"s\", typical = \"11 s\", low = \"10 s\", high = \"12 s\" }
+
+[effects.growing-hum]
+title = \"A hum that grows\"
+force = \"a * sin(time / tau) * (1 + 0.5 * time / (30 * tau))\"
+parameters.a = { unit = \"N\", typical = \"30 N\", low = \"0 N\", high = \"500 N\" }
+parameters.tau = { unit = \"s\", typical = \"11 s\", low = \"10 s\", high = \"12 s\" }
+";
+
+#[test]
+fn a_form_along_the_time_is_written_nowhere() {
+    let folder = Folder::new("fit-time");
+    let own = folder.write("hums.toml", HUMS);
+    let block = "[[block]]\npressures = [\"3 bar\"]\ncontraction = \"1 %..20 %\"\nshape = \"loops\"\ncycles = 6\nperiod = \"50 s\"\nrows = 50\n";
+    let protocol = folder.write("protocol.toml", &format!("{block}[noise]\nforce = \"2 N\"\n"));
+    let trial = folder.path("trial");
+    let hidden = ["--effects", &own, "--with", "growing-hum=20 N,11 s"];
+    let made = ["simulate", MUSCLE, "--protocol", &protocol, "--out", &trial, "--seed", "7"];
+    let output = bulge(&[&made[..], &hidden].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let listed = folder.names();
+    let (data, muscle, bent) =
+        (folder.path("trial/data.csv"), folder.path("trial/muscle.toml"), folder.path("bent.toml"));
+    let call = ["fit", &data, "--muscle", &muscle, "--effects", &own, "--with", "hum", "--form-error", &bent];
+    let found = json(&[&call[..], &["--json"]].concat());
+    let drawn = &found["drawn"];
+    let (exact, wanted) = (drawn["rmse_n"].as_f64().unwrap(), drawn["bent_rmse_n"].as_f64().unwrap());
+    assert!(wanted < 2.1 && wanted < 0.8 * exact, "the data do bend it: {exact} {wanted}");
+    let form = &drawn["forms"][0];
+    assert!(form["form_error"]["share"].as_f64().unwrap() > 0.05 && form["written"].is_null(), "{form}");
+    let says = form["says"].as_str().unwrap();
+    assert!(says.starts_with("hum is not written: ") && says.contains("along the time"), "{says}");
+    let learnt = folder.path("learnt.toml");
+    let output = bulge(&[&call[..], &["--out", &learnt]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains(says) && text.contains(&format!("{bent} is not written: there is no form")),
+        "{text}"
+    );
+    assert!(Path::new(&learnt).is_file() && !Path::new(&bent).exists());
+    fs::remove_file(&learnt).unwrap();
+    assert_eq!(folder.names(), listed);
+}
+
+#[test]
+fn what_a_fit_writes_is_kept_apart_from_what_it_reads() {
+    let folder = Folder::new("fit-apart");
+    let data = folder.write("data.csv", "no measurements: they are not even read\n");
+    let own = folder.write("own.toml", OWN_FRICTION);
+    let muscle = folder.write("muscle.toml", &fs::read_to_string(MUSCLE).unwrap());
+    fs::create_dir(folder.0.join("inner")).unwrap();
+    let kept = folder.write("kept.toml", "as it was\n");
+    let names = ["data.csv", "own.toml", "muscle.toml", "kept.toml"];
+    let read = || names.map(|name| fs::read(folder.0.join(name)).unwrap());
+    let (before, listed) = (read(), folder.names());
+    let same = |name: &str| folder.path(&format!("inner/../{name}"));
+    let (new, new_again) = (folder.path("new.toml"), same("new.toml"));
+    let [data_again, own_again, muscle_again, kept_again] = names.map(same);
+    for (option, more) in [
+        ("--out", &["--form-error", &new, "--out", &new][..]),
+        ("--out", &["--form-error", &new, "--out", &new_again]),
+        ("--out", &["--form-error", &kept, "--out", &kept_again]),
+        ("--out", &["--form-error", "-", "--out", "/dev/stdout"]),
+        ("--out", &["--form-error", "-"]),
+        ("--form-error", &["--form-error", &data]),
+        ("--form-error", &["--form-error", &data_again, "--json"]),
+        ("--form-error", &["--form-error", &own_again, "--out", &new]),
+        ("--form-error", &["--form-error", &muscle_again, "--out", &new]),
+        ("--out", &["--out", &data_again]),
+        ("--out", &["--form-error", &new, "--out", &own]),
+    ] {
+        let call = ["fit", &data, "--muscle", &muscle, "--effects", &own, "--with", "own-friction"];
+        let (status, message) = failure(&[&call[..], more].concat());
+        assert!(status == 1 && message.starts_with(&format!("error: {option}: ")), "{more:?}: {message}");
+        assert!(
+            message.contains("give the name of another file") && message.lines().count() == 1,
+            "{message}"
+        );
+        assert_eq!(read(), before, "{more:?}");
+        assert_eq!(folder.names(), listed, "{more:?}");
+    }
+    // Neither is one of two files written where the other can't be.
+    let nowhere = folder.path("nowhere/learnt.toml");
+    let call =
+        ["fit", &data, "--muscle", &muscle, "--with", "creep", "--form-error", &new, "--out", &nowhere];
+    let (status, message) = failure(&call);
+    assert!(status == 1 && message.contains("there is no folder"), "{message}");
+    assert_eq!(folder.names(), listed);
+}
+
+#[test]
+fn a_learnt_muscle_may_take_the_place_of_the_one_that_was_read() {
+    let folder = Folder::new("fit-in-place");
+    let [data, muscle] = simulated(&folder, "coulomb-friction=14 N");
+    let output = bulge(&["fit", &data, "--muscle", &muscle, "--with", "coulomb-friction", "--out", &muscle]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(fs::read_to_string(&muscle).unwrap().contains("[effects.coulomb-friction]"));
+}
+
 /// Rubber of another form than the catalogue's, by Gent (1996).
 const GENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/gent-liner.toml");
 
@@ -462,6 +568,15 @@ fn the_page_on_drawn_forms_says_what_the_commands_say() {
     let first = json(&[&["diagnose"], &about[..]].concat());
     let named = &first["missing"][0];
     assert_eq!((&named["mechanism"], &named["fitted"]), (&"rubber".into(), &"bladder-axial".into()));
+    // The ladder has the same errors of the formula and of the form.
+    let ladder: Vec<String> = first["ladder"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|rung| format!("{} {} {:.2}", rung["added"], rung["bent"], rung["rmse_n"].as_f64().unwrap()))
+        .collect();
+    assert_eq!(ladder[1..], ["\"bladder-axial\" false 6.48", "\"bladder-axial\" true 2.22"]);
+    assert!(first["ladder"][2]["held_out_rmse_n"].is_null() && first["ladder"][2]["adequate"] == true);
     let (bent, learnt) = (folder.path("bent.toml"), folder.path("learnt.toml"));
     let fit = ["--with", "bladder-axial", "--form-error", &bent, "--out", &learnt];
     let fitted = json(&[&["fit"], &about[..], &fit].concat());

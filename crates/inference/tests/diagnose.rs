@@ -4,7 +4,8 @@
 
 use bulge_effects::Catalogue;
 use bulge_inference::{
-    Block, DiagnoseOptions, Diagnosis, Options, Path, Protocol, ReadingNoise, Verdict, diagnose, simulate,
+    BentCurve, Block, DiagnoseOptions, Diagnosis, Options, Path, Protocol, ReadingNoise, Verdict, diagnose,
+    simulate,
 };
 use bulge_measurements::{Columns, Data, Trace};
 use bulge_model::{Model, Record, Wanted};
@@ -245,6 +246,65 @@ fn found(columns: Columns) -> Diagnosis {
     let muscle = from_toml(CYLINDER, "c.toml").unwrap();
     let base = Options::new(Catalogue::builtin(), Vec::new());
     diagnose(&Data::from_columns(columns).unwrap(), &muscle, &DiagnoseOptions::new(base)).unwrap()
+}
+
+/// One loop of 21 contractions at each of four pressures, so that each point of a drawn curve is one row; `spring` is lost \[N\], with noise of 2 N.
+fn sprung(spring: impl Fn(f64) -> f64) -> Columns {
+    let mut random = bulge_inference::Random::new(11, 0);
+    let (mut p, mut c, mut f) = (Vec::new(), Vec::new(), Vec::new());
+    for level in [2e5, 3e5, 4e5, 5e5] {
+        for e in (0..=20).chain((0..20).rev()).map(|i| 0.01 + 0.008 * f64::from(i)) {
+            p.push(level);
+            c.push(e);
+            f.push(cylinder(level, e) - spring(e) + 2.0 * random.normal());
+        }
+    }
+    let mut columns = Columns::new(p, Trace::Contraction(c), f);
+    columns.time_s = Some((0..columns.force_n.len()).map(|i| f64::from(u32::try_from(i).unwrap())).collect());
+    columns
+}
+
+#[test]
+fn a_bent_effect_has_two_rungs_and_the_second_is_what_its_form_leaves() {
+    let columns = sprung(|e| 500.0 * e * (1.0 + 20.0 * e * e));
+    let diagnosis = found(columns.clone());
+    assert_eq!(names(&diagnosis), ["bladder-axial"], "{}", diagnosis.says);
+    let ladder = &diagnosis.ladder;
+    let steps: Vec<_> = ladder.iter().map(|step| (step.added.as_deref(), step.bent)).collect();
+    let spring = Some("bladder-axial");
+    assert_eq!(steps, [(None, false), (spring, false), (spring, true)]);
+    assert_eq!(ladder[2].held_out_rmse_n, None);
+    assert!(ladder[2].adequate && !ladder[1].adequate && ladder[1].held_out_rmse_n.is_some());
+    // y - F - B c by hand: the closed form, the spring at its number, and what the drawing adds to it.
+    let stiffness = &diagnosis.missing[0].parameters["stiffness"];
+    assert_eq!(stiffness.unit, "N");
+    let Trace::Contraction(contraction) = &columns.motion else { panic!("{:?}", columns.motion) };
+    let curves = &diagnosis.missing[0].form_error.as_ref().unwrap().curves;
+    let record = Record::new(&Data::from_columns(columns.clone()).unwrap(), 0.25);
+    let bending = |row: usize| -> f64 {
+        let moment = &record.moments()[row];
+        let at = |c: &&BentCurve| {
+            (c.pressure_pa - moment.pressure).abs() < 1.0 && (c.direction - moment.branch()).abs() < 0.5
+        };
+        let curve = curves.iter().find(at).unwrap();
+        let is_here = |e: &f64| (e - contraction[row]).abs() < 1e-9;
+        let place = curve.contraction.iter().position(is_here);
+        let place = place.unwrap_or_else(|| panic!("{row} {moment:?} {:?}", curve.contraction));
+        curve.bent_n[place] - curve.formula_n[place]
+    };
+    let left = |row: usize| {
+        let e = contraction[row];
+        columns.force_n[row] - cylinder(columns.pressure_pa[row], e) + stiffness.value * e - bending(row)
+    };
+    let rows = columns.force_n.len();
+    let rmse = ((0..rows).map(|row| left(row).powi(2)).sum::<f64>() / rows as f64).sqrt();
+    assert!((ladder[2].rmse_n / rmse - 1.0).abs() < 1e-9, "{} {rmse}", ladder[2].rmse_n);
+    assert!(rmse < 0.8 * ladder[1].rmse_n && rmse < 2.2, "{ladder:?}");
+    // Of a formula that holds there is one rung.
+    let exact = found(sprung(|e| 500.0 * e));
+    assert_eq!(names(&exact), ["bladder-axial"], "{}", exact.says);
+    assert!(exact.ladder.len() == 2 && exact.ladder[1].adequate, "{:?}", exact.ladder);
+    assert!(exact.ladder.iter().all(|step| !step.bent));
 }
 
 #[test]

@@ -41,6 +41,16 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
 }
 
+/// The regular file that [`write`] would replace, or make, with all links followed; none of a name that stands for something else, or lies in no folder.
+#[must_use]
+pub fn file_of(path: &Path) -> Option<PathBuf> {
+    let Target::File(path) = target(path).ok()? else { return None };
+    if let Ok(found) = fs::canonicalize(&path) {
+        return Some(found);
+    }
+    Some(fs::canonicalize(folder_of(&path)).ok()?.join(path.file_name()?))
+}
+
 /// Forces a folder's list of names to the disk, where the system knows how.
 ///
 /// # Errors
@@ -146,6 +156,29 @@ mod tests {
         fn drop(&mut self) {
             let _ = fs::remove_dir_all(&self.0);
         }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn names_of_one_file_are_told_before_it_is_there() {
+        let folder = Folder::new("same");
+        let at = |name: &str| folder.0.join(name);
+        let own = file_of(&at("a"));
+        assert!(own.as_ref().is_some_and(|path| path.ends_with("a")) && !at("a").exists());
+        assert_ne!(file_of(&at("b")), own);
+        // By another way to the folder, and by a link to what isn't there yet.
+        fs::create_dir_all(at("inner")).unwrap();
+        std::os::unix::fs::symlink("a", at("link")).unwrap();
+        std::os::unix::fs::symlink(at("inner/.."), at("way")).unwrap();
+        for name in ["inner/../a", "./a", "link", "way/a", "way/link"] {
+            assert_eq!(file_of(&at(name)), own, "{name}");
+        }
+        fs::write(at("a"), "here").unwrap();
+        for name in ["a", "inner/../a", "link", "way/link"] {
+            assert_eq!(file_of(&at(name)), own, "{name}");
+        }
+        // What is no regular file, and what lies nowhere.
+        assert_eq!([Path::new("/dev/null"), &at("inner"), &at("none/a")].map(file_of), [None, None, None]);
     }
 
     #[test]

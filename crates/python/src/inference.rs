@@ -199,12 +199,20 @@ pub(crate) fn fit(
     muscle: &Muscle,
     with_: Vec<String>,
     own: &str,
+    form_error: bool,
 ) -> PyResult<String> {
     let options = options(muscle, own, &with_)?;
     let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
-    let fitting = beside(py, None, move |_| inference::fit_effects(&data, &muscle, &options))?;
+    let (of, on, with) = (Arc::clone(&data), muscle.clone(), options.clone());
+    let fitting = beside(py, None, move |_| inference::fit_effects(&of, &on, &with))?;
     let learnt = Learnt::of(fitting.or_raise()?).or_raise()?;
-    serde_json::to_string(&learnt.document()).or_raise()
+    let drawn = if form_error {
+        let drawn = beside(py, None, move |_| inference::drawn_forms(&data, &muscle, &options))?;
+        Some(drawn.or_raise()?)
+    } else {
+        None
+    };
+    serde_json::to_string(&learnt.document().with_drawn(drawn.as_ref())).or_raise()
 }
 
 /// The document of a plan; see `bulge.plan`.

@@ -131,6 +131,56 @@ def test_an_effect_of_ones_own_is_simulated_fitted_and_found(cylinder, protocol)
     assert "hose" in [name for missing in found[0].missing for name in missing["class"]]
 
 
+@pytest.fixture(scope="module")
+def sprung(cylinder, protocol):
+    """A spring that stiffens, which the catalogue has as a straight one."""
+    spring = bulge.Effect("spring", "-k * eps * (1 + 20 * eps^2)", parameters={"k": bulge.Parameter("N", typical=1500, low=0, high=5000)})
+    return bulge.simulate(cylinder, protocol, {"spring": "1500 N"}, own=spring, seed=5)
+
+
+def test_the_form_that_the_data_want_is_an_effect_of_ones_own(sprung, cylinder, tmp_path):
+    fitted = bulge.fit(sprung.data, cylinder, "bladder-axial", form_error=True)
+    (bent,) = fitted.bent
+    assert (bent["effect"], bent["written"]) == ("bladder-axial", "bladder-axial-bent") and bent["says"] in repr(fitted)
+    # What no straight line through the origin follows of the spring; zeros of the rig take a little of it.
+    e = sprung.data.columns["contraction"]
+    force = 1500 * e * (1 + 20 * e**2)
+    rest = force - e * (force @ e) / (e @ e)
+    assert bent["newtons"] == pytest.approx(np.sqrt(np.mean(rest**2)), rel=0.3)
+    assert bent["share"] == pytest.approx(bent["newtons"] / np.sqrt(np.mean(force**2)), rel=0.3)
+    straight = bulge.compare(sprung.data, cylinder, "bladder-axial").ladder[1]["rmse_n"]
+    own = bulge.compare(sprung.data, cylinder, "bladder-axial-bent", own=fitted.drawn)
+    assert own.ladder[1]["rmse_n"] == pytest.approx(2.0, rel=0.2) and straight > 1.5 * own.ladder[1]["rmse_n"]
+    # As a file, as the command line writes it, and elsewhere.
+    file = tmp_path / "bent.toml"
+    file.write_text(fitted.drawn)
+    assert bulge.compare(sprung.data, cylinder, "bladder-axial-bent", own=file).to_json() == own.to_json()
+    assert "95 % interval" in fitted.drawn and fitted.to_dict()["drawn"]["forms"][0]["toml"] == fitted.drawn
+    travelled = pickle.loads(pickle.dumps(fitted))
+    assert (travelled.drawn, travelled.bent, travelled.learnt) == (fitted.drawn, fitted.bent, fitted.learnt)
+
+
+def test_a_formula_that_is_exact_has_no_other_form(sprung, cylinder):
+    fitted = bulge.fit(sprung.data, cylinder, "radius-error", form_error=True)
+    (bent,) = fitted.bent
+    assert (fitted.drawn, bent["share"], bent["newtons"], bent["written"]) == ("", 0, 0, None) and "exact" in bent["says"]
+    plain = bulge.fit(sprung.data, cylinder, "radius-error")
+    assert "drawn" not in plain
+    for ask in (lambda: plain.drawn, lambda: plain.bent):
+        with pytest.raises(bulge.InputError, match="form_error=True"):
+            ask()
+
+
+def test_an_effect_that_is_bent_has_two_rungs(sprung, cylinder):
+    found = bulge.diagnose(sprung.data, cylinder)
+    assert [(rung["added"], rung["bent"]) for rung in found.ladder] == [(None, False), ("bladder-axial", False), ("bladder-axial", True)]
+    assert found.ladder[1]["rmse_n"] > 1.5 * found.ladder[2]["rmse_n"] and found.ladder[2]["held_out_rmse_n"] is None
+    for rung in ("+ bladder-axial, by its formula", "+ bladder-axial, as the data want it"):
+        assert rung in repr(found) and rung in found._repr_html_()
+    pytest.importorskip("matplotlib").use("Agg")
+    assert [bar.get_height() for bar in found.plot().patches] == [rung["rmse_n"] for rung in found.ladder]
+
+
 def test_the_muscle_of_a_simulation_brings_its_own_effects(cylinder, protocol):
     own = bulge.Effect("hose", hose, parameters=NUMBERS, title="Hose")
     made = bulge.simulate(cylinder, protocol, {"hose": {"k": "900 N", "eps_free": "0.1"}}, own=own, seed=5)

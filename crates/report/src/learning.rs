@@ -1,6 +1,6 @@
 //! What a fit has taught: the muscle file that holds it, with where its numbers come from, and the document.
 
-use bulge_inference::{DataSummary, Extension, Fit, Fitting, NoiseFloor, extended};
+use bulge_inference::{DataSummary, DrawnForms, Extension, Fit, Fitting, NoiseFloor, extended};
 use bulge_model::ModelError;
 use bulge_muscles::{Fault, to_toml, units::significant};
 use serde::Serialize;
@@ -64,6 +64,16 @@ pub struct LearntDocument<'a> {
     written: &'a [String],
     left_out: &'a [(String, &'static str)],
     model: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    drawn: Option<&'a DrawnForms>,
+}
+
+impl<'a> LearntDocument<'a> {
+    /// The same with the forms that the data want, as `drawn`; without it where none were asked for.
+    #[must_use]
+    pub fn with_drawn(self, drawn: Option<&'a DrawnForms>) -> Self {
+        Self { drawn, ..self }
+    }
 }
 
 impl Learnt {
@@ -101,6 +111,7 @@ impl Learnt {
             written: &extension.written,
             left_out: &extension.left_out,
             model,
+            drawn: None,
         }
     }
 

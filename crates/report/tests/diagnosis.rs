@@ -264,8 +264,47 @@ fn the_ladder_has_every_number_and_the_floor_of_the_diagnosis() {
     let shown = |row: &[String]| [row[1].clone(), row[3].clone(), row[4].clone()];
     assert_eq!(shown(&rows[0]), ["31.0", "33.0", "no"]);
     assert_eq!(shown(&rows[1]), ["12.0", "12.5", "no"]);
-    assert_eq!(shown(&rows[2]), ["4.20", "4.40", "yes"]);
-    assert!(words(&html).contains("single readings scatter by 4.10 N: no structure is left"));
+    assert_eq!(shown(&rows[2]), ["4.40", "4.50", "no"]);
+    assert_eq!(shown(&rows[3]), ["4.20", "–", "yes"]);
+    // One effect on two rungs, and one whose formula holds on one.
+    let title = |row: usize| &diagnosis.comparison.ladder[row].title;
+    assert_eq!(rows[1][0], format!("{}, by its formula", title(1)));
+    assert_eq!((rows.len(), &rows[2][0]), (4, title(2)));
+    assert_eq!(rows[3][0], format!("{}, as the data want it", title(1)));
+    let says = "The error goes from 31.0 N to 4.40 N by the formulas and to 4.20 N with effects as the data want them, single readings scatter by 4.10 N: no \
+                structure is left";
+    assert!(words(&html).contains(says), "{}", words(&html));
+}
+
+#[test]
+fn the_picture_of_the_ladder_has_a_bar_for_each_form_of_a_bent_effect() {
+    let diagnosis = missing(comparison());
+    let drawn = |diagnosis: &Diagnosis| {
+        let plot = plots(diagnosis).unwrap().swap_remove(0);
+        assert_eq!(plot.name, "ladder");
+        let document = Document::parse(&plot.svg).unwrap();
+        let texts = document.descendants().filter_map(|n| n.text()).map(str::to_owned).collect::<Vec<_>>();
+        let bars = document.descendants().filter(|n| n.has_tag_name("rect"));
+        let bars = bars.filter(|n| n.attribute("height") == Some("16.8"));
+        let widths: Vec<f64> = bars.map(|n| n.attribute("width").unwrap().parse().unwrap()).collect();
+        (texts, widths, plot.caption)
+    };
+    let (texts, widths, caption) = drawn(&diagnosis);
+    let place = |word: &str| texts.iter().position(|text| text == word);
+    let names =
+        ["+ bladder-elasticity, by its formula", "+ bladder-elasticity, as the data want it"].map(place);
+    assert!(names[0].is_some() && names[0] < names[1], "{texts:?}");
+    assert_eq!(widths.len(), 4);
+    let bent = widths[3] / widths[0];
+    assert!((bent / (4.2 / diagnosis.comparison.ladder[0].rmse_n) - 1.0).abs() < 0.02, "{widths:?}");
+    assert!(caption.ends_with("on data held out of the fit that was not tried."), "{caption}");
+    // Where no formula is bent, nothing is said of it.
+    let mut exact = missing(comparison());
+    exact.ladder.pop();
+    let (texts, widths, caption) = drawn(&exact);
+    assert!(
+        texts.iter().all(|text| !text.contains("formula")) && widths.len() == 3 && !caption.contains("bend")
+    );
 }
 
 #[test]

@@ -118,7 +118,7 @@ def _held_out(one):
     """Held-out error after the last step against the noise of the data, which no structure can beat."""
     ratios, first = [], []
     for a in one:
-        errors = [step.get("held_out_rmse_n") for step in a.ladder]
+        errors = [step.get("held_out_rmse_n") for step in a.ladder if not step.get("bent")]
         if a.claims and errors and errors[-1] and a.found(a.hidden[0]):
             ratios.append(errors[-1] / a.truth["noise"]["rms_n"])
             first.append((errors[0] or np.nan) / a.truth["noise"]["rms_n"])

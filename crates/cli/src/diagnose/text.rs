@@ -2,8 +2,8 @@
 
 use bulge_inference::{CandidateResult, Diagnosis, LadderStep, Missing, Verdict};
 use bulge_report::diagnosis::{
-    base_name, bending_says, chance, forms_says, further, headlines, is_significant, noise_says, once_in,
-    others_in_class, remains_says,
+    bending_says, chance, forms_says, further, headlines, is_significant, noise_says, once_in,
+    others_in_class, remains_says, step_name,
 };
 use std::fmt::Write;
 
@@ -136,10 +136,9 @@ fn found(out: &mut String, missing: &Missing, is_claimed: bool) {
     }
 }
 
-/// Errors from the base to the last effect, as `bulge compare` prints them.
+/// Errors from the base to the last effect, as `bulge compare` prints them, and those of effects as the data want them.
 pub(crate) fn ladder(out: &mut String, diagnosis: &Diagnosis) {
-    let base = base_name(diagnosis);
-    let name = |step: &LadderStep| step.added.clone().unwrap_or_else(|| base.clone());
+    let name = |step: &LadderStep| step_name(diagnosis, step);
     let width = diagnosis.ladder.iter().map(|step| name(step).len()).max().unwrap_or(0).max(14);
     let percent =
         |error_n: f64| 100.0 * error_n / diagnosis.comparison.data.full_scale_n.max(f64::MIN_POSITIVE);
@@ -173,8 +172,10 @@ pub(crate) fn ladder(out: &mut String, diagnosis: &Diagnosis) {
         diagnosis.noise.source
     );
     if let Some(directed) = diagnosis.comparison.ladder.last().and_then(|rung| rung.directed_rmse_n) {
-        let says = "without the readings whose direction is in doubt, which count less, the last error is";
-        paragraph(out, "    ", &format!("{says} {} N", three(directed)));
+        let says = "without the readings whose direction is in doubt, which count less, the last error";
+        let is_bent = diagnosis.ladder.iter().any(|step| step.bent);
+        let of = if is_bent { " by the formulas" } else { "" };
+        paragraph(out, "    ", &format!("{says}{of} is {} N", three(directed)));
     }
 }
 
@@ -349,7 +350,7 @@ mod tests {
 
     fn lines(diagnosis: &Diagnosis) -> Vec<String> {
         let text = text(diagnosis, &call());
-        assert!(text.lines().count() <= 48 && !text.contains("NaN"), "{text}");
+        assert!(text.lines().count() <= 49 && !text.contains("NaN"), "{text}");
         text.lines().map(str::to_owned).collect()
     }
 
@@ -376,8 +377,9 @@ mod tests {
             "    ! IMPLAUSIBLE numbers",
             "  Two things are missing.",
             "    equilibrium",
-            "  + bladder-elasticity",
-            "  + coulomb-friction",
+            "  + bladder-elasticity, by its formula",
+            "  + coulomb-friction ",
+            "  + bladder-elasticity, as the data want it",
             "    noise floor",
             "    direction   71 %  p < 0.001    flips sign with direction",
             "  what remains: 0.4 N of systematic misfit (RMS; 95 % interval 0.0 to 1.2 N): no structure",
@@ -411,7 +413,9 @@ mod tests {
         assert_eq!([&base[1], &base[2], &base[5], &base[6], &base[7]], ["31.0", "N", "33.0", "N", "no"]);
         let percent = 100.0 * 31.0 / diagnosis.comparison.data.full_scale_n;
         assert_eq!(base[3], format!("{percent:.2}"));
-        assert_eq!(words("  + coulomb-friction").last().unwrap(), "yes");
+        assert_eq!(words("  + coulomb-friction").last().unwrap(), "no");
+        let bent = words("  + bladder-elasticity, as the data want it");
+        assert_eq!([&bent[7], &bent[8], &bent[11], &bent[12]], ["4.20", "N", "-", "yes"]);
         assert_eq!(words("noise floor")[2..4], ["4.10", "N"]);
     }
 

@@ -19,6 +19,7 @@ use crate::diagnosis::geometry::{Doubt, geometry};
 use crate::diagnosis::ground::{Ground, Stop, effective_rows, ground, ground_again, row_sd};
 use crate::diagnosis::next::{Judged, Limits, NextLimits, next_experiment};
 use crate::diagnosis::not_looked_for::not_looked_for;
+use crate::diagnosis::rungs::bent_rungs;
 use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::Search;
 use crate::diagnosis::stage::Stage;
@@ -249,7 +250,9 @@ fn concluded(
     let last = &search.stages[search.stages.len() - 1].confirmed;
     let comparison = compare_near(analysis, &compared, last.numbers())?;
     progress.at(1.0, "done");
-    let mut diagnosis = document(analysis.muscle, &found, comparison);
+    let above_n = comparison.ladder.last().map_or(f64::INFINITY, |rung| rung.rmse_n);
+    let bent = bent_rungs(analysis, found.shown_stage(), &ground.averaged.groups, above_n)?;
+    let mut diagnosis = document(analysis.muscle, &found, comparison, &bent);
     diagnosis.geometry = geometry(analysis, found.regardless());
     Ok(diagnosis)
 }

@@ -9,6 +9,7 @@ use crate::comparison::document::{Comparison, LeftOut, Mismatch};
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::geometry::Geometry;
 use crate::diagnosis::not_looked_for::NotLookedFor;
+use crate::diagnosis::rungs::TOGETHER;
 use crate::noise::law::NoiseLaw;
 
 /// What is missing in the model of a muscle, by the data.
@@ -33,7 +34,7 @@ pub struct Diagnosis {
     pub nearest: Vec<Missing>,
     /// All effects that were looked at.
     pub candidates: Vec<CandidateResult>,
-    /// Errors from the base to the last effect.
+    /// Errors from the base to the last effect by its formula, then those of the effects as the data want them.
     pub ladder: Vec<LadderStep>,
     /// The error that no model can go below \[N\].
     pub noise_floor_n: f64,
@@ -255,14 +256,23 @@ pub struct CandidateResult {
 /// One rung of the ladder.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LadderStep {
-    /// The effect added; none for the base.
+    /// The effect added, or bent; none for the base.
     pub added: Option<String>,
+    /// Whether the effect has the form that the data want, in the place of its formula, on this rung and on those after it.
+    pub bent: bool,
     /// RMS error \[N\].
     pub rmse_n: f64,
-    /// RMS error on what took no part in the fit \[N\].
+    /// RMS error on what took no part in the fit \[N\]; none of a bent effect.
     pub held_out_rmse_n: Option<f64>,
     /// Whether the data show no structure beyond.
     pub adequate: bool,
+}
+
+impl LadderStep {
+    /// Names of the effects that are added or bent: several where only together they lower the error.
+    pub fn effects(&self) -> impl Iterator<Item = &str> {
+        self.added.iter().flat_map(|added| added.split(TOGETHER))
+    }
 }
 
 /// A variable on which a misfit depends.

@@ -1,6 +1,10 @@
-//! Rungs of a ladder that lower nothing: they are joined with the next one, so that each rung that is shown does something.
+//! The rungs of a diagnosis: those of the effects by their formulas, then those of the effects as the data want them. Each rung that is shown lowers the error.
 
+use crate::comparison::analysis::Analysis;
 use crate::comparison::document::Rung;
+use crate::diagnosis::form_error::Bent;
+use crate::diagnosis::stage::Stage;
+use crate::error::InferenceError;
 
 /// What stands between the names of effects that were added together.
 pub(crate) const TOGETHER: &str = " + ";
@@ -30,9 +34,105 @@ pub(crate) fn join_useless(ladder: &mut Vec<Rung>, known: usize) {
     }
 }
 
+/// Effects that have the form that the data want, on top of those of the rungs before.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct BentRung {
+    /// Their names.
+    pub(crate) effects: Vec<String>,
+    /// RMS error of the rows, measured - (formulas + bending) \[N\].
+    pub(crate) rmse_n: f64,
+}
+
+/// The rungs of the effects of a stage as the data want them, below an error of `above_n`; `groups` are the rows of each mean on which the stage was found.
+pub(crate) fn bent_rungs(
+    analysis: &Analysis<'_>,
+    stage: &Stage,
+    groups: &[Vec<usize>],
+    above_n: f64,
+) -> Result<Vec<BentRung>, InferenceError> {
+    let bent: Vec<&Bent> = stage.scene.form.effects.iter().filter(|bent| bent.may_bend()).collect();
+    if bent.is_empty() {
+        return Ok(Vec::new());
+    }
+    let model = &stage.confirmed;
+    let force = analysis.predicted(&model.prepared, &model.theta)?.prediction.force;
+    let mut residual = vec![f64::NAN; analysis.record.len()];
+    for row in analysis.with_state(&[&force]) {
+        residual[row] = analysis.record.force()[row] - force[row];
+    }
+    let bending: Vec<(&str, &[f64])> =
+        bent.iter().map(|bent| (bent.effect.card().name, &bent.bending[..])).collect();
+    Ok(lowered(&bending, groups, &residual, above_n))
+}
+
+/// Rungs of effects that are bent one after the other, by name and bending of each mean \[N\]. What lowers nothing waits for the next one, and is no rung if nothing follows.
+///
+/// Residuals of rows that don't count are no numbers. Rows in no mean, the later cycles of a long record, are taken to gain as much as the others.
+fn lowered(
+    bending: &[(&str, &[f64])],
+    groups: &[Vec<usize>],
+    residual: &[f64],
+    above_n: f64,
+) -> Vec<BentRung> {
+    let mean_square = |values: &mut dyn Iterator<Item = f64>| {
+        let counted = values.filter(|value| value.is_finite());
+        let (sum, count) = counted.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
+        sum / f64::max(count, 1.0)
+    };
+    let less = |sum: &[f64]| {
+        let rows = groups.iter().zip(sum);
+        mean_square(&mut rows.flat_map(|(rows, bent)| rows.iter().map(move |row| residual[*row] - bent)))
+    };
+    let mut sum = vec![0.0; groups.len()];
+    let beyond = mean_square(&mut residual.iter().copied()) - less(&sum);
+    let mut found: Vec<BentRung> = Vec::new();
+    let mut waiting = Vec::new();
+    for (name, bending) in bending {
+        for (sum, bending) in sum.iter_mut().zip(*bending) {
+            *sum += bending;
+        }
+        waiting.push((*name).to_owned());
+        let rmse_n = (less(&sum) + beyond).max(0.0).sqrt();
+        let above_n = found.last().map_or(above_n, |rung| rung.rmse_n);
+        if rmse_n <= (1.0 - NOTHING) * above_n {
+            found.push(BentRung { effects: std::mem::take(&mut waiting), rmse_n });
+        }
+    }
+    found
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_bent_rung_is_what_the_bending_leaves_of_the_rows() {
+        let groups = [vec![0, 1], vec![2], vec![3, 4, 5]];
+        // Row 3 doesn't count.
+        let residual = [5.0, 3.0, -2.0, f64::NAN, 1.0, 2.0];
+        let (first, second) = (vec![3.0, -1.0, 0.5], vec![0.5, -1.0, 1.0]);
+        let bending = [("a", &first[..]), ("b", &second[..])];
+        let by_hand = |left: [f64; 5]| (left.iter().map(|r| r * r).sum::<f64>() / 5.0).sqrt();
+        let one = by_hand([2.0, 0.0, -1.0, 0.5, 1.5]);
+        let both = by_hand([1.5, -0.5, 0.0, -0.5, 0.5]);
+        let found = lowered(&bending, &groups, &residual, 3.0);
+        assert_eq!(found.iter().map(|rung| rung.effects.concat()).collect::<Vec<_>>(), ["a", "b"]);
+        assert!((found[0].rmse_n - one).abs() < 1e-12 && (found[1].rmse_n - both).abs() < 1e-12, "{found:?}");
+        // What lowers nothing alone is a rung together with what follows, and without that none.
+        let found = lowered(&bending, &groups, &residual, one);
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].effects, ["a", "b"]);
+        assert!((found[0].rmse_n - both).abs() < 1e-12);
+        assert_eq!(lowered(&bending[..1], &groups, &residual, one), []);
+        assert_eq!(lowered(&bending, &groups, &residual, both), []);
+    }
+
+    #[test]
+    fn rows_that_are_in_no_mean_gain_as_much_as_the_others() {
+        let found = lowered(&[("a", &[3.0])], &[vec![0, 1]], &[4.0, 2.0, 6.0, 0.0], 4.0);
+        // 14 on average; rows 0 and 1 go from 10 to 1.
+        assert!((found[0].rmse_n - 5.0_f64.sqrt()).abs() < 1e-12, "{found:?}");
+    }
 
     fn rung(name: &str, rmse_n: f64) -> Rung {
         Rung {

@@ -32,11 +32,16 @@ impl Said {
 impl Findings<'_> {
     /// Effects that the answer shows as added.
     pub(crate) fn shown(&self) -> &[Arc<dyn Effect>] {
-        if self.verdict().0.shows_effects() { &self.last().added } else { &[] }
+        &self.shown_stage().added
     }
 
     pub(crate) fn last(&self) -> &Stage {
         &self.search.stages[self.search.stages.len() - 1]
+    }
+
+    /// The stage of the effects that are shown.
+    pub(crate) fn shown_stage(&self) -> &Stage {
+        if self.verdict().0.shows_effects() { self.last() } else { &self.search.stages[0] }
     }
 
     /// The model that the geometry is read from, whatever doesn't matter.

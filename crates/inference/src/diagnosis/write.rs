@@ -21,7 +21,7 @@ use crate::diagnosis::hints::hints;
 use crate::diagnosis::hypotheses::singles;
 use crate::diagnosis::misfit::{located, misfit};
 use crate::diagnosis::plan::SEEN;
-use crate::diagnosis::rungs::{TOGETHER, join_useless};
+use crate::diagnosis::rungs::{BentRung, TOGETHER, join_useless};
 use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::Search;
 use crate::diagnosis::stage::Stage;
@@ -54,7 +54,12 @@ pub(crate) struct Findings<'a> {
 }
 
 /// The diagnosis.
-pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, mut comparison: Comparison) -> Diagnosis {
+pub(crate) fn document(
+    muscle: &Muscle,
+    found: &Findings<'_>,
+    mut comparison: Comparison,
+    bent: &[BentRung],
+) -> Diagnosis {
     let Findings { given, search, classes, sd_n, .. } = *found;
     join_useless(&mut comparison.ladder, found.known);
     let (verdict, mut says, claimed) = found.verdict();
@@ -64,7 +69,7 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, mut comparison: Co
     // Where no effect is named, none is shown: what is left is what the base leaves.
     let named = verdict.shows_effects();
     let classes = if named { classes } else { &[] };
-    let last = if named { found.last() } else { &search.stages[0] };
+    let last = found.shown_stage();
     let adequate = last.adequate && !last.adequacy.repeats || verdict == Verdict::Adequate;
     let (misfit_n, misfit_interval_n) = misfit(&last.scene, given.seed);
     let left = located(&last.scene);
@@ -96,7 +101,7 @@ pub(crate) fn document(muscle: &Muscle, found: &Findings<'_>, mut comparison: Co
         candidates: found.candidates(classes, &missing),
         missing,
         nearest,
-        ladder: found.ladder(&comparison, adequate && verdict != Verdict::CannotTell),
+        ladder: found.ladder(&comparison, bent, adequate && verdict != Verdict::CannotTell),
         noise_floor_n: sd_n,
         r#where: located(&search.stages[0].scene),
         explained: if named { found.explained() } else { Vec::new() },
@@ -146,29 +151,40 @@ impl Findings<'_> {
         self.search.stages.windows(2).map(step).collect()
     }
 
-    /// The rungs of the base and of the effects that were added.
-    fn ladder(&self, comparison: &Comparison, adequate: bool) -> Vec<LadderStep> {
+    /// The rungs of the base and of the effects that were added, then those of the effects as the data want them.
+    fn ladder(&self, comparison: &Comparison, bent: &[BentRung], adequate: bool) -> Vec<LadderStep> {
         let label = |name: &str| {
             let own = self.last().added.iter().find(|effect| effect.card().name == name);
             own.map_or_else(|| name.to_owned(), |effect| self.label(effect))
         };
-        let last = comparison.ladder.len().saturating_sub(1);
         let rungs = comparison.ladder.iter().enumerate().skip(self.known);
-        rungs
-            .map(|(i, rung)| LadderStep {
-                added: (i > self.known).then(|| {
-                    rung.added
-                        .iter()
-                        .flat_map(|added| added.split(TOGETHER))
-                        .map(label)
-                        .collect::<Vec<_>>()
-                        .join(TOGETHER)
-                }),
-                rmse_n: rung.rmse_n,
-                held_out_rmse_n: rung.held_out_rmse_n,
-                adequate: i == last && adequate,
-            })
-            .collect()
+        let formulas = rungs.map(|(i, rung)| LadderStep {
+            added: (i > self.known).then(|| {
+                rung.added
+                    .iter()
+                    .flat_map(|added| added.split(TOGETHER))
+                    .map(label)
+                    .collect::<Vec<_>>()
+                    .join(TOGETHER)
+            }),
+            bent: false,
+            rmse_n: rung.rmse_n,
+            held_out_rmse_n: rung.held_out_rmse_n,
+            adequate: false,
+        });
+        let bent = bent.iter().map(|rung| LadderStep {
+            added: Some(rung.effects.iter().map(|name| label(name)).collect::<Vec<_>>().join(TOGETHER)),
+            bent: true,
+            rmse_n: rung.rmse_n,
+            held_out_rmse_n: None,
+            adequate: false,
+        });
+        let mut steps: Vec<LadderStep> = formulas.chain(bent).collect();
+        // A stage is adequate with its effects as the data want them.
+        if let Some(last) = steps.last_mut() {
+            last.adequate = adequate;
+        }
+        steps
     }
 
     /// The name under which an effect is reported: hysteresis whose transition is much shorter than the stroke is Coulomb's friction to all intents, with the

@@ -13,7 +13,7 @@ from bulge.effects import OwnEffects, joined, own_text
 from bulge.measurements import Data, DataLike, read
 from bulge.muscle import Muscle, effect_units
 from bulge.progress import Progress, callback
-from bulge.results import Result, number
+from bulge.results import Result, number, rung_names
 from bulge.texts import count, read_text, write_whole
 from bulge.units import Quantity, si, si_range
 
@@ -63,10 +63,9 @@ class _Reported(Result):
 
 
 def _ladder(document: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
-    rows = [
-        [("+ " + rung["added"]) if rung["added"] else "the muscle as stated", number(rung["rmse_n"], 3), number(rung.get("held_out_rmse_n"), 3)]
-        for rung in document["ladder"]
-    ]
+    ladder = document["ladder"]
+    names = rung_names(ladder, "the muscle as stated")
+    rows = [[name, number(rung["rmse_n"], 3), number(rung.get("held_out_rmse_n"), 3)] for name, rung in zip(names, ladder)]
     return ["model", "error [N]", "held out [N]"], rows
 
 
@@ -147,7 +146,11 @@ class Diagnosis(_Reported):
 
 
 class Fit(Result):
-    """Fitted effects: the document of ``bulge fit --json``; ``fit.learnt`` is the muscle with what was learnt."""
+    """Fitted effects: the document of ``bulge fit --json``; ``fit.learnt`` is the muscle with what was learnt.
+
+    With ``form_error=True`` there are ``fit.bent``, how much the data bend the formulas, and ``fit.drawn``, the forms that the data want as effects
+    of one's own.
+    """
 
     _what = "fit"
 
@@ -160,9 +163,39 @@ class Fit(Result):
         """The muscle with what was learnt, for :meth:`Muscle.force`, the next comparison, or a file (``fit.learnt.to_toml("learnt.toml")``)."""
         return Muscle.from_toml(self._document["model"], self._own)
 
+    def _forms(self) -> list[dict[str, Any]]:
+        drawn = self._document.get("drawn")
+        if drawn is None:
+            raise _bulge.InputError("this fit has drawn no forms: ask for them with bulge.fit(..., form_error=True)")
+        forms: list[dict[str, Any]] = drawn["forms"]
+        return forms
+
+    @property
+    def drawn(self) -> str:
+        """The forms that the data want, as the text of an effect file with the drawing in its comments: for ``own=``, or a file for ``--effects``.
+
+        Each effect has the name that :attr:`bent` gives as ``written``. Empty where there is no form to write; ``says`` in :attr:`bent` tells why.
+        """
+        return "\n".join(form["toml"] for form in self._forms() if form["toml"])
+
+    @property
+    def bent(self) -> list[dict[str, Any]]:
+        """How much the data bend the formula of each effect that was fitted.
+
+        ``effect`` is its name, ``share`` the part of the effect by which it is bent (0 where the formula holds, or is exact), ``newtons`` the RMS of
+        what is added to the formula, ``written`` the name of the effect in :attr:`drawn` (None where none is written), ``says`` the same in a sentence.
+        """
+
+        def one(form: dict[str, Any]) -> dict[str, Any]:
+            error = form["form_error"] or {"share": 0.0, "rms_n": 0.0}
+            return {"effect": form["effect"], "share": error["share"], "newtons": error["rms_n"], "written": form["written"], "says": form["says"]}
+
+        return [one(form) for form in self._forms()]
+
     def _lines(self) -> list[str]:
         d = self._document
-        return [f"{d['muscle']} fitted to {', '.join(d['data']['files'])}: error {number(d['before_rmse_n'], 3)} N before, {number(d['rmse_n'], 3)} N after"]
+        lines = [f"{d['muscle']} fitted to {', '.join(d['data']['files'])}: error {number(d['before_rmse_n'], 3)} N before, {number(d['rmse_n'], 3)} N after"]
+        return lines + [form["says"] for form in d.get("drawn", {}).get("forms", [])]
 
     def _tables(self) -> list[tuple[list[str], list[list[str]]]]:
         return [_parameters(self._document["fit"])]
@@ -282,13 +315,17 @@ def diagnose(
         return Diagnosis(_bulge.diagnose(read(data, muscle=muscle)._native, muscle._native, _names(with_), own_text(own), allowed, count("seed", seed, 0), threads, told))
 
 
-def fit(data: DataLike, muscle: Muscle, with_: Iterable[str] | str, *, own: OwnEffects = None) -> Fit:
-    """Fits effects, and gives the muscle that has learnt them: what ``bulge fit`` does. Raises :class:`bulge.NotConvergedError`."""
+def fit(data: DataLike, muscle: Muscle, with_: Iterable[str] | str, *, own: OwnEffects = None, form_error: bool = False) -> Fit:
+    """Fits effects, and gives the muscle that has learnt them: what ``bulge fit`` does. Raises :class:`bulge.NotConvergedError`.
+
+    ``form_error`` also draws the form that the data want of each effect, as ``bulge fit --form-error`` does: :attr:`Fit.bent` says how much the
+    formulas are bent, and :attr:`Fit.drawn` are effects of one's own with these forms.
+    """
     names = _names(with_)
     if not names:
         raise _bulge.InputError("with_: name the effects to fit, such as [\"end-taper\", \"bladder-elasticity\"]")
     text = own_text(own)
-    document = json.loads(_bulge.fit(read(data, muscle=muscle)._native, muscle._native, names, text))
+    document = json.loads(_bulge.fit(read(data, muscle=muscle)._native, muscle._native, names, text, bool(form_error)))
     return Fit(document, joined(muscle._native.own, text))
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bulge.optional import need
+from bulge.results import rung_names
 from bulge.units import Quantities, si_array
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ def ladder(diagnosis: Diagnosis, ax: Any) -> Any:
     """The error of each rung above the noise floor."""
     ax = _axes(ax)
     rungs = diagnosis.ladder
-    names = [f"+ {rung['added']}" if rung["added"] else "as stated" for rung in rungs]
+    names = [name.replace(", ", ",\n") for name in rung_names(rungs, "as stated")]
     ax.bar(names, [rung["rmse_n"] for rung in rungs], color=COLOURS[0], width=0.6)
     floor = diagnosis.noise_floor_n
     if floor:

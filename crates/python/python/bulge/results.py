@@ -85,6 +85,30 @@ def number(value: Any, digits: int = 4) -> str:
     return f"{float(value):.{digits}g}"
 
 
+def rung_names(ladder: list[dict[str, Any]], base: str) -> list[str]:
+    """Names of the rungs of a ladder: an effect that is bent has two, by its formula and as the data want it."""
+
+    def effects(rung: dict[str, Any]) -> set[str]:
+        return set((rung["added"] or "").split(" + ")) - {""}
+
+    bent = {effect for rung in ladder if rung.get("bent") for effect in effects(rung)}
+
+    def name(rung: dict[str, Any]) -> str:
+        own = effects(rung)
+        if not own:
+            return base
+        one = len(own) == 1
+        if rung.get("bent"):
+            form = ", as the data want it" if one else ", as the data want them"
+        elif own & bent:
+            form = ", by its formula" if one else ", by their formulas"
+        else:
+            form = ""
+        return f"+ {rung['added']}{form}"
+
+    return [name(rung) for rung in ladder]
+
+
 def _text_table(heading: list[str], rows: list[list[str]]) -> str:
     widths = [max(len(row[c]) for row in [heading, *rows]) for c in range(len(heading))]
 

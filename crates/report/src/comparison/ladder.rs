@@ -14,6 +14,8 @@ use crate::palette::{ALERT, FIRST, GRID, INK, LAST, SOFT_INK};
 
 /// Room for the names of the rungs and for the numbers.
 const NAMES: f64 = 310.0;
+/// Room for one name with its sign.
+pub(crate) const NAME: f64 = NAMES - 20.0;
 const NUMBERS: f64 = 150.0;
 /// From this ratio on an error on unseen data is worse than that of an earlier rung: less may be chance.
 const MUCH_WORSE: f64 = 1.2;
@@ -98,7 +100,7 @@ fn entries(rungs: &[Rung], has_floor: bool) -> Vec<(Mark, String)> {
 fn draw_rung(svg: &mut Svg, panel: &Panel, rung: &Rung, (y, row): (f64, f64)) {
     let colour = if rung.added.is_some() { LAST } else { FIRST };
     let name = if rung.added.is_some() { format!("+ {}", rung.title) } else { rung.title.clone() };
-    let words = fitted(&name, TEXT, NAMES - 20.0);
+    let words = fitted(&name, TEXT, NAME);
     svg.text((NAMES - 10.0, y), &words, Style::new(Anchor::End));
     let left = panel.across(0.0);
     let thick = 0.6 * row;

@@ -30,7 +30,7 @@ use crate::comparison::Plot;
 
 pub use headline::{bending_says, forms_says, further, headlines, others_in_class};
 pub use next::{NextDocument, NextStep};
-pub use words::{base_name, chance, found_by, is_significant, noise_says, once_in, remains_says};
+pub use words::{base_name, chance, found_by, is_significant, noise_says, once_in, remains_says, step_name};
 
 /// The page: one HTML document with the verdict, all plots and tables, readable on screen and on paper.
 ///

@@ -1,20 +1,44 @@
 //! The ladder of a diagnosis: the error after each effect that was found, as bars and as rows of a table.
 
-use bulge_inference::{Comparison, Diagnosis, LadderStep, NoiseFloor, NoiseSource, Verdict};
+use bulge_inference::{Comparison, Diagnosis, LadderStep, NoiseFloor, NoiseSource, Rung, Verdict};
 use serde::Serialize;
 
 use crate::PlotError;
 use crate::comparison::number::{newton, three};
+use crate::comparison::svg::{TEXT, name_fitted, width};
 use crate::comparison::wording::effect_title;
 use crate::comparison::{Plot, ladder};
-use crate::diagnosis::words::base_name;
+use crate::diagnosis::words::{base_name, form_of_step, step_name};
+
+/// What a bent rung is not.
+const BENT: &str = " The last bars bend the formulas of effects as the data want it and add none; on data held out of the fit that was not tried.";
 
 /// The plot; none without a ladder.
 ///
 /// # Errors
 /// If the errors span more than an axis.
 pub(super) fn plot(diagnosis: &Diagnosis) -> Result<Option<Plot>, PlotError> {
-    ladder::plot(&with_noise(diagnosis))
+    let mut comparison = with_noise(diagnosis);
+    let is_bent = diagnosis.ladder.iter().any(|step| step.bent);
+    // The end of a name says which rung it is; `+ ` stands before it.
+    let name =
+        |step: &LadderStep| name_fitted(&step_name(diagnosis, step), TEXT, ladder::NAME - width("+ ", TEXT));
+    let full_scale = comparison.data.full_scale_n.max(f64::MIN_POSITIVE);
+    for step in diagnosis.ladder.iter().filter(|step| !form_of_step(diagnosis, step).is_empty()) {
+        if step.bent {
+            comparison.ladder.push(Rung {
+                added: step.added.clone(),
+                title: name(step),
+                rmse_n: step.rmse_n,
+                rmse_percent: 100.0 * step.rmse_n / full_scale,
+                ..Rung::default()
+            });
+        } else if let Some(rung) = comparison.ladder.iter_mut().find(|rung| rung.added == step.added) {
+            rung.title = name(step);
+        }
+    }
+    let plot = ladder::plot(&comparison)?;
+    Ok(plot.map(|plot| if is_bent { Plot { caption: plot.caption + BENT, ..plot } } else { plot }))
 }
 
 /// The comparison with the noise floor of the diagnosis, which knows more of the noise.
@@ -46,7 +70,7 @@ pub(super) fn rows(diagnosis: &Diagnosis) -> Vec<Row> {
     let row = |step: &LadderStep| Row {
         title: step.added.as_deref().map_or_else(
             || base_name(diagnosis),
-            |added| effect_title(&diagnosis.comparison, added).to_owned(),
+            |added| effect_title(&diagnosis.comparison, added).to_owned() + form_of_step(diagnosis, step),
         ),
         added: step.added.clone().unwrap_or_default(),
         rmse: three(step.rmse_n),
@@ -79,8 +103,14 @@ pub(super) fn says(diagnosis: &Diagnosis) -> String {
             enough(first)
         );
     }
+    let formulas = diagnosis.ladder.iter().rfind(|step| !step.bent).unwrap_or(first);
+    let formulas = match (formulas.added.is_some(), last.bent) {
+        (true, true) => format!(" to {} by the formulas{directed} and", newton(formulas.rmse_n)),
+        _ => String::new(),
+    };
+    let reached = if last.bent { " with effects as the data want them" } else { &*directed };
     format!(
-        "The error goes from {} to {}{directed}, single readings scatter by {floor}: {}.",
+        "The error goes from {}{formulas} to {}{reached}, single readings scatter by {floor}: {}.",
         newton(first.rmse_n),
         newton(last.rmse_n),
         enough(last)

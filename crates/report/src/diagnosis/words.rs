@@ -1,6 +1,6 @@
 //! Sentences and numbers of a diagnosis that page and command line share: plain letters, no markup.
 
-use bulge_inference::{CorrelationTime, Diagnosis, Verdict};
+use bulge_inference::{CorrelationTime, Diagnosis, LadderStep, Verdict};
 
 use crate::comparison::number::{count, newton, three};
 use crate::interval::with_interval;
@@ -42,10 +42,32 @@ pub fn found_by(source: &str) -> &str {
 #[must_use]
 pub fn base_name(diagnosis: &Diagnosis) -> String {
     let comparison = &diagnosis.comparison;
-    let added = diagnosis.ladder.iter().filter(|step| step.added.is_some()).count();
+    let added = diagnosis.ladder.iter().filter(|step| step.added.is_some() && !step.bent).count();
     let has = comparison.ladder.len().saturating_sub(added);
     let effects = comparison.ladder.iter().take(has).filter_map(|rung| rung.added.as_deref());
     std::iter::once(comparison.base.as_str()).chain(effects).collect::<Vec<_>>().join(" + ")
+}
+
+/// A rung of the ladder: the base, the effect that it adds, and where an effect is bent, whether it is `coulomb-friction, by its formula` or
+/// `coulomb-friction, as the data want it`.
+#[must_use]
+pub fn step_name(diagnosis: &Diagnosis, step: &LadderStep) -> String {
+    step.added
+        .as_ref()
+        .map_or_else(|| base_name(diagnosis), |added| format!("{added}{}", form_of_step(diagnosis, step)))
+}
+
+/// What `step_name` says after the name of an effect.
+pub(super) fn form_of_step(diagnosis: &Diagnosis, step: &LadderStep) -> &'static str {
+    let mut bent = diagnosis.ladder.iter().filter(|step| step.bent).flat_map(LadderStep::effects);
+    let mut is_bent_later = || bent.any(|name| step.effects().any(|own| own == name));
+    match (step.bent, step.effects().count() > 1) {
+        (true, false) => ", as the data want it",
+        (true, true) => ", as the data want them",
+        (false, false) if is_bent_later() => ", by its formula",
+        (false, true) if is_bent_later() => ", by their formulas",
+        (false, _) => "",
+    }
 }
 
 /// The noise in a sentence: its size, over what it is correlated, where it is from, and how many rows count.

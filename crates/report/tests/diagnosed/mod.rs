@@ -8,7 +8,7 @@ use bulge_inference::{
     Verdict,
 };
 
-/// Rubber and friction are missing; the second and third rungs of the comparison.
+/// Rubber and friction are missing, the second and third rungs of the comparison; rubber of another form than its formula's.
 pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
     comparison.ladder.truncate(3);
     Diagnosis {
@@ -35,7 +35,12 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
         ladder: vec![
             step(None, 31.0, 33.0, false),
             step(Some("bladder-elasticity"), 12.0, 12.5, false),
-            step(Some("coulomb-friction"), 4.2, 4.4, true),
+            step(Some("coulomb-friction"), 4.4, 4.5, false),
+            LadderStep {
+                bent: true,
+                held_out_rmse_n: None,
+                ..step(Some("bladder-elasticity"), 4.2, 0.0, true)
+            },
         ],
         noise_floor_n: 4.1,
         r#where: vec![
@@ -226,7 +231,8 @@ fn candidates() -> Vec<CandidateResult> {
 }
 
 fn step(added: Option<&str>, rmse_n: f64, held_out: f64, adequate: bool) -> LadderStep {
-    LadderStep { added: added.map(str::to_owned), rmse_n, held_out_rmse_n: Some(held_out), adequate }
+    let added = added.map(str::to_owned);
+    LadderStep { added, bent: false, rmse_n, held_out_rmse_n: Some(held_out), adequate }
 }
 
 fn located(variable: &str, share: f64, p: f64, says: &str) -> Located {
