@@ -45,18 +45,25 @@ class Setting:
 
 def build(order, seed, folder, exact=False):
     """Builds the case of an order and writes it to folder/<name>; `exact` states widths of 0 where none are. Returns its truth."""
+    setting, world, truth, rng = draw(order, seed)
+    _write(order, rng, setting, world, truth, folder, exact)
+    return truth
+
+
+def draw(order, seed):
+    """The test of an order, the world with the hidden effects, the truth about it, and random numbers for its noise."""
     reason = None
     for attempt in range(ATTEMPTS):
         rng = np.random.default_rng([seed, zlib.crc32(order.name.encode()), attempt])
         least = QUIETEST[min(attempt // 8, len(QUIETEST) - 1)]
         try:
-            return _build_once(order, rng, folder, least, exact, attempt < PLAIN_ATTEMPTS)
+            return _draw_once(order, rng, least, attempt < PLAIN_ATTEMPTS)
         except (Unsuitable, NoEquilibrium, OutsideWindow) as problem:
             reason = problem
     raise RuntimeError(f"case {order.name}: none of {ATTEMPTS} draws is suitable; the last: {reason}")
 
 
-def _build_once(order, rng, folder, least, exact, plain):
+def _draw_once(order, rng, least, plain):
     chosen = order.hidden or _choose(order, rng)
     strengths = order.strengths or tuple(float(np.exp(rng.uniform(np.log(12.0), np.log(120.0)))) for _ in chosen)
     if order.kind == "beside":
@@ -78,8 +85,7 @@ def _build_once(order, rng, folder, least, exact, plain):
     truth = _truth(order, setting, world, chosen, strengths)
     if plain and any(entry.get("nearer") for entry in truth["hidden"]):
         raise Unsuitable("another effect's exact formula is nearer to the data than that of the hidden one")
-    _write(order, np.random.default_rng(draws[2]), setting, world, truth, folder, exact)
-    return truth
+    return setting, world, truth, np.random.default_rng(draws[2])
 
 
 def _choose(order, rng):
@@ -169,7 +175,7 @@ def _hide(rng, setting, chosen, strengths):
             alone = setting.world.formed(Drawn(one, one.draw(rng, setting.scales)), 0.0)
         else:
             alone = setting.world
-        limit = _limit(name, setting)
+        limit = limit_of(name, setting)
         amplitude, found = _amplitude(metric, alone, name, sign * min(effect.scale, 0.2 * limit), limit, effect.power, strength)
         if form != "exact":
             world = world.formed(alone.forms[name], amplitude)
@@ -179,7 +185,7 @@ def _hide(rng, setting, chosen, strengths):
     return world, 1.0 if lacking > 1.0 - 2.0 * CLOSE else lacking
 
 
-def _limit(name, setting):
+def limit_of(name, setting):
     """Largest plausible amplitude: some go with the muscle's size."""
     muscle = setting.world.muscle
     relative = {
@@ -237,7 +243,7 @@ def _under_load(setting, world, chosen, strengths):
         found = setting.metric.norm(world.force(path) - setting.metric.base)
         if abs(found / strengths[0] - 1.0) < CLOSE:
             break
-        off, limit = setting.world.amplitudes.get(name, 0.0), _limit(name, setting)
+        off, limit = setting.world.amplitudes.get(name, 0.0), limit_of(name, setting)
         change = (strengths[0] / max(found, 1e-9)) ** (1.0 / EFFECTS[name].power)
         world = world.changed({name: off + float(np.clip((world.size(name) - off) * change, -limit, limit))})
     return setting, world

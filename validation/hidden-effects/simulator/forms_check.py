@@ -6,9 +6,10 @@ from pathlib import Path as Folder
 
 import numpy as np
 from scipy.integrate import quad, solve_ivp
+from scipy.special import ndtr
 from scipy.stats import laplace, t, uniform
 
-from . import forms_metrics, forms_rig, forms_time
+from . import forms_bound, forms_metrics, forms_rig, forms_time
 from .forms import FOLDS, Drawn, Form, State, all_forms, fold
 from .forms_case import build
 from .forms_design import HeldLoad, carried, loaded
@@ -301,6 +302,42 @@ def score():
     return float(broken)
 
 
+def told_apart():
+    """Two shapes of strength d at an angle of cosine c are told apart in Phi(d sqrt((1 - c)/2)) of all noises; beside what shares their part in common as well."""
+    worst, rng = 0.0, np.random.default_rng(7)
+    for d, cosine in ((20.0, 0.995), (12.0, 0.97), (40.0, 0.9999)):
+        truth, rival = np.array([d, 0.0, 0.0]), np.array([cosine, np.sqrt(1.0 - cosine**2), 0.0])
+        noise = rng.standard_normal((40_000, 3))
+        for others in (np.empty((0, 3)), np.array([[0.0, 0.0, 2.0]])):
+            own, found = forms_bound.compared(truth, others, rival[None, :], ["creep"], ["creep alone"], np.array([np.inf]), noise)
+            worst = max(worst, abs(np.mean(own > found["creep"]) - ndtr(d * np.sqrt(0.5 * (1.0 - cosine)))))
+    # With the second direction known to be there, only the first is left to tell: nothing.
+    own, found = forms_bound.compared(truth, np.array([[0.0, 1.0, 0.0]]), rival[None, :], ["creep"], ["creep alone"], np.array([np.inf]), noise)
+    return float(max(worst, np.abs(own - found["creep"]).max()))
+
+
+def evidence_of_a_form():
+    """Evidence of a form of two draws against the integral over their deviation, at the best size."""
+    rng, worst = np.random.default_rng(8), 0.0
+    for strength in (5.0, 20.0):
+        draws = np.array([[1.0, 0.1, 0.0], [1.0, -0.1, 0.05]])
+        data = strength * np.array([1.0, 0.03, 0.0]) + rng.standard_normal(3)
+        units = draws / np.linalg.norm(draws, axis=1)[:, None]
+        mean = units.mean(axis=0)
+        away = units[0] - mean, units[1] - mean
+        sizes, best = np.linspace(0.5, 2.0, 601) * strength, -np.inf
+        c = np.linspace(-8.0, 8.0, 4001)
+        along = np.sqrt(np.sum(np.square(away), axis=0))
+        direction = along * np.sign(away[0])
+        for size in sizes:
+            left = data - size * (mean + c[:, None] * direction)
+            density = np.exp(-0.5 * np.sum(left**2, axis=1) - 0.5 * c**2 + 0.5 * data @ data) / np.sqrt(2.0 * np.pi)
+            best = max(best, np.log(np.trapezoid(density, c)))
+        found = forms_bound.evidence(data[None, :], draws, np.array([np.inf, np.inf]), 1)
+        worst = max(worst, abs(found[0] - best))
+    return float(worst)
+
+
 CHECKS = [
     ("forms: derivatives of the skins by differences", skin_derivatives, 1e-8),
     ("forms: Yeoh, Gent, Ogden, prestretched and thick skins tend to neo-Hooke", skin_limits, 1e-3),
@@ -319,6 +356,8 @@ CHECKS = [
     ("forms: losses of a line at the reference pressure", line_losses, 1e-12),
     ("forms: three forms in three folds for each effect, counts of the suite", promises, 0.0),
     ("forms: strengths reached by built cases", reached, 0.05),
+    ("bound of the forms: two shapes told apart as the normal law says", told_apart, 0.01),
+    ("bound of the forms: evidence of a form by quadrature", evidence_of_a_form, 0.02),
     ("score of the forms: families, mechanisms, several effects, confidence", score, 0.0),
 ]
 """Title, check and tolerance."""
