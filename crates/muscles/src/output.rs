@@ -41,7 +41,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
 }
 
-/// The regular file that [`write`] would replace, or make, with all links followed; none of a name that stands for something else, or lies in no folder.
+/// The regular file that [`write()`] would replace, or make, with all links followed; none of a name that stands for something else, or lies in no folder.
 #[must_use]
 pub fn file_of(path: &Path) -> Option<PathBuf> {
     let Target::File(path) = target(path).ok()? else { return None };
