@@ -119,13 +119,13 @@ impl Form {
         }
     }
 
-    /// The largest standard deviation of the relative error of the form: an effect that would have to be bent by more is another effect.
+    /// The largest standard deviation of the relative error of the form in each of the ways in which it may be wrong.
     #[must_use]
     pub const fn largest_error(self) -> f64 {
         match self {
             Self::Exact => 0.0,
             Self::Near => 0.05,
-            Self::Loose => 0.4,
+            Self::Loose => 0.1,
         }
     }
 
@@ -135,7 +135,7 @@ impl Form {
         match self {
             Self::Exact => "exact: only its numbers can be wrong",
             Self::Near => "near: a real effect of this kind may differ from the formula by 5 %",
-            Self::Loose => "loose: a real effect of this kind may differ from the formula by 40 %",
+            Self::Loose => "loose: a real effect of this kind may differ from the formula by 10 %",
         }
     }
 }
@@ -155,7 +155,7 @@ mod tests {
             assert_eq!(written(toml::Value::try_from(form).unwrap()), form.name());
             assert!(form.says().starts_with(form.name()));
         }
-        for (form, percent) in [(Form::Exact, 0.0), (Form::Near, 5.0), (Form::Loose, 40.0)] {
+        for (form, percent) in [(Form::Exact, 0.0), (Form::Near, 5.0), (Form::Loose, 10.0)] {
             assert!((100.0 * form.largest_error() - percent).abs() < 1e-12);
             assert_eq!(form.says().contains(&format!("by {percent} %")), percent > 0.0);
         }

@@ -483,7 +483,7 @@ fn documents_hold_numbers_in_shown_units() {
     // Exactly: 0.3, not 0.30000000000000004.
     let shown = [modulus.low, modulus.typical, modulus.high, modulus.off].map(|value| value.to_string());
     assert_eq!(shown, ["0", "0.3", "3", "0"]);
-    assert_eq!((modulus.prior, modulus.plausible), (Some([0.3, 0.3]), Some([0.03, 1.2])));
+    assert_eq!((modulus.prior, modulus.plausible), (Some([0.3, 0.3]), Some([0.01, 1.2])));
     let radius = CardDocument::of(catalogue.find("end-radius").unwrap().as_ref());
     assert_eq!(radius.parameters[0].multiple_of, Some(Parameter::FittingRadius.name()));
     assert_eq!((radius.parameters[0].low, radius.parameters[0].off), (0.5, 1.0));

@@ -49,7 +49,8 @@ impl Effect for BladderElasticity {
             ParameterCard::new("modulus", MEGAPASCAL, (0.0, 3.0), 0.3, about)
                 .key("c10")
                 .prior(0.3, 0.3)
-                .plausible(0.03, 1.2),
+                // From a soft silicone (Ecoflex 00-30: 69 kPa at 100 %, six times c10) to a hard polyurethane.
+                .plausible(0.01, 1.2),
         ]
     }
 

@@ -160,12 +160,24 @@ impl Given<'_> {
         };
         let member = |one: &&Tried| matches!(&one.hypothesis.effects[..], [only] if new.len() > 1 && tried.hypothesis.effects.contains(only));
         let alone = stage.tried.iter().filter(member).filter_map(|one| one.confirmed.as_ref());
-        if alone.into_iter().any(mends) || !stage.added.is_empty() && mends(&stage.confirmed) {
+        // Where the second of a pair only mends the formula of the first, there is one effect.
+        if alone.into_iter().any(mends) {
+            let best = ranked(&stage.tried).into_iter().find(|(one, _)| one.hypothesis.effects.len() == 1);
+            return best.and_then(|(one, confirmed)| self.step(stages, one, confirmed));
+        }
+        let mends = !stage.added.is_empty() && mends(&stage.confirmed);
+        // No error of a formula: beside all that bends them it is seen, and nothing that nobody thought of would do as well.
+        let lead =
+            tried.hypothesis.log_evidence.min(tried.log_evidence - stage.something_else() - RULE.no_bending);
+        if mends && (new.len() > 1 || lead <= worth) {
             return None;
         }
         let mut added = stage.added.clone();
         added.extend(new);
         let next = self.stage(added, confirmed.clone()).ok()?;
+        if mends && !next.adequate {
+            return None;
+        }
         // Where something unknown remains, its scatter counts as noise: a step must stand out of that too.
         let stands_out = tempered(tried.log_evidence, gain, next.scatter()) > worth;
         Some((next, stands_out, tried.log_evidence))
@@ -298,10 +310,14 @@ fn lower(one: Option<Confirmed>, other: Option<Confirmed>) -> Option<Confirmed> 
 fn ranked(tried: &[Tried]) -> Vec<(&Tried, &Confirmed)> {
     let mut list: Vec<(&Tried, &Confirmed)> =
         tried.iter().filter_map(|t| Some((t, t.confirmed.as_ref()?))).collect();
+    let is_single = |(t, _): &&(&Tried, &Confirmed)| t.hypothesis.effects.len() == 1;
+    let best = list.iter().filter(is_single).max_by(|a, b| a.0.log_evidence.total_cmp(&b.0.log_evidence));
+    let of_single = best.map_or(0.0, |(_, confirmed)| confirmed.form.log_evidence);
     let worth = |(t, c): &(&Tried, &Confirmed)| {
-        t.log_evidence
-            - RULE.pair * (t.hypothesis.effects.len() as f64 - 1.0)
-            - RULE.by_bending * c.form.log_evidence
+        let further = t.hypothesis.effects.len() as f64 - 1.0;
+        // A pair is no better for being exact where one bent formula does as well.
+        let bending = if further > 0.0 { c.form.log_evidence.max(of_single) } else { c.form.log_evidence };
+        t.log_evidence - RULE.pair * further - RULE.by_bending * bending
     };
     list.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     list
