@@ -1,11 +1,13 @@
 """Runs `bulge diagnose --json`, or another command, on the cases of a suite.
 
     python run.py DIR RESULTS --bulge PATH [--command diagnose] [--limit SECONDS] [--jobs 2] [--only REGEX] [--again]
+        [--among-truth]
 
 A case is a folder with a truth.json; its file `args` holds the arguments of the command, one a line, else these are `data.csv --muscle muscle.toml`.
 RESULTS/<case>.json is the answer, times.json the seconds of each case, inputs.json a checksum of the program and the files that it answered on,
 failures.json what the program said where there is no answer. A case is skipped if this program has answered on these files already, unless --again
-is given. Each case runs on one thread; the cases are what runs in parallel. Every file appears whole or not at all. Failures are listed at the end,
+is given. With --among-truth the hidden effects are the only ones that are looked for: what the program can say of them at best; cases that hide none of
+the catalogue are left out. Each case runs on one thread; the cases are what runs in parallel. Every file appears whole or not at all. Failures are listed at the end,
 and make the exit status 1; after Ctrl-C (exit status 130) the same command goes on where it stopped.
 """
 
@@ -38,17 +40,20 @@ def main():
     parser.add_argument("--jobs", type=int, default=2, help="cases at a time")
     parser.add_argument("--only", default="", help="regular expression that the names of the cases must contain")
     parser.add_argument("--again", action="store_true", help="run cases that are answered already")
+    parser.add_argument("--among-truth", action="store_true", help="look for the hidden effects only")
     arguments = parser.parse_args()
     program = shutil.which(arguments.bulge)
     if program is None:
         parser.error(f"{arguments.bulge!r} is no program; say where it is: --bulge PATH")
     cases = sorted(p.parent for p in arguments.folder.glob("*/truth.json") if re.search(arguments.only, p.parent.name))
+    if arguments.among_truth:
+        cases = [case for case in cases if _hidden(case)]
     if not cases:
         parser.error(f"{arguments.folder} holds no case called like {arguments.only!r}")
     # A polite request to end is Ctrl-C.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     arguments.results.mkdir(parents=True, exist_ok=True)
-    run = Run(os.path.abspath(program), arguments.results, arguments.command, arguments.limit)
+    run = Run(os.path.abspath(program), arguments.results, arguments.command, arguments.limit, arguments.among_truth)
     try:
         return run.all(cases, arguments.jobs, arguments.again)
     except KeyboardInterrupt:
@@ -59,8 +64,9 @@ def main():
 class Run:
     """A program at work on cases: what it answered, how long that took, what is running."""
 
-    def __init__(self, program, results, command, limit):
+    def __init__(self, program, results, command, limit, among_truth=False):
         self.program, self.results, self.command, self.limit = program, results, command, limit
+        self.among_truth = among_truth
         self.checksum = hashlib.sha256(Path(program).read_bytes()).hexdigest()
         self.times, self.inputs = _numbers(results / "times.json"), _numbers(results / "inputs.json")
         self.failures = _numbers(results / "failures.json")
@@ -93,7 +99,7 @@ class Run:
 
     def _fingerprint(self, case):
         """Checksum of the program and of what it reads."""
-        digest = hashlib.sha256(self.checksum.encode())
+        digest = hashlib.sha256((self.checksum + "among truth" * self.among_truth).encode())
         for file in _inputs(case):
             digest.update(hashlib.sha256(file.read_bytes()).digest())
         return digest.hexdigest()
@@ -101,7 +107,8 @@ class Run:
     def _diagnose(self, case):
         """Seconds, and what went wrong or None."""
         words = (case / "args").read_text(encoding="utf-8").splitlines() if (case / "args").exists() else USUAL
-        command = [self.program, self.command, *words, "--json"]
+        among = ["--among", ",".join(_hidden(case))] if self.among_truth else []
+        command = [self.program, self.command, *words, *among, "--json"]
         started = time.monotonic()
         # A session of its own: Ctrl-C reaches this program, which then ends the others.
         process = subprocess.Popen(
@@ -149,6 +156,12 @@ class Run:
         for process in list(self.running):
             with contextlib.suppress(ProcessLookupError):
                 process.terminate()
+
+
+def _hidden(case):
+    """Names of the hidden effects that the catalogue has."""
+    hidden = json.loads((case / "truth.json").read_text(encoding="utf-8"))["hidden"]
+    return [entry["effect"] for entry in hidden if entry["family"]]
 
 
 def _inputs(case):

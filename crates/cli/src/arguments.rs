@@ -153,3 +153,10 @@ pub(crate) fn catalogue(own: Option<&Path>) -> Result<Catalogue, Failure> {
 pub(crate) fn effects(catalogue: &Catalogue, names: &[String]) -> Result<Vec<Arc<dyn Effect>>, Failure> {
     names.iter().map(|name| Ok(Arc::clone(catalogue.find(name.trim())?))).collect()
 }
+
+/// Names of the effects to which a search is restricted; none if it isn't.
+pub(crate) fn among(catalogue: &Catalogue, names: &[String]) -> Result<Option<Vec<String>>, Failure> {
+    let found = effects(catalogue, names)?;
+    let names: Vec<String> = found.iter().map(|effect| effect.card().name.to_owned()).collect();
+    Ok((!names.is_empty()).then_some(names))
+}

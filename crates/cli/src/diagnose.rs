@@ -30,6 +30,9 @@ pub(crate) struct DiagnoseCommand {
     /// Effects that the model has already: `--with end-taper,bladder-elasticity`
     #[arg(long, value_delimiter = ',', value_name = "EFFECT")]
     with: Vec<String>,
+    /// Looks for these effects only, such as those that a hypothesis is about: `--among creep,coulomb-friction`
+    #[arg(long, value_delimiter = ',', value_name = "EFFECT")]
+    among: Vec<String>,
     /// Your own effects, as expressions in a TOML file: they are looked for too
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
@@ -53,13 +56,14 @@ impl DiagnoseCommand {
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
+        let among = arguments::among(&catalogue, &self.among)?;
         let data = self.data.read(&muscle)?;
         let known = known(&muscle, &catalogue)?;
         let base = Options { known, ..Options::new(catalogue, effects) };
         let bar = Bar::new(self.json);
         let progress = bar.progress();
         let options =
-            DiagnoseOptions { tolerance_n, seed: self.seed, progress, ..DiagnoseOptions::new(base) };
+            DiagnoseOptions { among, tolerance_n, seed: self.seed, progress, ..DiagnoseOptions::new(base) };
         let found = diagnose(&data, &muscle, &options)?;
         drop(bar);
         let document = serde_json::to_string_pretty(&found)? + "\n";

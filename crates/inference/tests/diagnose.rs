@@ -129,6 +129,30 @@ fn two_effects_are_both_named() {
     assert_eq!(again.verdict, Verdict::Adequate, "{}", again.says);
 }
 
+/// Friction of 200 sigma, and creep that explains half a per cent of what friction does: less than an error of the formula of friction might, but no error of it.
+#[test]
+fn a_weak_effect_beside_a_strong_one_is_named_where_nothing_remains() {
+    let hidden: [(&str, &[f64]); 2] = [("coulomb-friction", &[8.0]), ("creep", &[1.0])];
+    let found = diagnosed(&measured(&hidden, &protocol(1.0, 0.0), 3));
+    assert_eq!(names(&found), ["coulomb-friction", "creep"], "{}", found.says);
+}
+
+#[test]
+fn among_some_effects_the_right_one_is_named_and_a_wrong_one_is_not() {
+    let data = measured(&[("coulomb-friction", &[6.0])], &protocol(2.0, 0.0), 3);
+    let among = |names: &[&str]| {
+        let among = Some(names.iter().map(|name| (*name).to_owned()).collect());
+        let base = Options::new(Catalogue::builtin(), Vec::new());
+        diagnose(&data, &muscle(), &DiagnoseOptions { among, ..DiagnoseOptions::new(base) }).unwrap()
+    };
+    let right = among(&["coulomb-friction", "creep"]);
+    assert_eq!(names(&right), ["coulomb-friction"], "{}", right.says);
+    assert_eq!(right.candidates.len(), 2);
+    let wrong = among(&["end-taper", "creep"]);
+    assert_eq!(wrong.verdict, Verdict::Unknown, "{}", wrong.says);
+    assert!(wrong.warnings[0].contains("end-taper, creep alone"), "{:?}", wrong.warnings);
+}
+
 #[test]
 fn too_few_rows_name_nothing() {
     let csv = |rows: usize| {

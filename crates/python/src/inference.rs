@@ -122,6 +122,7 @@ pub(crate) fn compare(
 /// The options of a diagnosis.
 struct Asked {
     base: Options,
+    among: Option<Vec<String>>,
     tolerance_n: Option<f64>,
     seed: u64,
     limits: NextLimits,
@@ -138,9 +139,10 @@ fn diagnosed(
 ) -> PyResult<inference::Diagnosis> {
     let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
     let found = beside_on(py, progress, threads, move |watch| {
-        let Asked { base, tolerance_n, seed, limits } = asked;
+        let Asked { base, among, tolerance_n, seed, limits } = asked;
         let progress = telling(watch);
-        let options = DiagnoseOptions { tolerance_n, seed, limits, progress, ..DiagnoseOptions::new(base) };
+        let base = DiagnoseOptions::new(base);
+        let options = DiagnoseOptions { among, tolerance_n, seed, limits, progress, ..base };
         inference::diagnose(&data, &muscle, &options)
     })?;
     found.or_raise()
@@ -155,6 +157,7 @@ pub(crate) fn diagnose(
     muscle: &Muscle,
     with_: Vec<String>,
     own: &str,
+    among: Vec<String>,
     tolerance: Option<f64>,
     seed: u64,
     threads: Option<usize>,
@@ -164,7 +167,10 @@ pub(crate) fn diagnose(
         return Err(input("tolerance: give the RMS misfit that doesn't matter, such as \"5 N\""));
     }
     let base = options(muscle, own, &with_)?;
-    let asked = Asked { base, tolerance_n: tolerance, seed, limits: NextLimits::default() };
+    let named = |name: &String| base.catalogue.find(name.trim()).or_raise().map(|e| e.card().name.to_owned());
+    let among = among.iter().map(named).collect::<PyResult<Vec<String>>>()?;
+    let among = (!among.is_empty()).then_some(among);
+    let asked = Asked { base, among, tolerance_n: tolerance, seed, limits: NextLimits::default() };
     Ok(Diagnosis(diagnosed(py, data, muscle, asked, threads, progress)?))
 }
 
@@ -186,7 +192,7 @@ pub(crate) fn next_experiment(
     limits.check().map_err(|(name, what)| input(format!("{name}: {what}")))?;
     let base = options(muscle, own, &with_)?;
     let catalogue = base.catalogue.clone();
-    let asked = Asked { base, tolerance_n: None, seed, limits };
+    let asked = Asked { base, among: None, tolerance_n: None, seed, limits };
     let found = diagnosed(py, data, muscle, asked, None, progress)?;
     serde_json::to_string(&NextStep::after(&found, &catalogue, limits).document()).or_raise()
 }

@@ -93,6 +93,10 @@ def test_the_hidden_effects_are_named(rubbed, diagnosed):
 def test_what_is_known_is_not_missing(rubbed):
     found = bulge.diagnose(rubbed.data, rubbed.muscle, "bladder-elasticity")
     assert found.names == ["coulomb-friction"]
+    among = bulge.diagnose(rubbed.data, rubbed.muscle, "bladder-elasticity", among=["coulomb-friction", "creep"])
+    assert among.names == ["coulomb-friction"] and {c["effect"] for c in among.to_dict()["candidates"]} == {"coulomb-friction", "creep"}
+    with pytest.raises(bulge.InputError, match="frictoin"):
+        bulge.diagnose(rubbed.data, rubbed.muscle, among="frictoin")
     # 14 N of friction are no matter where 100 N are none.
     assert bulge.diagnose(rubbed.data, rubbed.muscle, tolerance="100 N").verdict == "adequate"
     with pytest.raises(bulge.InputError, match="tolerance"):

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use crate::chebyshev::chebyshev;
 use crate::diagnosis::confirm::roles;
-use crate::diagnosis::showing::{Showings, spread};
+use crate::diagnosis::sensitivity::{Sensitivities, spread};
 use crate::diagnosis::smooth::{drives_pressure, over_range, scaled, ways_to_reversals};
 use crate::diagnosis::tangents::Tangents;
 use crate::dot::dot;
@@ -341,11 +341,12 @@ impl Bent<'_> {
         if members.is_empty() {
             return Vec::new();
         }
-        let found = Showings::of(self.catalogue, Some(&members), self.prepared, self.theta, self.tangent);
+        let found =
+            Sensitivities::of(self.catalogue, Some(&members), self.prepared, self.theta, self.tangent);
         let mut columns = Vec::new();
         for member in 0..found.effects.len() {
             let own: Vec<&Vec<f64>> =
-                found.showings.iter().filter(|s| s.effect == member).flat_map(|s| &s.columns).collect();
+                found.sensitivities.iter().filter(|s| s.effect == member).flat_map(|s| &s.columns).collect();
             let step = own.len().div_ceil(OF_MEMBER).max(1);
             columns.extend(own.into_iter().step_by(step).cloned());
         }

@@ -5,7 +5,7 @@
 //! log evidence = S/2 + log prior(a) + (k/2) log 2 pi - (1/2) log |s's|
 //! ```
 
-use crate::diagnosis::showing::{Showing, Showings, Sign, Size};
+use crate::diagnosis::sensitivity::{Sensitivities, Sensitivity, Sign, Size};
 use crate::diagnosis::space::{Space, norm};
 use crate::dot::dot;
 
@@ -23,8 +23,8 @@ const VISIBLE: f64 = 1e-4;
 pub(crate) struct Candidate {
     /// Place of the effect.
     pub(crate) effect: usize,
-    /// Place of its showing.
-    pub(crate) showing: usize,
+    /// Place of its sensitivity.
+    pub(crate) sensitivity: usize,
     pub(crate) columns: Vec<Vec<f64>>,
     pub(crate) sizes: Vec<Size>,
     pub(crate) whole: bool,
@@ -44,20 +44,24 @@ pub(crate) struct Explained {
 }
 
 impl Candidate {
-    /// All showings in the coordinates of a space; `whiten` whitens a column and adds zeros for the priors.
+    /// All sensitivities in the coordinates of a space; `whiten` whitens a column and adds zeros for the priors.
     pub(crate) fn all(
-        showings: &Showings,
+        sensitivities: &Sensitivities,
         space: &mut Space,
         whiten: &dyn Fn(&[f64]) -> Vec<f64>,
     ) -> Vec<Self> {
-        let forms = |effect: usize| showings.showings.iter().filter(|s| s.effect == effect).count() as f64;
-        let mut all = Vec::with_capacity(showings.showings.len());
-        let white: Vec<Vec<f64>> =
-            showings.showings.iter().flat_map(|s| s.columns.iter().map(|column| whiten(column))).collect();
+        let forms =
+            |effect: usize| sensitivities.sensitivities.iter().filter(|s| s.effect == effect).count() as f64;
+        let mut all = Vec::with_capacity(sensitivities.sensitivities.len());
+        let white: Vec<Vec<f64>> = sensitivities
+            .sensitivities
+            .iter()
+            .flat_map(|s| s.columns.iter().map(|column| whiten(column)))
+            .collect();
         let mut entered = space.enter_all(&white).into_iter();
         let mut white = white.into_iter();
-        for (place, showing) in showings.showings.iter().enumerate() {
-            let Showing { effect, sizes, columns, whole, .. } = showing;
+        for (place, sensitivity) in sensitivities.sensitivities.iter().enumerate() {
+            let Sensitivity { effect, sizes, columns, whole, .. } = sensitivity;
             let white: Vec<Vec<f64>> = white.by_ref().take(columns.len()).collect();
             let seen: Vec<Vec<f64>> = entered.by_ref().take(columns.len()).collect();
             let left: f64 = seen.iter().map(|c| dot(c, c)).sum();
@@ -67,7 +71,7 @@ impl Candidate {
             }
             all.push(Self {
                 effect: *effect,
-                showing: place,
+                sensitivity: place,
                 columns: seen,
                 sizes: sizes.clone(),
                 whole: *whole,
@@ -86,7 +90,7 @@ impl Candidate {
     #[cfg(test)]
     pub(crate) fn for_test(columns: Vec<Vec<f64>>, size: Size) -> Self {
         let sizes = vec![size; columns.len()];
-        Self { effect: 0, showing: 0, columns, sizes, whole: false, compensated: 0.0, log_forms: 0.0 }
+        Self { effect: 0, sensitivity: 0, columns, sizes, whole: false, compensated: 0.0, log_forms: 0.0 }
     }
 
     /// What it explains of z alone.

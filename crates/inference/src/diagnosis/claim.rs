@@ -59,7 +59,7 @@ pub(crate) fn form_error(record: &Record, bent: &Bent) -> FormErrorResult {
             direction: moment.branch(),
             formula_n: bent.change[row],
             bending_n: bent.bending[row],
-            sd_n: bent.sd_n[row],
+            sd_n: bent.bending_sd[row],
         }
     });
     FormErrorResult {

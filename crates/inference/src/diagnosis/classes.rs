@@ -12,8 +12,8 @@ use std::sync::Arc;
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
-use crate::diagnosis::hypotheses::{Hypothesis, Tried, singles, ticket};
-use crate::diagnosis::scene::{Given, Scene};
+use crate::diagnosis::hypotheses::{Hypothesis, Tried, effect_log_prior, singles};
+use crate::diagnosis::linearised_model::{Given, LinearisedModel};
 use crate::diagnosis::space::Space;
 use crate::diagnosis::stage::{Stage, tempered};
 use crate::dot::dot;
@@ -89,26 +89,29 @@ impl Given<'_> {
             let fitted = self.refitted(base, stage, &others).ok()?;
             &*made.insert(self.stage(others, fitted).ok()?)
         };
-        let signal = self.signal(&stage.confirmed, &without.scene).ok()?;
-        let bent: Vec<&Vec<f64>> = stage.scene.bent.iter().collect();
-        let plain = self.beside(&without.scene, &signal, &bent);
+        let signal = self.signal(&stage.confirmed, &without.linear).ok()?;
+        let bent: Vec<&Vec<f64>> = stage.linear.bent.iter().collect();
+        let plain = self.beside(&without.linear, &signal, &bent);
         let name = effect.card().name;
-        let own = without.scene.showings.effects.iter().position(|s| s.effect.card().name == name);
-        let ticket = own.map_or(0.0, |own| ticket(&without.scene, own));
+        let own = without.linear.sensitivities.effects.iter().position(|s| s.effect.card().name == name);
+        let effect_log_prior = own.map_or(0.0, |own| effect_log_prior(&without.linear, own));
         let scatter = stage.scatter();
         let gain = without.confirmed.bent_cost() - stage.confirmed.bent_cost();
-        let log_evidence =
-            tempered(stage.confirmed.log_evidence - without.confirmed.log_evidence + ticket, gain, scatter);
+        let log_evidence = tempered(
+            stage.confirmed.log_evidence - without.confirmed.log_evidence + effect_log_prior,
+            gain,
+            scatter,
+        );
         let margin = RULE.rival.max(RULE.rival_bent * stage.confirmed.form.log_evidence);
         let beside = Given { kin: Some(&stage.confirmed.form.kin), ..*self };
-        let list = singles(&without.scene, &without.confirmed.prepared.model);
+        let list = singles(&without.linear, &without.confirmed.prepared.model);
         let best = list.iter().map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let mut fitted = 0;
         let rivals: Vec<(Hypothesis, f64, bool)> = list
             .into_iter()
             .filter(|h| Some(h.effects[0]) != own)
             .map(|h| {
-                let separation = plain.separation(&without.scene, h.effects[0]) / scatter.sqrt();
+                let separation = plain.separation(&without.linear, h.effects[0]) / scatter.sqrt();
                 let near = (h.log_evidence > best - FITTED * scatter || separation < RULE.separation)
                     && fitted < MOST;
                 fitted += usize::from(near);
@@ -134,7 +137,7 @@ impl Given<'_> {
                     separation
                 } else {
                     let both: Vec<&Vec<f64>> = bent.iter().copied().chain(&own).collect();
-                    self.beside(&without.scene, &signal, &both).separation(&without.scene, place)
+                    self.beside(&without.linear, &signal, &both).separation(&without.linear, place)
                         / scatter.sqrt()
                 };
                 Self::rival(
@@ -148,7 +151,7 @@ impl Given<'_> {
                 )
             })
             .collect();
-        let seen = without.scene.space.coordinates(&self.white(&signal, without.scene.priors));
+        let seen = without.linear.space.coordinates(&self.white(&signal, without.linear.priors));
         let detectability = dot(&seen, &seen).sqrt() / scatter.sqrt();
         let is_further = stage.added.len() > 1;
         Some((Class { effect, log_evidence, detectability, scatter, is_further, rivals }, made))
@@ -230,30 +233,30 @@ impl Given<'_> {
             || separation < RULE.same;
         let worth = RULE.worth[usize::from(!without.added.is_empty())];
         let in_class = tried.is_some() && log_evidence.is_finite() && log_evidence > worth && undecided;
-        let effect = Arc::clone(&without.scene.showings.effects[place].effect);
+        let effect = Arc::clone(&without.linear.sensitivities.effects[place].effect);
         Rival { effect, log_evidence, separation, in_class, fit: tried.and_then(|tried| tried.confirmed) }
     }
 
-    /// What an effect changes \[N\], beside the scene without it.
-    pub(crate) fn signal(&self, with: &Confirmed, without: &Scene) -> Result<Vec<f64>, ModelError> {
+    /// What an effect changes \[N\], beside the model without it.
+    pub(crate) fn signal(&self, with: &Confirmed, without: &LinearisedModel) -> Result<Vec<f64>, ModelError> {
         let model = &with.prepared.model;
         let force = model.evaluate_warm(self.record, &with.theta, &Wanted::default(), &Warm::new())?.force;
         Ok(force.iter().zip(&without.force).map(|(with, without)| with - without).collect())
     }
 
-    /// A signal \[N\] beside a scene and form errors `bent` of one standard deviation \[N\].
-    pub(crate) fn beside(&self, scene: &Scene, signal: &[f64], bent: &[&Vec<f64>]) -> Beside {
-        let whiten = |column: &[f64]| self.white(column, scene.priors);
+    /// A signal \[N\] beside a linearised model and form errors `bent` of one standard deviation \[N\].
+    pub(crate) fn beside(&self, linear: &LinearisedModel, signal: &[f64], bent: &[&Vec<f64>]) -> Beside {
+        let whiten = |column: &[f64]| self.white(column, linear.priors);
         let signal = whiten(signal);
         if bent.is_empty() {
             return Beside {
-                signal: scene.space.coordinates(&signal),
+                signal: linear.space.coordinates(&signal),
                 length: 0,
                 bent: 0,
                 space: Space::default(),
             };
         }
-        let mut space = scene.space.clone();
+        let mut space = linear.space.clone();
         let white: Vec<Vec<f64>> = bent.iter().map(|column| whiten(column)).collect();
         let columns = space.enter_all(&white);
         let length = space.len();
@@ -275,7 +278,7 @@ impl Given<'_> {
 /// What an effect changes, in coordinates beside form errors: what those make of it is no difference between it and another.
 pub(crate) struct Beside {
     signal: Vec<f64>,
-    /// Coordinates of the scene, and form errors with a prior each.
+    /// Coordinates of the linearised model, and form errors with a prior each.
     length: usize,
     bent: usize,
     space: Space,
@@ -289,8 +292,8 @@ impl Beside {
     }
 
     /// What is left of the signal when an effect does its best to stand in for it, in sigmas.
-    pub(crate) fn separation(&self, scene: &Scene, effect: usize) -> f64 {
-        let candidates = scene.candidates.iter().filter(|c| c.effect == effect);
+    pub(crate) fn separation(&self, linear: &LinearisedModel, effect: usize) -> f64 {
+        let candidates = linear.candidates.iter().filter(|c| c.effect == effect);
         if self.bent == 0 {
             return separation(&self.signal, candidates);
         }
@@ -361,7 +364,7 @@ mod tests {
         assert!(given.lower(&base, &worse).is_none());
         worse.confirmed.minimum.cost += 40.0;
         let place =
-            worse.scene.showings.effects.iter().position(|s| s.effect.card().name == other.card().name);
+            worse.linear.sensitivities.effects.iter().position(|s| s.effect.card().name == other.card().name);
         let hypothesis =
             Hypothesis { effects: vec![place.unwrap()], log_evidence: 0.0, gain: 0.0, starts: Vec::new() };
         assert!(idle.is_idle(&[other]), "friction that falls with the pressure leaves it off");

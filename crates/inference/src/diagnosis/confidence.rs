@@ -10,10 +10,10 @@ use serde::Serialize;
 use crate::diagnosis::candidates::{Candidate, log_evidence};
 use crate::diagnosis::classes::{Class, Rival, separation};
 use crate::diagnosis::decision_rule::RULE;
-use crate::diagnosis::hypotheses::{Tried, ticket};
+use crate::diagnosis::hypotheses::{Tried, effect_log_prior};
+use crate::diagnosis::linearised_model::{Given, LinearisedModel};
 use crate::diagnosis::null::{Null, Statistics};
-use crate::diagnosis::scene::{Given, Scene};
-use crate::diagnosis::showing::Screened;
+use crate::diagnosis::sensitivity::Screened;
 use crate::dot::dot;
 use bulge_numerics::Random;
 
@@ -63,19 +63,25 @@ struct Truth<'a> {
     sizes: Vec<f64>,
 }
 
-/// The confidence of a claim, in the scene of the model without the named effect.
+/// The confidence of a claim, beside the model without the named effect.
 ///
 /// Where something unknown remains, its scatter counts as noise: misfits are then in units of that.
-pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &Class) -> Confidence {
+pub(crate) fn confidence(
+    given: &Given<'_>,
+    linear: &LinearisedModel,
+    null: &Null,
+    class: &Class,
+) -> Confidence {
     let unit = 1.0 / class.scatter.sqrt();
-    let found: Vec<f64> = scene.z.iter().map(|z| z * unit).collect();
-    let place = |name: &str| scene.showings.effects.iter().position(|s| s.effect.card().name == name);
+    let found: Vec<f64> = linear.z.iter().map(|z| z * unit).collect();
+    let place = |name: &str| linear.sensitivities.effects.iter().position(|s| s.effect.card().name == name);
     let Some(named) = place(class.effect.card().name) else {
         return Confidence { named: 0.0, class: 0.0, interval: [0.0, 1.0], claims: 0 };
     };
     let worth = RULE.worth[usize::from(class.is_further)];
-    let tickets: Vec<f64> = (0..scene.showings.effects.len()).map(|i| ticket(scene, i)).collect();
-    let truths = truths(scene, &found, &tickets, class, named);
+    let log_priors: Vec<f64> =
+        (0..linear.sensitivities.effects.len()).map(|i| effect_log_prior(linear, i)).collect();
+    let truths = truths(linear, &found, &log_priors, class, named);
     let family = class.effect.card().family;
     let rivals = class.rivals.iter().filter(|rival| rival.effect.card().family != family);
     let lead = class.log_evidence - rivals.map(|rival| rival.log_evidence).fold(0.0, f64::max);
@@ -86,14 +92,14 @@ pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &
             let mut counts = [0; 3];
             for _ in 0..PER_STREAM {
                 let truth = drawn(&truths, random.uniform());
-                let z = misfit(given, scene, truth, &mut random);
-                let Some(claim) = Claim::of(scene, null, &tickets, worth, &z) else { continue };
-                if claim.named != named || !is_as_clear(claim.lead(scene), lead) {
+                let z = misfit(given, linear, truth, &mut random);
+                let Some(claim) = Claim::of(linear, null, &log_priors, worth, &z) else { continue };
+                if claim.named != named || !is_as_clear(claim.lead(linear), lead) {
                     continue;
                 }
                 counts[0] += 1;
-                counts[1] += usize::from(truth.is_some_and(|t| claim.is_same(scene, t)));
-                counts[2] += usize::from(truth.is_some_and(|t| claim.holds(scene, t)));
+                counts[1] += usize::from(truth.is_some_and(|t| claim.is_same(linear, t)));
+                counts[2] += usize::from(truth.is_some_and(|t| claim.holds(linear, t)));
             }
             counts
         })
@@ -104,7 +110,7 @@ pub(crate) fn confidence(given: &Given<'_>, scene: &Scene, null: &Null, class: &
         // The claim would hardly come again: what is left is the weight of the evidence.
         let of = |counts: &dyn Fn(&Rival) -> bool| {
             let is_one = |effect: usize| {
-                let name = scene.showings.effects[effect].effect.card().name;
+                let name = linear.sensitivities.effects[effect].effect.card().name;
                 let rival = class.rivals.iter().find(|rival| rival.effect.card().name == name);
                 effect == named
                     || rival.is_some_and(|rival| rival.effect.card().family == family || counts(rival))
@@ -127,18 +133,24 @@ fn is_as_clear(lead: f64, other: f64) -> bool {
 }
 
 /// Everything that the data leave possible, with weights that add up to 1.
-fn truths<'a>(scene: &'a Scene, z: &[f64], tickets: &[f64], class: &Class, named: usize) -> Vec<Truth<'a>> {
+fn truths<'a>(
+    linear: &'a LinearisedModel,
+    z: &[f64],
+    log_priors: &[f64],
+    class: &Class,
+    named: usize,
+) -> Vec<Truth<'a>> {
     let mut found = vec![Truth { candidate: None, effect: None, weight: 0.0, sizes: Vec::new() }];
-    for candidate in &scene.candidates {
+    for candidate in &linear.candidates {
         let explained = candidate.explains(z);
         if explained.gain <= 0.0 {
             continue;
         }
-        let linear = candidate.log_evidence(&explained) + tickets[candidate.effect];
+        let weight = candidate.log_evidence(&explained) + log_priors[candidate.effect];
         found.push(Truth {
             candidate: Some(candidate),
             effect: Some(candidate.effect),
-            weight: linear,
+            weight,
             sizes: explained.sizes,
         });
     }
@@ -150,7 +162,7 @@ fn truths<'a>(scene: &'a Scene, z: &[f64], tickets: &[f64], class: &Class, named
         .filter_map(|rival| {
             let name = rival.effect.card().name;
             Some((
-                scene.showings.effects.iter().position(|s| s.effect.card().name == name)?,
+                linear.sensitivities.effects.iter().position(|s| s.effect.card().name == name)?,
                 rival.log_evidence,
             ))
         })
@@ -183,8 +195,13 @@ fn drawn<'t, 'a>(truths: &'t [Truth<'a>], mut left: f64) -> Option<&'t Truth<'a>
 }
 
 /// A misfit as this truth would make it.
-fn misfit(given: &Given<'_>, scene: &Scene, truth: Option<&Truth<'_>>, random: &mut Random) -> Vec<f64> {
-    let mut z = scene.chance_of(given).draw(random);
+fn misfit(
+    given: &Given<'_>,
+    linear: &LinearisedModel,
+    truth: Option<&Truth<'_>>,
+    random: &mut Random,
+) -> Vec<f64> {
+    let mut z = linear.chance_of(given).draw(random);
     let Some((truth, candidate)) = truth.and_then(|t| Some((t, t.candidate?))) else { return z };
     for (column, size) in candidate.columns.iter().zip(&truth.sizes) {
         // A size that the data allow: its own uncertainty, its sign kept.
@@ -213,16 +230,16 @@ struct Claim {
 
 impl Claim {
     /// The decision on a misfit: none if nothing would be named.
-    fn of(scene: &Scene, null: &Null, tickets: &[f64], worth: f64, z: &[f64]) -> Option<Self> {
-        let statistics = Statistics::of(z, &scene.candidates, &[]);
+    fn of(linear: &LinearisedModel, null: &Null, log_priors: &[f64], worth: f64, z: &[f64]) -> Option<Self> {
+        let statistics = Statistics::of(z, &linear.candidates, &[]);
         if null.chance(&statistics)[0] >= RULE.screen {
             return None;
         }
-        let mut evidence = vec![f64::NEG_INFINITY; tickets.len()];
+        let mut evidence = vec![f64::NEG_INFINITY; log_priors.len()];
         let mut best: Option<(f64, &Candidate, Vec<f64>)> = None;
-        for candidate in &scene.candidates {
+        for candidate in &linear.candidates {
             let explained = candidate.explains(z);
-            let value = log_evidence(&[candidate], &explained) + tickets[candidate.effect];
+            let value = log_evidence(&[candidate], &explained) + log_priors[candidate.effect];
             let own = &mut evidence[candidate.effect];
             let high = own.max(value);
             *own = if high == f64::NEG_INFINITY {
@@ -247,32 +264,32 @@ impl Claim {
     }
 
     /// Log evidence over that of the next effect of another family, and over none.
-    fn lead(&self, scene: &Scene) -> f64 {
-        let family = |effect: usize| scene.showings.effects[effect].effect.card().family;
+    fn lead(&self, linear: &LinearisedModel) -> f64 {
+        let family = |effect: usize| linear.sensitivities.effects[effect].effect.card().family;
         let others = (0..self.evidence.len()).filter(|effect| family(*effect) != family(self.named));
         self.evidence[self.named] - others.map(|effect| self.evidence[effect]).fold(0.0, f64::max)
     }
 
-    fn separation(&self, scene: &Scene, effect: usize) -> f64 {
-        separation(&self.signal, scene.candidates.iter().filter(|c| c.effect == effect))
+    fn separation(&self, linear: &LinearisedModel, effect: usize) -> f64 {
+        separation(&self.signal, linear.candidates.iter().filter(|c| c.effect == effect))
     }
 
     /// Whether the named effect is the truth, or the same as far as these data go.
-    fn is_same(&self, scene: &Scene, truth: &Truth<'_>) -> bool {
-        let family = |effect: usize| scene.showings.effects[effect].effect.card().family.to_owned();
+    fn is_same(&self, linear: &LinearisedModel, truth: &Truth<'_>) -> bool {
+        let family = |effect: usize| linear.sensitivities.effects[effect].effect.card().family.to_owned();
         truth.effect.is_some_and(|effect| {
-            family(effect) == family(self.named) || self.separation(scene, effect) < RULE.same
+            family(effect) == family(self.named) || self.separation(linear, effect) < RULE.same
         })
     }
 
     /// Whether the truth is in the class.
-    fn holds(&self, scene: &Scene, truth: &Truth<'_>) -> bool {
-        self.is_same(scene, truth)
+    fn holds(&self, linear: &LinearisedModel, truth: &Truth<'_>) -> bool {
+        self.is_same(linear, truth)
             || truth.effect.is_some_and(|effect| {
                 self.evidence[effect] > self.worth
                     && (self.evidence[effect] > self.evidence[self.named] - RULE.rival
                         || self.evidence[effect] > self.evidence[self.named] - RULE.decided
-                            && self.separation(scene, effect) < RULE.separation)
+                            && self.separation(linear, effect) < RULE.separation)
             })
     }
 }

@@ -4,18 +4,17 @@
 //! log Z = -chi^2/2 + log prior + (k/2) log 2 pi - (1/2) log |H|        (Laplace),   H = J' J + the curvature of the priors
 //! ```
 
-use bulge_effects::{Effect, Mechanism};
+use bulge_effects::Effect;
 use bulge_model::{Model, ModelError, Record};
 use bulge_numerics::least_squares::{Bounds, Minimum, Options, Reason};
 use rayon::prelude::*;
-use std::ops::Range;
 use std::sync::Arc;
 
 use crate::diagnosis::candidates::log_prior;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::form_error::FormError;
-use crate::diagnosis::scene::Given;
-use crate::diagnosis::showing::{Showing, Sign, Size, sizes};
+use crate::diagnosis::linearised_model::Given;
+use crate::diagnosis::sensitivity::{Sensitivity, Sign, Size, longest_sweep, relaxes, sizes};
 use crate::fit::carry_over::carry_over;
 use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::{FitProblem, free};
@@ -25,6 +24,8 @@ use crate::fit::states::{is_of_rows, of_start, settled_where_possible};
 /// Tolerance of the fits, as a part of what the residuals are.
 const TOLERANCE: f64 = 1e-5;
 const EVALUATIONS: usize = 50;
+/// Rows on which a start is looked for from where all have a state: rows without one take the longest to be solved.
+const FEW_ROWS: usize = 300;
 /// Starts that are followed to their minimum.
 const FOLLOWED: usize = 2;
 
@@ -54,16 +55,13 @@ impl Confirmed {
     /// a spring, and in the place of one. That explains nothing.
     pub(crate) fn is_absurd(&self, effects: &[Arc<dyn Effect>], record: &Record) -> bool {
         let model = &self.prepared.model;
-        let moments = record.moments();
-        let lasts = |rows: &Range<usize>| moments[rows.end - 1].clock - moments[rows.start].clock;
-        let longest = record.sweeps().iter().map(lasts).fold(0.0, f64::max);
+        let longest = longest_sweep(record);
         free(model).into_iter().zip(&self.minimum.certificate.at_bound).any(|(index, at_bound)| {
             let (p, value) = (&model.parameters()[index], self.theta[index]);
             let Some(effect) = effects.iter().find(|effect| effect.card().name == p.effect) else {
                 return false;
             };
-            let relaxes = effect.card().mechanism == Mechanism::Relaxation && p.name == "time";
-            relaxes && record.has_time() && value > longest
+            p.name == "time" && relaxes(effect, record) && value > longest
                 || at_bound.is_some() && !(p.plausible.0..=p.plausible.1).contains(&value)
         })
     }
@@ -148,16 +146,16 @@ impl Given<'_> {
         options: &Options,
     ) -> Option<Vec<f64>> {
         let model = &prepared.model;
-        let sd = vec![self.row_n; self.record.len()];
-        let problem = |used: &[bool], at: &[f64]| {
-            FitProblem::new(model, self.record, used, sd.clone(), at.to_vec(), priors)
-        };
+        let (few, _) = self.record.thinned(FEW_ROWS);
+        let sd = vec![self.row_n; few.len()];
+        let problem =
+            |used: &[bool], at: &[f64]| FitProblem::new(model, &few, used, sd.clone(), at.to_vec(), priors);
         let settle = |problem: &FitProblem<'_>, at: &[f64]| {
             let bounds = problem.bounds();
             settled(problem, &inside(problem.coordinates(at), &bounds), &bounds, options).map_err(of_start)
         };
-        let used = vec![true; self.record.len()];
-        let found = settled_where_possible((model, self.record), &used, start, problem, settle).ok()?;
+        let used = vec![true; few.len()];
+        let found = settled_where_possible((model, &few), &used, start, problem, settle).ok()?;
         Some(found.problem.theta(&found.minimum.theta))
     }
 
@@ -362,7 +360,7 @@ pub(crate) fn roles(model: &Model) -> Vec<Option<Size>> {
 
 /// The numbers of an effect that linear sizes stand for: where a fit starts. Several, where the effect isn't in proportion to its number.
 pub(crate) fn starts(
-    showing: &Showing,
+    sensitivity: &Sensitivity,
     effect: &Arc<dyn Effect>,
     model: &Model,
     found: &[f64],
@@ -371,15 +369,15 @@ pub(crate) fn starts(
     if cards.is_empty() {
         return vec![Vec::new()];
     }
-    if showing.whole {
-        return vec![showing.values.clone()];
+    if sensitivity.whole {
+        return vec![sensitivity.values.clone()];
     }
     let copies = model.copies(effect.as_ref());
     let mut all: Vec<Vec<f64>> = Vec::new();
-    let quadratic = showing.sizes.iter().any(|size| size.secant.is_some());
+    let quadratic = sensitivity.sizes.iter().any(|size| size.secant.is_some());
     for variant in if quadratic { &[0, 1][..] } else { &[0][..] } {
-        let mut values: Vec<f64> = (0..copies).flat_map(|_| showing.values.clone()).collect();
-        for (size, deviation) in showing.sizes.iter().zip(found) {
+        let mut values: Vec<f64> = (0..copies).flat_map(|_| sensitivity.values.clone()).collect();
+        for (size, deviation) in sensitivity.sizes.iter().zip(found) {
             let place = size.copy * cards.len() + size.place;
             let card = &cards[size.place];
             let deviation = match size.secant {

@@ -17,10 +17,10 @@ use crate::diagnosis::document::Diagnosis;
 use crate::diagnosis::either::quieter;
 use crate::diagnosis::geometry::{Doubt, geometry};
 use crate::diagnosis::ground::{Ground, Stop, effective_rows, ground, ground_again, row_sd};
+use crate::diagnosis::linearised_model::Given;
 use crate::diagnosis::next::{Judged, Limits, NextLimits, next_experiment};
 use crate::diagnosis::not_looked_for::not_looked_for;
 use crate::diagnosis::rungs::bent_rungs;
-use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::Search;
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::unanswered::{cannot_tell, unanswered};
@@ -40,6 +40,8 @@ const MOST_CHANGES: usize = 3;
 pub struct DiagnoseOptions {
     /// Effects that the base has (`--with`), known ones, catalogue and law.
     pub base: Options,
+    /// Names of the effects that are looked for; none: all of the catalogue.
+    pub among: Option<Vec<String>>,
     /// RMS misfit that doesn't matter \[N\]: it can take claims away, and makes none.
     pub tolerance_n: Option<f64>,
     /// Seed of all random numbers.
@@ -51,11 +53,12 @@ pub struct DiagnoseOptions {
 }
 
 impl DiagnoseOptions {
-    /// No tolerance, seed 1, nobody to tell.
+    /// The whole catalogue, no tolerance, seed 1, nobody to tell.
     #[must_use]
     pub fn new(base: Options) -> Self {
         Self {
             base,
+            among: None,
             tolerance_n: None,
             seed: 1,
             limits: NextLimits::default(),
@@ -83,6 +86,12 @@ pub fn diagnose(
         let mut found = doubt.settled(found, |exact| answered(data, [muscle, exact], &silent))?;
         doubt.say(&mut found, &options.base.catalogue);
         found.not_looked_for = not_looked_for(&found, &options.base.catalogue);
+        if let Some(among) = &options.among {
+            let names = among.join(", ");
+            found
+                .warnings
+                .insert(0, format!("looked for {names} alone: what is missing may be another effect"));
+        }
         Ok(found)
     })
 }
@@ -274,7 +283,7 @@ fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
         if let Some((class, made)) = given.class(model, last, place, known)
             && let Some(without) = made.as_ref().or(known)
         {
-            let confidence = confidence(given, &without.scene, &without.adequacy.null, &class);
+            let confidence = confidence(given, &without.linear, &without.adequacy.null, &class);
             return Judged {
                 class,
                 confidence,
@@ -284,7 +293,7 @@ fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
         let name = last.added[place].card().name;
         let holds = |stage: &&Stage| stage.added.iter().any(|effect| effect.card().name == name);
         let before = search.stages.iter().take_while(|stage| !holds(stage)).last().unwrap_or(last);
-        let confidence = Confidence::of_tried(&before.tried, name, &before.scene.showings.effects);
+        let confidence = Confidence::of_tried(&before.tried, name, &before.linear.sensitivities.effects);
         Judged { class: Class::alone(last, place, before), confidence, models: None }
     };
     (0..last.added.len()).into_par_iter().map(of).collect()

@@ -202,7 +202,7 @@ pub struct BentCurve {
     pub formula_n: Vec<f64>,
     /// What it changes as the data want it \[N\].
     pub bent_n: Vec<f64>,
-    /// Standard deviation of that about the formula \[N\].
+    /// Standard deviation of that \[N\], with that of the numbers of the effect.
     pub sd_n: Vec<f64>,
 }
 

@@ -20,7 +20,7 @@ use crate::diagnosis::diagnose::{DiagnoseOptions, where_it_has_a_state};
 use crate::diagnosis::document::FormErrorResult;
 use crate::diagnosis::form_error::Bent;
 use crate::diagnosis::ground::{Stop, ground};
-use crate::diagnosis::scene::Given;
+use crate::diagnosis::linearised_model::Given;
 use crate::dot::dot;
 use crate::error::InferenceError;
 
@@ -88,12 +88,12 @@ pub fn drawn_forms(data: &Data, muscle: &Muscle, options: &Options) -> Result<Dr
                 .into());
             };
             let nothing: [String; 0] = [];
-            let given = Given { only: Some(&nothing), ..ground.given(law, &options) };
+            let given = Given { only: Some(&nothing), is_planned: true, ..ground.given(law, &options) };
             let near = (&base.prepared.model, &base.theta[..]);
             let drawn = given
                 .confirm(&model, &[], Some(near), &[])
-                .and_then(|confirmed| given.scene(&confirmed.prepared, &confirmed.theta))
-                .map(|scene| given.drawn(&scene.force, &scene.form.effects, &options.base.effects));
+                .and_then(|confirmed| given.linearised(&confirmed.prepared, &confirmed.theta))
+                .map(|linear| given.drawn(&linear.force, &linear.form.effects, &options.base.effects));
             drawn.map_err(|error: ModelError| Stop::at_means(error, &ground.averaged, &analysis))
         });
         Ok(found?.0)
@@ -145,9 +145,9 @@ impl Given<'_> {
         if !bent.may_bend() {
             return DrawnForm::none(&bent.effect, "its formula holds: the data want no other form");
         }
-        let whole: Vec<f64> = bent.change.iter().zip(&bent.bending).map(|(s, b)| s + b).collect();
-        let expression = Expression::of(state, &whole, UNSEEN * self.row_n);
-        let (size, missed) = (rms(&whole), expression.missed_n);
+        let whole = &bent.drawn;
+        let expression = Expression::of(state, whole, UNSEEN * self.row_n);
+        let (size, missed) = (rms(whole), expression.missed_n);
         let form_error = form_error(self.record, bent);
         let bends = form_error.rms_n;
         if missed > ANOTHER * size {

@@ -13,8 +13,8 @@
 use bulge_model::{Model, ModelError};
 
 use crate::diagnosis::ground::Ground;
+use crate::diagnosis::linearised_model::Given;
 use crate::diagnosis::pure_error::BetweenCycles;
-use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::Search;
 use crate::diagnosis::something_else::smooth_evidence;
 use crate::diagnosis::tangents::Tangents;
@@ -75,7 +75,7 @@ fn noise_of_base(
     let likelihood = |law| log_likelihood(law, given.record, inputs, &design, &tangents.residual);
     let (Some(noise), Some(saturated)) = (likelihood(&law), likelihood(given.law)) else { return Ok(None) };
     let named = last.confirmed.log_evidence - base.confirmed.log_evidence;
-    let smooth = smooth_evidence(&base.scene);
+    let smooth = smooth_evidence(&base.linear);
     Ok((noise >= saturated + named.max(smooth)).then_some(law))
 }
 
@@ -85,6 +85,6 @@ fn is_chance(search: &Search) -> bool {
     !only.adequate
         && !only.adequacy.fit_fails
         && !only.adequacy.repeats
-        && !only.scene.smooth.is_empty()
-        && smooth_evidence(&only.scene) <= 0.0
+        && !only.linear.smooth.is_empty()
+        && smooth_evidence(&only.linear) <= 0.0
 }

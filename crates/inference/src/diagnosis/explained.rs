@@ -6,7 +6,7 @@ use crate::comparison::levels::Levels;
 use crate::comparison::residuals::bin;
 use crate::diagnosis::document::{BentCurve, ExplainedCurve, ExplainedStep, SurfaceCurve};
 use crate::diagnosis::form_error::Bent;
-use crate::diagnosis::scene::Scene;
+use crate::diagnosis::linearised_model::LinearisedModel;
 use crate::dot::dot;
 
 /// Bins of the contraction.
@@ -78,20 +78,20 @@ pub(crate) fn bent_curves(record: &Record, bent: &Bent) -> Vec<BentCurve> {
             direction: cells[0].direction,
             contraction: cells.iter().map(|cell| cell.contraction).collect(),
             formula_n: of(&|row| bent.change[row]),
-            bent_n: of(&|row| bent.change[row] + bent.bending[row]),
-            sd_n: of(&|row| bent.sd_n[row]),
+            bent_n: of(&|row| bent.drawn[row]),
+            sd_n: of(&|row| bent.drawn_sd[row]),
         }
     };
     curves(&cells).map(curve).collect()
 }
 
 /// The systematic misfit that a model leaves: the smooth functions that it can't follow, with their standard deviation.
-pub(crate) fn surface(record: &Record, scene: &Scene) -> Vec<SurfaceCurve> {
+pub(crate) fn surface(record: &Record, linear: &LinearisedModel) -> Vec<SurfaceCurve> {
     let levels = Levels::of(record, &vec![true; record.len()]);
     let cells = cells(record, &levels);
-    let parts: Vec<f64> = scene.smooth.iter().map(|d| dot(&d.unit, &scene.z)).collect();
+    let parts: Vec<f64> = linear.smooth.iter().map(|d| dot(&d.unit, &linear.z)).collect();
     let at = |cell: &Cell| {
-        let means = scene.smooth.iter().map(|d| mean(&cell.rows, |row| d.values[row]));
+        let means = linear.smooth.iter().map(|d| mean(&cell.rows, |row| d.values[row]));
         means.zip(&parts).fold((0.0, 0.0), |(sum, square), (f, part)| (sum + f * part, square + f * f))
     };
     let curve = |cells: &[Cell]| {

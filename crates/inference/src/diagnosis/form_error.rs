@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use crate::diagnosis::bending::{Bending, Kin, Kind};
 use crate::diagnosis::decision_rule::RULE;
-use crate::diagnosis::space::{Space, norm};
+use crate::diagnosis::space::{Space, norm, orthogonal};
 use crate::dot::dot;
 
 /// Times that each standard deviation is chosen anew beside the others.
@@ -31,9 +31,12 @@ pub(crate) struct Bent {
     pub(crate) part: f64,
     /// What the effect changes by its formula \[N\].
     pub(crate) change: Vec<f64>,
-    /// What the data add to that \[N\], and its standard deviation.
+    /// What bending it changes of the model's force \[N\], all numbers refitted, and its standard deviation.
     pub(crate) bending: Vec<f64>,
-    pub(crate) sd_n: Vec<f64>,
+    pub(crate) bending_sd: Vec<f64>,
+    /// What the effect itself changes as the data want it \[N\], and its standard deviation with that of its numbers.
+    pub(crate) drawn: Vec<f64>,
+    pub(crate) drawn_sd: Vec<f64>,
 }
 
 impl Bent {
@@ -64,6 +67,13 @@ pub(crate) struct FormDirection {
     pub(crate) values: Vec<f64>,
     /// The same whitened, outside of the model's tangents; those of several directions are orthogonal to each other.
     pub(crate) white: Vec<f64>,
+}
+
+impl FormDirection {
+    /// Whether it moves the readings by more than a small part of the noise.
+    pub(crate) fn is_seen(&self) -> bool {
+        dot(&self.white, &self.white) > NOTHING
+    }
 }
 
 /// All columns of a model, whitened and without what its numbers can do.
@@ -206,7 +216,8 @@ impl FormError {
         let effects = effects
             .map(|((bending, sd), part)| {
                 let (effect, change) = (Arc::clone(&bending.effect), bending.change.clone());
-                Bent { effect, sd: *sd, part, change, bending: Vec::new(), sd_n: Vec::new() }
+                let [bending, bending_sd, drawn, drawn_sd] = [const { Vec::new() }; 4];
+                Bent { effect, sd: *sd, part, change, bending, bending_sd, drawn, drawn_sd }
             })
             .collect();
         let kin = |bending: &Bending| (bending.effect.card().name.to_owned(), Arc::clone(&bending.kin));
@@ -214,16 +225,42 @@ impl FormError {
         (Self { log_evidence, fall, effects, kin }, directions)
     }
 
-    /// The same with what the data add to the formulas, row by row; `misfit` is whitened, `tangents` are orthonormal columns of the model's numbers \[N\] and whitened.
+    /// The same with what the data make of the formulas, row by row; `misfit` is whitened, `tangents` are those of the model's numbers, and `owner` says
+    /// of each the effect that it is a number of.
     pub(crate) fn row_by_row(
         mut self,
         directions: &[FormDirection],
         misfit: &[f64],
         tangents: &[(Vec<f64>, Vec<f64>)],
+        owner: &[&str],
         whiten: &dyn Fn(&[f64]) -> Vec<f64>,
     ) -> Self {
+        let of = |name: Option<&str>| {
+            let mut known: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+            for ((raw, white), owner) in tangents.iter().zip(owner) {
+                let counts = name.is_none_or(|name| name == *owner);
+                let raw = if counts { raw.clone() } else { vec![0.0; raw.len()] };
+                known.extend(orthogonal(raw, white.clone(), &known));
+            }
+            known
+        };
+        let all = of(None);
         for (place, effect) in self.effects.iter_mut().enumerate().filter(|(_, effect)| effect.may_bend()) {
-            (effect.bending, effect.sd_n) = bent(directions, place, misfit, tangents, whiten);
+            let own = of(Some(effect.effect.card().name));
+            let sums = |values: &mut dyn FnMut(&FormDirection) -> Vec<f64>| sums(directions, misfit, values);
+            (effect.bending, effect.bending_sd) = sums(&mut |direction| {
+                let values = &direction.by_effect[place];
+                without(values, &whiten(values), &all)
+            });
+            // The numbers of the effect follow the bending of all.
+            let (moved, mut sd) =
+                sums(&mut |direction| without(&direction.by_effect[place], &whiten(&direction.values), &own));
+            for (row, sd) in sd.iter_mut().enumerate() {
+                let of_numbers: f64 = own.iter().map(|(raw, _)| raw[row] * raw[row]).sum();
+                *sd = (*sd * *sd + of_numbers).sqrt();
+            }
+            effect.drawn = effect.change.iter().zip(&moved).map(|(change, moved)| change + moved).collect();
+            effect.drawn_sd = sd;
         }
         self
     }
@@ -231,32 +268,37 @@ impl FormError {
     /// The same without what it is row by row.
     pub(crate) fn in_short(mut self) -> Self {
         for effect in &mut self.effects {
-            (effect.change, effect.bending, effect.sd_n) = (Vec::new(), Vec::new(), Vec::new());
+            let rows = [&mut effect.change, &mut effect.bending, &mut effect.bending_sd];
+            for values in rows.into_iter().chain([&mut effect.drawn, &mut effect.drawn_sd]) {
+                *values = Vec::new();
+            }
         }
         self
     }
 }
 
-/// By how much the data bend one effect in each row, and the standard deviation: the coordinates of the directions are independent, c = t'z/(1 + |t|^2) with the variance
-/// 1/(1 + |t|^2). What the model's own numbers can do, `tangents` \[N\] and whitened and orthonormal, is no bending.
-fn bent(
+/// What numbers, `known` as orthonormal columns \[N\] and whitened, leave of a column when they are refitted.
+fn without(values: &[f64], white: &[f64], known: &[(Vec<f64>, Vec<f64>)]) -> Vec<f64> {
+    let mut left = values.to_vec();
+    for (raw, unit) in known {
+        add(&mut left, -dot(white, unit), raw);
+    }
+    left
+}
+
+/// Sum of the directions as the data want them, row by row, and the standard deviation: their coordinates are independent, c = t'z/(1 + |t|^2) with the variance
+/// 1/(1 + |t|^2). `values` says what a direction changes \[N\].
+fn sums(
     directions: &[FormDirection],
-    effect: usize,
     misfit: &[f64],
-    tangents: &[(Vec<f64>, Vec<f64>)],
-    whiten: &dyn Fn(&[f64]) -> Vec<f64>,
+    values: &mut dyn FnMut(&FormDirection) -> Vec<f64>,
 ) -> (Vec<f64>, Vec<f64>) {
     let rows = directions.first().map_or(0, |direction| direction.values.len());
     let (mut sum, mut square) = (vec![0.0; rows], vec![0.0; rows]);
     for direction in directions {
         let own = 1.0 + dot(&direction.white, &direction.white);
         let c = dot(&direction.white, misfit) / own;
-        let mut values = direction.by_effect[effect].clone();
-        let white = whiten(&values);
-        for (raw, unit) in tangents {
-            add(&mut values, -dot(&white, unit), raw);
-        }
-        for ((sum, square), value) in sum.iter_mut().zip(&mut square).zip(&values) {
+        for ((sum, square), value) in sum.iter_mut().zip(&mut square).zip(&values(direction)) {
             *sum += c * value;
             *square += value * value / own;
         }
@@ -265,7 +307,7 @@ fn bent(
 }
 
 impl Columns {
-    /// The principal directions of the form errors: orthogonal, those that move the readings by less than the noise left out.
+    /// The principal directions of the form errors: orthogonal.
     fn directions(&self, white: &[Vec<f64>], raw: &[(&[f64], f64)], sds: &[[f64; 4]]) -> Vec<FormDirection> {
         let chosen = self.chosen(sds);
         let k = chosen.len();
@@ -275,8 +317,7 @@ impl Columns {
             return Vec::new();
         }
         let found = inner.symmetric_eigen();
-        let seen = (0..k).filter(|j| found.eigenvalues[*j] > NOTHING);
-        seen.map(|j| {
+        let direction = |j: usize| {
             let mut values = vec![0.0; raw[0].0.len()];
             let mut by_effect = vec![vec![0.0; values.len()]; sds.len()];
             let mut sum = vec![0.0; white[0].len()];
@@ -287,8 +328,8 @@ impl Columns {
                 add(&mut by_effect[self.of[*i].0], part * raw[*i].1, raw[*i].0);
             }
             FormDirection { by_effect, values, white: sum }
-        })
-        .collect()
+        };
+        (0..k).map(direction).collect()
     }
 }
 
@@ -422,15 +463,54 @@ mod tests {
             *value += 0.1 * c + 7.0 * t;
         }
         let (found, directions) = FormError::of(&[loose], &space, &misfit, &same);
-        let found = found.row_by_row(&directions, &misfit, &[(unit.clone(), unit.clone())], &same);
+        let found =
+            found.row_by_row(&directions, &misfit, &[(unit.clone(), unit.clone())], &["another"], &same);
         let expected = space.outside(&column);
         let bent = &found.effects[0];
-        for ((b, e), sd) in bent.bending.iter().zip(&expected).zip(&bent.sd_n) {
+        for ((b, e), sd) in bent.bending.iter().zip(&expected).zip(&bent.bending_sd) {
             // 0.1 with the standard deviation of one number: 1/|column|.
             assert!((b - 0.1 * e).abs() < 4.0 * e.abs() / norm(&expected) + 1e-9, "{b} {e}");
             let level = bent.sd[Kind::State as usize];
             let exact = level * e.abs() / (1.0 + (level * norm(&expected)).powi(2)).sqrt();
             assert!((sd - exact).abs() < 1e-9 * exact + 1e-12, "{sd} {exact}");
+        }
+    }
+
+    #[test]
+    fn the_drawn_form_and_its_interval_are_those_of_all_numbers_and_form_errors_together() {
+        let same = |column: &[f64]| column.to_vec();
+        let tangents: Vec<(Vec<f64>, Vec<f64>)> = columns(1, 3).into_iter().map(|c| (c.clone(), c)).collect();
+        let owner = ["coulomb-friction", "another", "coulomb-friction"];
+        let space = Space::without(&tangents.iter().map(|(_, white)| white.clone()).collect::<Vec<_>>());
+        let loose = bending("coulomb-friction", &[Kind::State, Kind::State, Kind::Turn], 5, 300.0);
+        let mut misfit = columns(9, 1).remove(0);
+        for ((value, a), c) in misfit.iter_mut().zip(&loose.columns[0].1).zip(&loose.columns[2].1) {
+            *value += 0.1 * a - 0.07 * c;
+        }
+        // The numbers are fitted.
+        let misfit = space.outside(&misfit);
+        let own: Vec<Vec<f64>> = loose.columns.iter().map(|(_, column)| column.clone()).collect();
+        let (found, directions) = FormError::of(&[loose], &space, &misfit, &same);
+        let found = found.row_by_row(&directions, &misfit, &tangents, &owner, &same);
+        let bent = &found.effects[0];
+        let levels = [Kind::State, Kind::State, Kind::Turn].map(|kind| bent.sd[kind as usize]);
+        let all = DMatrix::from_fn(ROWS, 6, |i, j| if j < 3 { tangents[j].0[i] } else { own[j - 3][i] });
+        let mut precision = all.transpose() * &all;
+        for (place, level) in levels.iter().enumerate() {
+            precision[(3 + place, 3 + place)] += level.powi(-2);
+        }
+        let covariance = precision.try_inverse().unwrap();
+        let mean = &covariance * all.transpose() * DVector::from_column_slice(&misfit);
+        for row in 0..ROWS {
+            let shown = DVector::from_fn(6, |j, _| if j == 1 { 0.0 } else { all[(row, j)] });
+            let drawn = bent.change[row] + shown.dot(&mean);
+            let sd = shown.dot(&(&covariance * &shown)).sqrt();
+            assert!((bent.drawn[row] - drawn).abs() < 1e-7 * (1.0 + drawn.abs()), "{row}: {drawn}");
+            assert!(
+                (bent.drawn_sd[row] - sd).abs() < 1e-7 * (1.0 + sd),
+                "{row}: {sd} {}",
+                bent.drawn_sd[row]
+            );
         }
     }
 }

@@ -7,8 +7,8 @@ use crate::diagnosis::as_set::as_set;
 use crate::diagnosis::averaged::Averaged;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::diagnose::DiagnoseOptions;
+use crate::diagnosis::linearised_model::Given;
 use crate::diagnosis::noise::Source;
-use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::Search;
 use crate::error::InferenceError;
 use crate::median::median;
@@ -74,7 +74,8 @@ impl Ground {
             law,
             row_n: (white_of_row(law, self) - self.stated).max(law.white_n.powi(2)).sqrt(),
             seed: options.seed,
-            only: None,
+            only: options.among.as_deref(),
+            is_planned: false,
             progress: &options.progress,
             kin: None,
         }

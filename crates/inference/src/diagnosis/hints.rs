@@ -5,7 +5,7 @@ use bulge_model::Record;
 use crate::comparison::levels::Levels;
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::document::Located;
-use crate::diagnosis::scene::Scene;
+use crate::diagnosis::linearised_model::LinearisedModel;
 use bulge_muscles::units::significant;
 
 /// Bins of the contraction in which levels are compared.
@@ -16,8 +16,8 @@ const MUCH: f64 = 0.3;
 const CLEAR: f64 = 0.01;
 
 /// Sentences about the misfit that is left.
-pub(crate) fn hints(record: &Record, scene: &Scene, located: &[Located]) -> Vec<String> {
-    let misfit = scene.systematic(&scene.z);
+pub(crate) fn hints(record: &Record, linear: &LinearisedModel, located: &[Located]) -> Vec<String> {
+    let misfit = linear.systematic(&linear.z);
     let mut found = Vec::new();
     found.extend(largest(record, &misfit));
     found.extend(exponent(record, &misfit));
@@ -44,7 +44,7 @@ pub(crate) fn hints(record: &Record, scene: &Scene, located: &[Located]) -> Vec<
             found.push(says.to_owned());
         }
     }
-    found.extend(nearest(record, scene));
+    found.extend(nearest(record, linear));
     found
 }
 
@@ -126,26 +126,26 @@ fn exponent(record: &Record, misfit: &[f64]) -> Option<String> {
 }
 
 /// The effect that explains most, and where it fails.
-fn nearest(record: &Record, scene: &Scene) -> Option<String> {
-    let whole = scene.structure() - scene.smooth.len() as f64;
-    let gain = |c: &&Candidate| c.explains(&scene.z).gain;
-    let best = scene.candidates.iter().max_by(|a, b| gain(a).total_cmp(&gain(b)))?;
-    let explained = best.explains(&scene.z);
+fn nearest(record: &Record, linear: &LinearisedModel) -> Option<String> {
+    let whole = linear.structure() - linear.smooth.len() as f64;
+    let gain = |c: &&Candidate| c.explains(&linear.z).gain;
+    let best = linear.candidates.iter().max_by(|a, b| gain(a).total_cmp(&gain(b)))?;
+    let explained = best.explains(&linear.z);
     if whole <= 0.0 || explained.gain <= 1.0 {
         return None;
     }
-    let mut left = scene.z.clone();
+    let mut left = linear.z.clone();
     for (column, size) in best.columns.iter().zip(&explained.sizes) {
         for (value, c) in left.iter_mut().zip(column) {
             *value -= size * c;
         }
     }
-    let sum = scene.systematic(&left);
+    let sum = linear.systematic(&left);
     let row = (0..sum.len()).max_by(|a, b| sum[*a].abs().total_cmp(&sum[*b].abs()))?;
     let moment = &record.moments()[row];
     Some(format!(
         "the nearest effect of the catalogue, `{}`, explains {:.0} % of it and fails by {} N near contraction {} % at {}",
-        scene.showings.effects[best.effect].effect.card().name,
+        linear.sensitivities.effects[best.effect].effect.card().name,
         100.0 * ((explained.gain - 1.0) / whole).clamp(0.0, 1.0),
         significant(sum[row].abs(), 2),
         significant(100.0 * moment.contraction, 2),

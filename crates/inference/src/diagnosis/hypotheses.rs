@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::diagnosis::candidates::{Candidate, explained, log_evidence};
 use crate::diagnosis::confirm::{Confirmed, starts};
 use crate::diagnosis::decision_rule::RULE;
-use crate::diagnosis::scene::Scene;
+use crate::diagnosis::linearised_model::LinearisedModel;
 
 /// Hypotheses whose linear evidence is this much below the best are not fitted.
 const FITTED: f64 = 12.0;
@@ -20,9 +20,9 @@ pub(crate) const FAR: f64 = 200.0;
 /// One or two effects, with what they would explain in linear approximation.
 #[derive(Debug, Clone)]
 pub(crate) struct Hypothesis {
-    /// Places in the scene's list of effects.
+    /// Places in the linearised model's list of effects.
     pub(crate) effects: Vec<usize>,
-    /// Log evidence with the prior tickets, over that of the model without them.
+    /// Log evidence with the log priors of the effects, over that of the model without them.
     pub(crate) log_evidence: f64,
     /// Fall of the square of the misfit.
     pub(crate) gain: f64,
@@ -35,13 +35,13 @@ pub(crate) struct Tried {
     pub(crate) hypothesis: Hypothesis,
     /// The fit; none if it failed.
     pub(crate) confirmed: Option<Confirmed>,
-    /// Log evidence of the fit with tickets, over that of the model before.
+    /// Log evidence of the fit with those log priors, over that of the model before.
     pub(crate) log_evidence: f64,
 }
 /// Log of the prior chance of an effect: families are equally likely; the head of a family has half of its chance, the other members share the rest.
-pub(crate) fn ticket(scene: &Scene, effect: usize) -> f64 {
-    let effects = &scene.showings.effects;
-    let shown = |place: usize| scene.candidates.iter().any(|c| c.effect == place);
+pub(crate) fn effect_log_prior(linear: &LinearisedModel, effect: usize) -> f64 {
+    let effects = &linear.sensitivities.effects;
+    let shown = |place: usize| linear.candidates.iter().any(|c| c.effect == place);
     let family_of = |place: usize| effects[place].effect.card().family.to_owned();
     let mut families: Vec<String> = (0..effects.len()).filter(|i| shown(*i)).map(family_of).collect();
     families.sort();
@@ -65,9 +65,9 @@ pub(crate) fn ticket(scene: &Scene, effect: usize) -> f64 {
 }
 
 /// Single effects and pairs that may explain the misfit, the best of each first.
-pub(crate) fn hypotheses(scene: &Scene, model: &Model, room: usize) -> Vec<Hypothesis> {
-    let singles = singles(scene, model);
-    let pairs = if room > 1 { pairs(scene, model) } else { Vec::new() };
+pub(crate) fn hypotheses(linear: &LinearisedModel, model: &Model, room: usize) -> Vec<Hypothesis> {
+    let singles = singles(linear, model);
+    let pairs = if room > 1 { pairs(linear, model) } else { Vec::new() };
     let best = singles.iter().chain(&pairs).map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
     let near = |list: Vec<Hypothesis>, most: usize| {
         list.into_iter()
@@ -81,15 +81,15 @@ pub(crate) fn hypotheses(scene: &Scene, model: &Model, room: usize) -> Vec<Hypot
 }
 
 /// Every effect with the forms that suit best.
-pub(crate) fn singles(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
+pub(crate) fn singles(linear: &LinearisedModel, model: &Model) -> Vec<Hypothesis> {
     let mut found: Vec<Hypothesis> = Vec::new();
-    for effect in 0..scene.showings.effects.len() {
-        let mut forms: Vec<(f64, f64, &Candidate, Vec<f64>)> = scene
+    for effect in 0..linear.sensitivities.effects.len() {
+        let mut forms: Vec<(f64, f64, &Candidate, Vec<f64>)> = linear
             .candidates
             .iter()
             .filter(|c| c.effect == effect)
             .map(|c| {
-                let explained = c.explains(&scene.z);
+                let explained = c.explains(&linear.z);
                 (c.log_evidence(&explained), explained.gain, c, explained.sizes)
             })
             .collect();
@@ -97,26 +97,29 @@ pub(crate) fn singles(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
         let Some((largest, gain, _, _)) = forms.first() else { continue };
         let (largest, gain) = (*largest, *gain);
         let sum: f64 = forms.iter().map(|form| (form.0 - largest).exp()).sum();
-        let starts =
-            forms.iter().take(FORMS).flat_map(|(_, _, c, sizes)| starts_of(scene, model, c, sizes)).collect();
-        let log_evidence = largest + sum.ln() + ticket(scene, effect);
+        let starts = forms
+            .iter()
+            .take(FORMS)
+            .flat_map(|(_, _, c, sizes)| starts_of(linear, model, c, sizes))
+            .collect();
+        let log_evidence = largest + sum.ln() + effect_log_prior(linear, effect);
         found.push(Hypothesis { effects: vec![effect], log_evidence, gain, starts });
     }
     found.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     found
 }
 
-fn starts_of(scene: &Scene, model: &Model, candidate: &Candidate, sizes: &[f64]) -> Vec<Vec<f64>> {
-    let effect = &scene.showings.effects[candidate.effect].effect;
-    starts(&scene.showings.showings[candidate.showing], effect, model, sizes)
+fn starts_of(linear: &LinearisedModel, model: &Model, candidate: &Candidate, sizes: &[f64]) -> Vec<Vec<f64>> {
+    let effect = &linear.sensitivities.effects[candidate.effect].effect;
+    starts(&linear.sensitivities.sensitivities[candidate.sensitivity], effect, model, sizes)
 }
 
 /// Every pair of effects of different families, at the forms that suit best together.
-fn pairs(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
-    let effects = &scene.showings.effects;
+fn pairs(linear: &LinearisedModel, model: &Model) -> Vec<Hypothesis> {
+    let effects = &linear.sensitivities.effects;
     let family = |candidate: &Candidate| effects[candidate.effect].effect.card().family;
-    let tickets: Vec<f64> = (0..effects.len()).map(|i| ticket(scene, i)).collect();
-    let all = &scene.candidates;
+    let log_priors: Vec<f64> = (0..effects.len()).map(|i| effect_log_prior(linear, i)).collect();
+    let all = &linear.candidates;
     let mut found: Vec<(f64, f64, usize, usize)> = (0..all.len())
         .into_par_iter()
         .map(|i| {
@@ -126,12 +129,12 @@ fn pairs(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
                 if a.effect == b.effect || family(a) == family(b) || a.columns.len() + b.columns.len() > 3 {
                     continue;
                 }
-                let together = explained(&[a, b], &scene.z);
+                let together = explained(&[a, b], &linear.z);
                 // A pair of which one does nothing is no pair.
                 if together.sizes.contains(&0.0) {
                     continue;
                 }
-                let value = log_evidence(&[a, b], &together) + tickets[a.effect] + tickets[b.effect];
+                let value = log_evidence(&[a, b], &together) + log_priors[a.effect] + log_priors[b.effect];
                 best.push((value, together.gain, i, j));
             }
             best
@@ -149,13 +152,13 @@ fn pairs(scene: &Scene, model: &Model) -> Vec<Hypothesis> {
             continue;
         }
         // What explains more alone comes first.
-        let alone = |place: usize| all[place].explains(&scene.z).gain;
+        let alone = |place: usize| all[place].explains(&linear.z).gain;
         let (first, second) = if alone(i) >= alone(j) { (i, j) } else { (j, i) };
         let chosen = [&all[first], &all[second]];
-        let together = explained(&chosen, &scene.z);
+        let together = explained(&chosen, &linear.z);
         let (a, b) = together.sizes.split_at(chosen[0].columns.len());
-        let starts_a = starts_of(scene, model, chosen[0], a);
-        let starts_b = starts_of(scene, model, chosen[1], b);
+        let starts_a = starts_of(linear, model, chosen[0], a);
+        let starts_b = starts_of(linear, model, chosen[1], b);
         let starts = starts_a
             .iter()
             .flat_map(|a| starts_b.iter().map(move |b| a.iter().chain(b).copied().collect()))

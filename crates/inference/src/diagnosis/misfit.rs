@@ -3,7 +3,7 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::diagnosis::document::Located;
-use crate::diagnosis::scene::{Direction, Scene};
+use crate::diagnosis::linearised_model::{Direction, LinearisedModel};
 use crate::diagnosis::smooth::Variable;
 use crate::dot::dot;
 use bulge_numerics::Random;
@@ -14,14 +14,14 @@ const DRAWS: usize = 400;
 /// RMS of the systematic misfit \[N\], and its 95 % interval.
 ///
 /// The smooth functions that the model can't follow have the coordinates z_j, each with the variance 1; what they add up to has on average sum |f_j|^2 more than the truth.
-pub(crate) fn misfit(scene: &Scene, seed: u64) -> (f64, [f64; 2]) {
-    let n = scene.force.len() as f64;
-    let coordinates: Vec<f64> = scene.smooth.iter().map(|d| dot(&d.unit, &scene.z)).collect();
-    let excess: f64 = scene.smooth.iter().map(|d| dot(&d.values, &d.values)).sum::<f64>() / n;
-    let sum = scene.systematic(&scene.z);
+pub(crate) fn misfit(linear: &LinearisedModel, seed: u64) -> (f64, [f64; 2]) {
+    let n = linear.force.len() as f64;
+    let coordinates: Vec<f64> = linear.smooth.iter().map(|d| dot(&d.unit, &linear.z)).collect();
+    let excess: f64 = linear.smooth.iter().map(|d| dot(&d.values, &d.values)).sum::<f64>() / n;
+    let sum = linear.systematic(&linear.z);
     let found = (dot(&sum, &sum) / n - excess).max(0.0).sqrt();
-    let stride = (scene.force.len() / 500).max(1);
-    let thin: Vec<Direction> = scene
+    let stride = (linear.force.len() / 500).max(1);
+    let thin: Vec<Direction> = linear
         .smooth
         .iter()
         .map(|d| Direction {
@@ -30,7 +30,7 @@ pub(crate) fn misfit(scene: &Scene, seed: u64) -> (f64, [f64; 2]) {
             ..*d
         })
         .collect();
-    let rows = scene.force.len().div_ceil(stride) as f64;
+    let rows = linear.force.len().div_ceil(stride) as f64;
     let mut random = Random::new(seed, 77);
     let mut drawn: Vec<f64> = (0..DRAWS)
         .map(|_| {
@@ -51,14 +51,14 @@ pub(crate) fn misfit(scene: &Scene, seed: u64) -> (f64, [f64; 2]) {
 
 /// On which variables the misfit depends: share of the excess over chance, and how often chance alone gives as much (Holm 1979), the largest share
 /// first.
-pub(crate) fn located(scene: &Scene) -> Vec<Located> {
+pub(crate) fn located(linear: &LinearisedModel) -> Vec<Located> {
     let mut found: Vec<(Variable, f64, f64, f64)> = Vec::new();
     for variable in Variable::ALL {
-        let squares: Vec<f64> = scene
+        let squares: Vec<f64> = linear
             .smooth
             .iter()
             .filter(|d| d.variable == variable)
-            .map(|d| dot(&d.unit, &scene.z).powi(2))
+            .map(|d| dot(&d.unit, &linear.z).powi(2))
             .collect();
         if squares.is_empty() {
             continue;

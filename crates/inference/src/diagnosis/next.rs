@@ -16,7 +16,7 @@ use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::NextExperiment;
-use crate::diagnosis::scene::Given;
+use crate::diagnosis::linearised_model::Given;
 use crate::fit::weights::Noise;
 use crate::noise::law::NoiseLaw;
 use crate::noise::whitening::Whitening;
@@ -348,14 +348,22 @@ fn least_separation(
     let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &variances).ok()?;
     // Coordinates are those of what is looked for: without the effect itself, most of its signal would have none.
     let only: Vec<String> = rivals.iter().chain([named]).cloned().collect();
-    let planned = Given { record: &record, whitening: &whitening, law: &law, only: Some(&only), ..*given };
-    let scene = planned.scene(&without.prepared, &without.theta).ok()?;
-    let signal = planned.signal(with, &scene).ok()?;
-    let beside = planned.beside(&scene, &signal, &[]);
-    let is_rival = |effect: &usize| scene.showings.effects[*effect].effect.card().name != named.as_str();
-    let least = (0..scene.showings.effects.len())
+    let planned = Given {
+        record: &record,
+        whitening: &whitening,
+        law: &law,
+        only: Some(&only),
+        is_planned: true,
+        ..*given
+    };
+    let linear = planned.linearised(&without.prepared, &without.theta).ok()?;
+    let signal = planned.signal(with, &linear).ok()?;
+    let beside = planned.beside(&linear, &signal, &[]);
+    let is_rival =
+        |effect: &usize| linear.sensitivities.effects[*effect].effect.card().name != named.as_str();
+    let least = (0..linear.sensitivities.effects.len())
         .filter(is_rival)
-        .map(|effect| beside.separation(&scene, effect))
+        .map(|effect| beside.separation(&linear, effect))
         .fold(f64::INFINITY, f64::min);
     least.is_finite().then_some(least)
 }

@@ -8,7 +8,7 @@ use bulge_muscles::Muscle;
 use crate::comparison::levels::Levels;
 use crate::diagnosis::as_set::as_set;
 use crate::diagnosis::pure_error::BetweenCycles;
-use crate::diagnosis::showing::Showings;
+use crate::diagnosis::sensitivity::Sensitivities;
 use crate::diagnosis::smooth::smooth;
 use crate::diagnosis::space::{Space, norm};
 use crate::diagnosis::tangents::Tangents;
@@ -76,8 +76,8 @@ impl Source<'_> {
         }
         let tangents = Tangents::of(prepared, theta, self.record)?;
         let residual = &tangents.residual;
-        let showings = Showings::of(self.catalogue, None, prepared, theta, &tangents);
-        let columns: Vec<&Vec<f64>> = showings.showings.iter().flat_map(|s| &s.columns).collect();
+        let sensitivities = Sensitivities::of(self.catalogue, None, prepared, theta, &tangents);
+        let columns: Vec<&Vec<f64>> = sensitivities.sensitivities.iter().flat_map(|s| &s.columns).collect();
         let design = saturated(self.record, &tangents.columns, &columns);
         let n = self.record.len();
         let stated = self.muscle.instruments().force.map_or(0.0, |force| force.noise());

@@ -152,7 +152,7 @@ fn adaptive(squares: impl Iterator<Item = f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::showing::{Sign, Size};
+    use crate::diagnosis::sensitivity::{Sign, Size};
 
     fn axis(place: usize, sign: Sign) -> Candidate {
         let mut column = vec![0.0; 10];

@@ -12,8 +12,8 @@ use std::sync::Arc;
 
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::decision_rule::RULE;
-use crate::diagnosis::scene::{Given, Scene};
-use crate::diagnosis::showing::Sign;
+use crate::diagnosis::linearised_model::{Given, LinearisedModel};
+use crate::diagnosis::sensitivity::Sign;
 use crate::diagnosis::space::norm;
 use crate::dot::dot;
 use crate::error::InferenceError;
@@ -122,7 +122,7 @@ pub fn plan(
     let theta = prepared.start();
     let planned = Planned::of(&prepared.model, &theta, protocol)?;
     let given = planned.given(catalogue);
-    let scene = given.scene(&prepared, &theta)?;
+    let linear = given.linearised(&prepared, &theta)?;
     let moments = planned.record.moments();
     let range = |of: &dyn Fn(&bulge_effects::Moment) -> f64| {
         moments.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
@@ -140,7 +140,7 @@ pub fn plan(
             names.join(", ")
         ));
     }
-    let mut effects = effects(&scene, planned.record.len(), muscle);
+    let mut effects = effects(&linear, planned.record.len(), muscle);
     effects.sort_by(|a, b| b.usual_sigma.total_cmp(&a.usual_sigma).then(a.effect.cmp(&b.effect)));
     Ok(Plan {
         schema: "bulge.plan/1",
@@ -151,7 +151,7 @@ pub fn plan(
         contraction: range(&|m| m.contraction),
         noise: planned.law.clone(),
         effects,
-        confused: confused(&scene),
+        confused: confused(&linear),
         warnings,
     })
 }
@@ -201,6 +201,7 @@ impl Planned {
             seed: 1,
             row_n: self.law.white_n,
             only: None,
+            is_planned: false,
             progress: &NOBODY,
             kin: None,
         }
@@ -231,16 +232,16 @@ fn law_of(protocol: &Protocol, muscle: &Muscle, force: &[f64]) -> NoiseLaw {
 }
 
 /// The form of an effect that is usual: the middle one.
-fn usual(scene: &Scene, effect: usize) -> Option<&Candidate> {
-    let forms: Vec<&Candidate> = scene.candidates.iter().filter(|c| c.effect == effect).collect();
+fn usual(linear: &LinearisedModel, effect: usize) -> Option<&Candidate> {
+    let forms: Vec<&Candidate> = linear.candidates.iter().filter(|c| c.effect == effect).collect();
     forms.get(forms.len() / 2).copied()
 }
 
-fn effects(scene: &Scene, rows: usize, muscle: &Muscle) -> Vec<PlannedEffect> {
-    let of = |(place, screened): (usize, &crate::diagnosis::showing::Screened)| {
+fn effects(linear: &LinearisedModel, rows: usize, muscle: &Muscle) -> Vec<PlannedEffect> {
+    let of = |(place, screened): (usize, &crate::diagnosis::sensitivity::Screened)| {
         let card = screened.effect.card();
         let cards = screened.effect.parameters();
-        let candidate = usual(scene, place);
+        let candidate = usual(linear, place);
         let size = candidate.and_then(|c| c.sizes.first());
         let number = cards.get(size.map_or(0, |s| s.place));
         let unit = number.map_or(("", 1.0), |n| (n.unit, n.factor));
@@ -248,7 +249,8 @@ fn effects(scene: &Scene, rows: usize, muscle: &Muscle) -> Vec<PlannedEffect> {
         let range = number.map(|n| n.of(muscle)).map_or(f64::INFINITY, |n| n.high - n.low);
         // Beyond the bounds of the number it is no limit: the test can't show the effect.
         let limit = (per_size > 0.0).then(|| SEEN / per_size).filter(|limit| *limit <= range);
-        let column = candidate.and_then(|c| scene.showings.showings[c.showing].columns.first());
+        let column =
+            candidate.and_then(|c| linear.sensitivities.sensitivities[c.sensitivity].columns.first());
         let rms = column.map_or(0.0, |c| (dot(c, c) / rows.max(1) as f64).sqrt());
         PlannedEffect {
             effect: card.name.to_owned(),
@@ -266,17 +268,17 @@ fn effects(scene: &Scene, rows: usize, muscle: &Muscle) -> Vec<PlannedEffect> {
             }),
         }
     };
-    scene.showings.effects.iter().enumerate().map(of).collect()
+    linear.sensitivities.effects.iter().enumerate().map(of).collect()
 }
 
 /// Pairs of different families that look alike.
-fn confused(scene: &Scene) -> Vec<ConfusedPair> {
+fn confused(linear: &LinearisedModel) -> Vec<ConfusedPair> {
     let all: Vec<&Candidate> =
-        (0..scene.showings.effects.len()).filter_map(|effect| usual(scene, effect)).collect();
+        (0..linear.sensitivities.effects.len()).filter_map(|effect| usual(linear, effect)).collect();
     let mut found = Vec::new();
     for (i, a) in all.iter().enumerate() {
         for b in &all[i + 1..] {
-            let [x, y] = [a, b].map(|c| &scene.showings.effects[c.effect].effect);
+            let [x, y] = [a, b].map(|c| &linear.sensitivities.effects[c.effect].effect);
             if x.card().family == y.card().family {
                 continue;
             }

@@ -50,7 +50,7 @@ pub(crate) fn bent_rungs(
     groups: &[Vec<usize>],
     above_n: f64,
 ) -> Result<Vec<BentRung>, InferenceError> {
-    let bent: Vec<&Bent> = stage.scene.form.effects.iter().filter(|bent| bent.may_bend()).collect();
+    let bent: Vec<&Bent> = stage.linear.form.effects.iter().filter(|bent| bent.may_bend()).collect();
     if bent.is_empty() {
         return Ok(Vec::new());
     }

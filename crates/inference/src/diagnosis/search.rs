@@ -8,8 +8,8 @@ use std::sync::Arc;
 use crate::diagnosis::bending::{Kin, may_bend};
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
-use crate::diagnosis::hypotheses::{FAR, Hypothesis, Tried, hypotheses, ticket};
-use crate::diagnosis::scene::Given;
+use crate::diagnosis::hypotheses::{FAR, Hypothesis, Tried, effect_log_prior, hypotheses};
+use crate::diagnosis::linearised_model::Given;
 use crate::diagnosis::stage::{Stage, tempered};
 
 /// Effects that are added at most: a misfit that takes more is one that the catalogue doesn't hold.
@@ -44,7 +44,7 @@ impl Search {
     fn fit_of(&self, effects: &[Arc<dyn Effect>]) -> Option<&Confirmed> {
         let asked = names(effects.iter());
         let is_it = |(stage, tried): &(&Stage, &Tried)| {
-            let all = &stage.scene.showings.effects;
+            let all = &stage.linear.sensitivities.effects;
             let new = tried.hypothesis.effects.iter().map(|place| &all[*place].effect);
             names(stage.added.iter().chain(new)) == asked
         };
@@ -126,7 +126,7 @@ impl Given<'_> {
 
     /// The stage at a lower minimum of its model, where a fit with further effects came to one and left them off.
     pub(crate) fn lower(&self, base: &Model, stage: &Stage) -> Option<Stage> {
-        let effects = &stage.scene.showings.effects;
+        let effects = &stage.linear.sensitivities.effects;
         let is_idle = |tried: &&Tried| {
             let new: Vec<_> =
                 tried.hypothesis.effects.iter().map(|i| Arc::clone(&effects[*i].effect)).collect();
@@ -147,7 +147,7 @@ impl Given<'_> {
     fn step(&self, stages: &[Stage], tried: &Tried, confirmed: &Confirmed) -> Option<(Stage, bool, f64)> {
         let (base, stage) = (stages.first()?, stages.last()?);
         let worth = RULE.worth[usize::from(!stage.added.is_empty())];
-        let effects = &stage.scene.showings.effects;
+        let effects = &stage.linear.sensitivities.effects;
         let new: Vec<Arc<dyn Effect>> =
             tried.hypothesis.effects.iter().map(|i| Arc::clone(&effects[*i].effect)).collect();
         if tried.log_evidence <= worth || confirmed.is_absurd(&new, self.record) || confirmed.is_idle(&new) {
@@ -188,7 +188,7 @@ impl Given<'_> {
         let Some(stage) = stages.last().filter(|stage| pair.0.added.len() == stage.added.len() + 2) else {
             return pair;
         };
-        let effects = &stage.scene.showings.effects;
+        let effects = &stage.linear.sensitivities.effects;
         let is_half = |tried: &&Tried| {
             let [only] = &tried.hypothesis.effects[..] else { return false };
             let name = effects[*only].effect.card().name;
@@ -211,7 +211,7 @@ impl Given<'_> {
 
     /// The best hypotheses of a stage with so much `room` for further effects, each fitted.
     fn tried(&self, base: &Model, stage: &Stage, room: usize, before: Option<&Search>) -> Vec<Tried> {
-        let hypotheses = hypotheses(&stage.scene, &stage.confirmed.prepared.model, room);
+        let hypotheses = hypotheses(&stage.linear, &stage.confirmed.prepared.model, room);
         let (singles, pairs): (Vec<_>, Vec<_>) = hypotheses.into_iter().partition(|h| h.effects.len() == 1);
         let fitted = |list: Vec<Hypothesis>, kin: &Kin| -> Vec<Tried> {
             let known = Given { kin: Some(kin), ..*self };
@@ -234,8 +234,11 @@ impl Given<'_> {
         hypothesis: Hypothesis,
         search: Option<&Search>,
     ) -> Tried {
-        let effects: Vec<Arc<dyn Effect>> =
-            hypothesis.effects.iter().map(|i| Arc::clone(&stage.scene.showings.effects[*i].effect)).collect();
+        let effects: Vec<Arc<dyn Effect>> = hypothesis
+            .effects
+            .iter()
+            .map(|i| Arc::clone(&stage.linear.sensitivities.effects[*i].effect))
+            .collect();
         let all: Vec<Arc<dyn Effect>> = stage.added.iter().chain(&effects).cloned().collect();
         let before = Self::numbers_of(base, stage);
         let starts: Vec<Vec<f64>> =
@@ -262,10 +265,10 @@ impl Given<'_> {
             confirmed =
                 lower(confirmed, self.confirm(base, &all, Some(stage.confirmed.numbers()), &further).ok());
         }
-        let tickets: f64 = hypothesis.effects.iter().map(|i| ticket(&stage.scene, *i)).sum();
+        let log_priors: f64 = hypothesis.effects.iter().map(|i| effect_log_prior(&stage.linear, *i)).sum();
         let log_evidence = confirmed
             .as_ref()
-            .map_or(f64::NEG_INFINITY, |c| c.log_evidence - stage.confirmed.log_evidence + tickets);
+            .map_or(f64::NEG_INFINITY, |c| c.log_evidence - stage.confirmed.log_evidence + log_priors);
         Tried { hypothesis, confirmed, log_evidence }
     }
 
@@ -310,15 +313,21 @@ fn lower(one: Option<Confirmed>, other: Option<Confirmed>) -> Option<Confirmed> 
 fn ranked(tried: &[Tried]) -> Vec<(&Tried, &Confirmed)> {
     let mut list: Vec<(&Tried, &Confirmed)> =
         tried.iter().filter_map(|t| Some((t, t.confirmed.as_ref()?))).collect();
-    let is_single = |(t, _): &&(&Tried, &Confirmed)| t.hypothesis.effects.len() == 1;
-    let best = list.iter().filter(is_single).max_by(|a, b| a.0.log_evidence.total_cmp(&b.0.log_evidence));
-    let of_single = best.map_or(0.0, |(_, confirmed)| confirmed.form.log_evidence);
-    let worth = |(t, c): &(&Tried, &Confirmed)| {
-        let further = t.hypothesis.effects.len() as f64 - 1.0;
-        // A pair is no better for being exact where one bent formula does as well.
-        let bending = if further > 0.0 { c.form.log_evidence.max(of_single) } else { c.form.log_evidence };
-        t.log_evidence - RULE.pair * further - RULE.by_bending * bending
+    let further = |t: &Tried| t.hypothesis.effects.len() - 1;
+    let worth = |(t, c): (&Tried, &Confirmed)| {
+        t.log_evidence - RULE.pair * further(t) as f64 - RULE.by_bending * c.form.log_evidence
     };
-    list.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+    let best = |of: usize| {
+        let some = list.iter().copied().filter(|(t, _)| further(t) == of);
+        let best = some.max_by(|a, b| worth(*a).total_cmp(&worth(*b)));
+        best.map_or(0.0, |(_, confirmed)| confirmed.form.log_evidence)
+    };
+    // Pairs are no better for being exact where one bent formula does as well.
+    let exactness = RULE.by_bending * (best(0) - best(1)).max(0.0);
+    let key = |one: &(&Tried, &Confirmed)| worth(*one) - if further(one.0) > 0 { exactness } else { 0.0 };
+    let keys: Vec<f64> = list.iter().map(key).collect();
+    let mut order: Vec<usize> = (0..list.len()).collect();
+    order.sort_by(|a, b| keys[*b].total_cmp(&keys[*a]));
+    list = order.into_iter().map(|place| list[place]).collect();
     list
 }

@@ -5,7 +5,7 @@
 //! ```
 //! with z_j the coordinate of the misfit along the j-th smooth function, f_j the RMS of that function at one standard deviation, F the largest force.
 
-use crate::diagnosis::scene::Scene;
+use crate::diagnosis::linearised_model::LinearisedModel;
 use crate::dot::dot;
 
 /// Sizes of a smooth misfit as parts of the largest force.
@@ -14,13 +14,13 @@ const SIZES: [f64; 6] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 const FADES: [f64; 3] = [4.0, 12.0, 36.0];
 
 /// Log evidence of a smooth misfit that a model has and nobody thought of, over that of none.
-pub(crate) fn smooth_evidence(scene: &Scene) -> f64 {
-    let largest = scene.force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
-    let rows = scene.force.len().max(1) as f64;
-    let found: Vec<(f64, f64)> = scene
+pub(crate) fn smooth_evidence(linear: &LinearisedModel) -> f64 {
+    let largest = linear.force.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    let rows = linear.force.len().max(1) as f64;
+    let found: Vec<(f64, f64)> = linear
         .smooth
         .iter()
-        .map(|d| (dot(&d.unit, &scene.z), (dot(&d.values, &d.values) / rows).sqrt()))
+        .map(|d| (dot(&d.unit, &linear.z), (dot(&d.values, &d.values) / rows).sqrt()))
         .collect();
     evidence_of(&found, largest)
 }

@@ -13,6 +13,8 @@ use crate::dot::dot;
 /// A column whose part outside the frame is smaller than this part of it lies within the frame.
 const WITHIN: f64 = 1e-7;
 
+/// A smooth function adds nothing if less than this part of it is new.
+const NEW: f64 = 1e-3;
 /// A part that is taken out only once leaves this much of a column at least: rounding is then no larger in it than in the column (Daniel and others 1976).
 pub(crate) const ENOUGH: f64 = 0.5;
 
@@ -199,6 +201,39 @@ fn scaled(mut column: Vec<f64>, factor: f64) -> Vec<f64> {
 
 pub(crate) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
+}
+
+/// A function without what others span, so that its white column has the length 1; none if nothing of it is new.
+pub(crate) fn orthogonal(
+    mut raw: Vec<f64>,
+    mut white: Vec<f64>,
+    known: &[(Vec<f64>, Vec<f64>)],
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let whole = norm(&white);
+    let mut left = whole;
+    for _ in 0..2 {
+        let before = left;
+        for (other, unit) in known {
+            let part = dot(&white, unit);
+            for (value, u) in white.iter_mut().zip(unit) {
+                *value -= part * u;
+            }
+            for (value, o) in raw.iter_mut().zip(other) {
+                *value -= part * o;
+            }
+        }
+        left = norm(&white);
+        if left > ENOUGH * before {
+            break;
+        }
+    }
+    if left <= NEW * whole {
+        return None;
+    }
+    for value in raw.iter_mut().chain(&mut white) {
+        *value /= left;
+    }
+    Some((raw, white))
 }
 
 #[cfg(test)]

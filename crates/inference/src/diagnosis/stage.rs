@@ -7,8 +7,8 @@ use std::sync::Arc;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::Tried;
+use crate::diagnosis::linearised_model::{Given, LinearisedModel};
 use crate::diagnosis::null::Null;
-use crate::diagnosis::scene::{Given, Scene};
 use crate::diagnosis::something_else::smooth_evidence;
 
 /// Whether a model explains the data.
@@ -44,7 +44,7 @@ pub(crate) struct Stage {
     /// Effects that were added to the base.
     pub(crate) added: Vec<Arc<dyn Effect>>,
     pub(crate) confirmed: Confirmed,
-    pub(crate) scene: Scene,
+    pub(crate) linear: LinearisedModel,
     pub(crate) adequacy: Adequacy,
     /// Whether the model explains the data.
     pub(crate) adequate: bool,
@@ -61,12 +61,12 @@ impl Stage {
 
     /// Square of the misfit that smooth functions follow, beyond what chance gives.
     pub(crate) fn excess(&self) -> f64 {
-        (self.scene.structure() - self.scene.smooth.len() as f64).max(0.0)
+        (self.linear.structure() - self.linear.smooth.len() as f64).max(0.0)
     }
 
     /// Log evidence of something that nobody thought of on top of the model; 0 where nothing is left to explain.
     pub(crate) fn something_else(&self) -> f64 {
-        if self.adequate { 0.0 } else { (RULE.something_else + smooth_evidence(&self.scene)).max(0.0) }
+        if self.adequate { 0.0 } else { (RULE.something_else + smooth_evidence(&self.linear)).max(0.0) }
     }
 
     /// Log evidence of the model, with or without something else on top, over that of another; implausible numbers cost nothing here.
@@ -82,11 +82,11 @@ impl Stage {
 
     /// How much more than chance the misfit scatters over the smooth functions, as a ratio of variances: 1 if the model explains the data.
     pub(crate) fn scatter(&self) -> f64 {
-        let smooth = &self.scene.smooth;
+        let smooth = &self.linear.smooth;
         if self.adequate || smooth.is_empty() {
             return 1.0;
         }
-        (self.scene.structure() / smooth.len() as f64).max(1.0)
+        (self.linear.structure() / smooth.len() as f64).max(1.0)
     }
 }
 /// A log evidence when the noise is larger by the ratio `scatter` of variances than the law says; `gain` is the fall of the square of the misfit in it.
@@ -94,15 +94,15 @@ pub(crate) fn tempered(log_evidence: f64, gain: f64, scatter: f64) -> f64 {
     log_evidence - 0.5 * gain * (1.0 - 1.0 / scatter)
 }
 impl Given<'_> {
-    /// A model with its scene and adequacy.
+    /// A model, linearised, with its adequacy.
     pub(crate) fn stage(
         &self,
         added: Vec<Arc<dyn Effect>>,
         confirmed: Confirmed,
     ) -> Result<Stage, ModelError> {
         let known = Given { kin: Some(&confirmed.form.kin), ..*self };
-        let scene = known.scene(&confirmed.prepared, &confirmed.theta)?;
-        let (null, chance) = scene.chance(self);
+        let linear = known.linearised(&confirmed.prepared, &confirmed.theta)?;
+        let (null, chance) = linear.chance(self);
         let fit_fails = self.scatters(&confirmed);
         let mut adequacy = Adequacy { null, names: !added.is_empty(), chance, fit_fails, repeats: false };
         // A test may be surprised by what no smooth misfit explains: that is no structure.
@@ -110,14 +110,14 @@ impl Given<'_> {
             !added.is_empty()
                 && !adequacy.screen_fails()
                 && !fit_fails
-                && RULE.something_else + smooth_evidence(&scene) <= 0.0
+                && RULE.something_else + smooth_evidence(&linear) <= 0.0
         };
         let holds = adequacy.holds() || is_chance();
         adequacy.repeats =
-            holds && scene.lack_of_fit(self.record).is_some_and(|chance| chance < RULE.near_replicates);
+            holds && linear.lack_of_fit(self.record).is_some_and(|chance| chance < RULE.near_replicates);
         // What repeats beside effects that explain the rest is no reason to bend or add more of them.
         let adequate = holds && (adequacy.names || !adequacy.repeats);
-        Ok(Stage { added, confirmed, scene, adequate, adequacy, tried: Vec::new() })
+        Ok(Stage { added, confirmed, linear, adequate, adequacy, tried: Vec::new() })
     }
 
     /// Whether readings scatter about a model by much more than their noise.

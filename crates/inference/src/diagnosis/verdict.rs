@@ -58,7 +58,7 @@ impl Findings<'_> {
         };
         let small = format!("{} N", significant(tolerance, 3));
         let within = |stage: &Stage| {
-            let (left, interval) = misfit(&stage.scene, self.given.seed);
+            let (left, interval) = misfit(&stage.linear, self.given.seed);
             (interval[1] <= tolerance)
                 .then(|| format!("{} N (at most {})", significant(left, 2), significant(interval[1], 2)))
         };
@@ -101,7 +101,7 @@ impl Findings<'_> {
 
     /// The systematic misfit of the last model with its interval.
     fn size(&self) -> String {
-        let (misfit_n, interval) = misfit(&self.last().scene, self.given.seed);
+        let (misfit_n, interval) = misfit(&self.last().linear, self.given.seed);
         format!(
             "{} N ({} to {})",
             significant(misfit_n, 2),
@@ -197,7 +197,7 @@ impl Findings<'_> {
 
     /// Whether a misfit that passed for noise is too large to be called none.
     pub(crate) fn is_large(&self) -> bool {
-        let (_, [low, high]) = misfit(&self.last().scene, self.given.seed);
+        let (_, [low, high]) = misfit(&self.last().linear, self.given.seed);
         let force = self.given.record.force();
         let full = full_scale(force, 0..force.len());
         let has_none = self.search.stages.len() == 1;

@@ -19,10 +19,10 @@ use crate::diagnosis::explained::{explained, surface};
 use crate::diagnosis::geometry::Geometry;
 use crate::diagnosis::hints::hints;
 use crate::diagnosis::hypotheses::singles;
+use crate::diagnosis::linearised_model::Given;
 use crate::diagnosis::misfit::{located, misfit};
 use crate::diagnosis::plan::SEEN;
 use crate::diagnosis::rungs::{BentRung, TOGETHER, join_useless};
-use crate::diagnosis::scene::Given;
 use crate::diagnosis::search::Search;
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::verdict::furthest;
@@ -71,8 +71,8 @@ pub(crate) fn document(
     let classes = if named { classes } else { &[] };
     let last = found.shown_stage();
     let adequate = last.adequate && !last.adequacy.repeats || verdict == Verdict::Adequate;
-    let (misfit_n, misfit_interval_n) = misfit(&last.scene, given.seed);
-    let left = located(&last.scene);
+    let (misfit_n, misfit_interval_n) = misfit(&last.linear, given.seed);
+    let left = located(&last.linear);
     let added = classes.iter().map(|(class, sure)| found.missing(class, *sure));
     let (missing, nearest): (Vec<Missing>, Vec<Missing>) = added.partition(|m| claimed.contains(&m.fitted));
     Diagnosis {
@@ -103,15 +103,15 @@ pub(crate) fn document(
         nearest,
         ladder: found.ladder(&comparison, bent, adequate && verdict != Verdict::CannotTell),
         noise_floor_n: sd_n,
-        r#where: located(&search.stages[0].scene),
+        r#where: located(&search.stages[0].linear),
         explained: if named { found.explained() } else { Vec::new() },
         remaining: Remaining {
             structured: !adequate,
             misfit_n,
             misfit_interval_n,
             unseen_below_n: if named { found.unseen_below_n() } else { None },
-            hints: if adequate { Vec::new() } else { hints(given.record, &last.scene, &left) },
-            surface: surface(given.record, &last.scene),
+            hints: if adequate { Vec::new() } else { hints(given.record, &last.linear, &left) },
+            surface: surface(given.record, &last.linear),
         },
         geometry: Geometry::default(),
         not_looked_for: Vec::new(),
@@ -133,7 +133,7 @@ impl Findings<'_> {
     /// What a further effect must change to count beside those that are named: less could be an error of their formulas. As a part of what they explain, squares count.
     fn unseen_below_n(&self) -> Option<f64> {
         let last = self.last();
-        let (explained_n, _) = misfit(&self.search.stages[0].scene, self.given.seed);
+        let (explained_n, _) = misfit(&self.search.stages[0].linear, self.given.seed);
         (!last.added.is_empty() && may_bend(&last.confirmed.prepared))
             .then(|| RULE.mends.sqrt() * explained_n)
     }
@@ -146,7 +146,7 @@ impl Findings<'_> {
             };
             let names: Vec<String> =
                 pair[1].added.iter().filter(is_new).map(|effect| self.label(effect)).collect();
-            explained(&names.join(" + "), self.given.record, &pair[0].scene.force, &pair[1].scene.force)
+            explained(&names.join(" + "), self.given.record, &pair[0].linear.force, &pair[1].linear.force)
         };
         self.search.stages.windows(2).map(step).collect()
     }
@@ -208,8 +208,8 @@ impl Findings<'_> {
         };
         let stroke = self.given.record.sweeps().iter().map(stroke).fold(0.0, f64::max);
         // Where the length is held there is none: friction of the length is no candidate.
-        let first = &self.search.stages[0].scene.showings.effects;
-        let is_candidate = first.iter().any(|showing| showing.effect.card().name == COULOMB);
+        let first = &self.search.stages[0].linear.sensitivities.effects;
+        let is_candidate = first.iter().any(|sensitivity| sensitivity.effect.card().name == COULOMB);
         // Beside Coulomb's friction it is what that lacks.
         let has_coulomb = confirmed.prepared.model.effects().iter().any(|c| c.effect.card().name == COULOMB);
         let is_short = card.family == HYSTERESIS
@@ -244,7 +244,7 @@ impl Findings<'_> {
             }
         }
         let levels = Levels::of(class, &sure, self.classes.len());
-        let bent = &self.last().scene.form.effects;
+        let bent = &self.last().linear.form.effects;
         let bent = bent.iter().find(|bent| bent.effect.card().name == card.name);
         let mut rivals: Vec<RivalResult> =
             class.rivals.iter().map(|rival| rival_result(rival, class)).collect();
@@ -336,13 +336,13 @@ impl Findings<'_> {
     fn candidates(&self, classes: &[(Class, Confidence)], claimed: &[Missing]) -> Vec<CandidateResult> {
         let given = self.given;
         let stage = &self.search.stages[0];
-        let scene = &stage.scene;
-        let linear = singles(scene, &stage.confirmed.prepared.model);
+        let linear = &stage.linear;
+        let alone = singles(linear, &stage.confirmed.prepared.model);
         let given_muscle = stage.confirmed.prepared.model.muscle();
         let mut found: Vec<CandidateResult> = Vec::new();
-        for (place, screened) in scene.showings.effects.iter().enumerate() {
+        for (place, screened) in linear.sensitivities.effects.iter().enumerate() {
             let name = screened.effect.card().name;
-            let alone = linear.iter().find(|h| h.effects == [place]);
+            let alone = alone.iter().find(|h| h.effects == [place]);
             let tried = stage.tried.iter().find(|t| t.hypothesis.effects == [place]);
             let is_rival =
                 |class: &Class| class.rivals.iter().any(|r| r.in_class && r.effect.card().name == name);
@@ -360,7 +360,7 @@ impl Findings<'_> {
             } else {
                 "rejected"
             };
-            let candidate = scene.candidates.iter().find(|c| c.effect == place);
+            let candidate = linear.candidates.iter().find(|c| c.effect == place);
             let numbers = screened.effect.parameters();
             let number = candidate.and_then(|c| numbers.get(c.sizes.first()?.place));
             let per_size = candidate.map_or(0.0, |c| c.detectability(1.0));
@@ -368,7 +368,8 @@ impl Findings<'_> {
             // Beyond the bounds of the number it is no limit: these data can't show the effect.
             let limit = limit
                 .filter(|l| number.is_none_or(|n| *l <= n.of(given_muscle).high - n.of(given_muscle).low));
-            let column = candidate.and_then(|c| scene.showings.showings[c.showing].columns.first());
+            let column =
+                candidate.and_then(|c| linear.sensitivities.sensitivities[c.sensitivity].columns.first());
             let rms = column.map(|c| (dot(c, c) / given.record.len().max(1) as f64).sqrt());
             let fitted = tried.map(|t| t.log_evidence).filter(|evidence| evidence.is_finite());
             found.push(CandidateResult {

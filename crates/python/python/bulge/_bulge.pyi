@@ -182,7 +182,7 @@ def compare(
     data: Data, muscle: Muscle, with_: list[str], own: str, law: str | None, fit_law: bool, rivals: bool
 ) -> Comparison: ...
 def diagnose(
-    data: Data, muscle: Muscle, with_: list[str], own: str, tolerance: float | None, seed: int, threads: int | None, progress: _Told
+    data: Data, muscle: Muscle, with_: list[str], own: str, among: list[str], tolerance: float | None, seed: int, threads: int | None, progress: _Told
 ) -> Diagnosis: ...
 def next_experiment(
     data: Data,

@@ -299,6 +299,7 @@ def diagnose(
     with_: Iterable[str] | str = (),
     *,
     own: OwnEffects = None,
+    among: Iterable[str] | str = (),
     tolerance: Quantity | None = None,
     seed: int = 1,
     threads: int | None = None,
@@ -307,13 +308,13 @@ def diagnose(
     """Finds which physical effect is missing, and how sure that is: what ``bulge diagnose`` does.
 
     ``tolerance`` is the RMS misfit [N] that doesn't matter. The same ``seed`` gives the same answer, on any number of
-    ``threads`` [default: all cores]. ``own`` effects are looked for too.
+    ``threads`` [default: all cores]. ``own`` effects are looked for too; ``among`` names the effects that alone are looked for.
     """
     if threads is not None:
         threads = count("threads", threads, 1, 1024)
     allowed = None if tolerance is None else si(tolerance, "N", "tolerance")
     with callback(progress, "diagnose") as told:
-        return Diagnosis(_bulge.diagnose(read(data, muscle=muscle)._native, muscle._native, _names(with_), own_text(own), allowed, count("seed", seed, 0), threads, told))
+        return Diagnosis(_bulge.diagnose(read(data, muscle=muscle)._native, muscle._native, _names(with_), own_text(own), _names(among), allowed, count("seed", seed, 0), threads, told))
 
 
 def fit(data: DataLike, muscle: Muscle, with_: Iterable[str] | str, *, own: OwnEffects = None, form_error: bool = False) -> Fit:

@@ -8,9 +8,9 @@ use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::form_error::{FormDirection, FormError};
 use crate::diagnosis::lack_of_fit::lack_of_fit;
 use crate::diagnosis::null::{Chance, Null, Statistics};
-use crate::diagnosis::showing::Showings;
+use crate::diagnosis::sensitivity::Sensitivities;
 use crate::diagnosis::smooth::{Variable, smooth};
-use crate::diagnosis::space::{ENOUGH, Space, norm};
+use crate::diagnosis::space::{Space, orthogonal};
 use crate::diagnosis::tangents::Tangents;
 use crate::dot::dot;
 use crate::fit::nuisance::Prepared;
@@ -19,8 +19,6 @@ use crate::noise::law::NoiseLaw;
 use crate::noise::whitening::Whitening;
 use crate::progress::Progress;
 
-/// A smooth function adds nothing if less than this part of it is new.
-const NEW: f64 = 1e-3;
 /// A row whose stated standard deviation is that many times the usual one hardly counts.
 const DOUBTFUL: f64 = 2.0;
 /// Smooth functions for at most this part of the rows that count as independent.
@@ -40,6 +38,8 @@ pub(crate) struct Given<'a> {
     pub(crate) seed: u64,
     /// Looks for these effects only.
     pub(crate) only: Option<&'a [String]>,
+    /// Asks nothing of the misfit: there are no readings, or nothing is looked for.
+    pub(crate) is_planned: bool,
     /// Who hears of the work.
     pub(crate) progress: &'a Progress,
     /// Columns of kin that are known already.
@@ -57,7 +57,7 @@ pub(crate) struct Direction {
 }
 
 /// A model at its numbers, whitened: its tangents and what it misses. Priors of its numbers are further rows.
-struct Linearised {
+struct Whitened {
     tangent: Tangents,
     priors: usize,
     /// The tangents.
@@ -66,8 +66,8 @@ struct Linearised {
 }
 
 /// The misfit of a model, and all candidates, in coordinates.
-pub(crate) struct Scene {
-    pub(crate) showings: Showings,
+pub(crate) struct LinearisedModel {
+    pub(crate) sensitivities: Sensitivities,
     pub(crate) candidates: Vec<Candidate>,
     pub(crate) smooth: Vec<Direction>,
     /// The coordinates.
@@ -99,13 +99,24 @@ impl<'a> Given<'a> {
     ) -> Self {
         let progress = &crate::progress::NOBODY;
         let row_n = law.white_n;
-        Self { catalogue, record, whitening, law, row_n, seed: 1, only: None, progress, kin: None }
+        Self {
+            catalogue,
+            record,
+            whitening,
+            law,
+            row_n,
+            seed: 1,
+            only: None,
+            is_planned: false,
+            progress,
+            kin: None,
+        }
     }
 }
 
 impl Given<'_> {
-    /// A model at the numbers `theta`, linearised.
-    fn linearised(&self, prepared: &Prepared, theta: &[f64]) -> Result<Linearised, ModelError> {
+    /// A model at the numbers `theta`, whitened.
+    fn whitened(&self, prepared: &Prepared, theta: &[f64]) -> Result<Whitened, ModelError> {
         let tangent = Tangents::of(prepared, theta, self.record)?;
         let priors: Vec<(usize, f64, f64)> = tangent
             .free
@@ -124,7 +135,7 @@ impl Given<'_> {
             white[*column][rows + place] = *slope;
             misfit[rows + place] = *misses;
         }
-        Ok(Linearised { tangent, priors: priors.len(), white, misfit })
+        Ok(Whitened { tangent, priors: priors.len(), white, misfit })
     }
 
     /// A column whitened, with zeros for so many priors.
@@ -139,65 +150,73 @@ impl Given<'_> {
         if !may_bend(prepared) {
             return Ok(FormError::default());
         }
-        let linearised = self.linearised(prepared, theta)?;
-        Ok(self.bent(prepared, theta, &linearised, &Space::without(&linearised.white)).0)
+        let whitened = self.whitened(prepared, theta)?;
+        Ok(self.bent(prepared, theta, &whitened, &Space::without(&whitened.white)).0)
     }
 
     /// What form errors of one standard deviation change in a model at the numbers `theta`, in their principal directions \[N\].
     pub(crate) fn form_directions(&self, prepared: &Prepared, theta: &[f64]) -> Vec<Vec<f64>> {
-        let Ok(linearised) = self.linearised(prepared, theta) else { return Vec::new() };
-        let (_, bent) = self.bent(prepared, theta, &linearised, &Space::without(&linearised.white));
-        bent.into_iter().map(|direction| direction.values).collect()
+        let Ok(whitened) = self.whitened(prepared, theta) else { return Vec::new() };
+        let (_, bent) = self.bent(prepared, theta, &whitened, &Space::without(&whitened.white));
+        bent.into_iter().filter(FormDirection::is_seen).map(|direction| direction.values).collect()
     }
 
     fn bent(
         &self,
         prepared: &Prepared,
         theta: &[f64],
-        linearised: &Linearised,
+        whitened: &Whitened,
         space: &Space,
     ) -> (FormError, Vec<FormDirection>) {
-        let bendings = bendings(self.catalogue, prepared, theta, &linearised.tangent, self.kin);
-        let whiten = |column: &[f64]| self.white(column, linearised.priors);
-        FormError::of(&bendings, space, &linearised.misfit, &whiten)
+        let bendings = bendings(self.catalogue, prepared, theta, &whitened.tangent, self.kin);
+        let whiten = |column: &[f64]| self.white(column, whitened.priors);
+        FormError::of(&bendings, space, &whitened.misfit, &whiten)
     }
 
-    /// The scene of a model with the numbers `theta`.
-    pub(crate) fn scene(&self, prepared: &Prepared, theta: &[f64]) -> Result<Scene, ModelError> {
-        let mut linearised = self.linearised(prepared, theta)?;
-        let mut space = Space::without(&linearised.white);
-        let (form, bent) = self.bent(prepared, theta, &linearised, &space);
+    /// A model with the numbers `theta`.
+    pub(crate) fn linearised(
+        &self,
+        prepared: &Prepared,
+        theta: &[f64],
+    ) -> Result<LinearisedModel, ModelError> {
+        let mut whitened = self.whitened(prepared, theta)?;
+        let mut space = Space::without(&whitened.white);
+        let (form, mut bent) = self.bent(prepared, theta, &whitened, &space);
+        let whiten = |column: &[f64]| self.white(column, whitened.priors);
+        let numbers = prepared.model.parameters();
+        let owner: Vec<&str> =
+            whitened.tangent.free.iter().map(|index| numbers[*index].effect.as_str()).collect();
+        let tangents: Vec<(Vec<f64>, Vec<f64>)> =
+            whitened.tangent.columns.iter().cloned().zip(whitened.white).collect();
+        let form = form.row_by_row(&bent, &whitened.misfit, &tangents, &owner, &whiten);
+        bent.retain(FormDirection::is_seen);
         space.leave_out(&bent.iter().map(|direction| &direction.white[..]).collect::<Vec<_>>());
-        let priors = linearised.priors + bent.len();
-        let whiten = |column: &[f64]| self.white(column, linearised.priors);
-        let mut known: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
-        for (raw, white) in linearised.tangent.columns.iter().zip(&linearised.white) {
-            known.extend(orthogonal(raw.clone(), white.clone(), &known));
-        }
-        let form = form.row_by_row(&bent, &linearised.misfit, &known, &whiten);
+        let priors = whitened.priors + bent.len();
         let whiten = |column: &[f64]| self.white(column, priors);
-        linearised.misfit.resize(self.record.len() + priors, 0.0);
-        let tangent = linearised.tangent;
-        let showings = Showings::of(self.catalogue, self.only, prepared, theta, &tangent);
-        let candidates = Candidate::all(&showings, &mut space, &whiten);
-        let smooth = if self.only.is_some() {
+        whitened.misfit.resize(self.record.len() + priors, 0.0);
+        let tangent = whitened.tangent;
+        let sensitivities = Sensitivities::of(self.catalogue, self.only, prepared, theta, &tangent);
+        let candidates = Candidate::all(&sensitivities, &mut space, &whiten);
+        let smooth = if self.is_planned {
             Vec::new()
         } else {
-            for (_, white) in &mut known {
+            let mut known: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+            for (raw, mut white) in tangents {
                 white.resize(self.record.len() + priors, 0.0);
+                known.extend(orthogonal(raw, white, &known));
             }
             for (place, direction) in bent.iter().enumerate() {
                 let mut white = whiten(&direction.values);
-                white[self.record.len() + linearised.priors + place] = 1.0;
+                white[self.record.len() + whitened.priors + place] = 1.0;
                 known.extend(orthogonal(direction.values.clone(), white, &known));
             }
             self.directions(known, &mut space, &whiten)
         };
         let directions = bent.into_iter().map(|direction| direction.values).collect();
-        let z = space.coordinates(&linearised.misfit);
+        let z = space.coordinates(&whitened.misfit);
         let offsets = self.offsets(&space, &whiten);
-        Ok(Scene {
-            showings,
+        Ok(LinearisedModel {
+            sensitivities,
             candidates,
             smooth,
             space,
@@ -206,7 +225,7 @@ impl Given<'_> {
             form,
             bent: directions,
             z,
-            white: linearised.misfit,
+            white: whitened.misfit,
             force: tangent.force,
         })
     }
@@ -259,40 +278,7 @@ impl Given<'_> {
     }
 }
 
-/// A function without what others span, so that its white column has the length 1; none if nothing of it is new.
-fn orthogonal(
-    mut raw: Vec<f64>,
-    mut white: Vec<f64>,
-    known: &[(Vec<f64>, Vec<f64>)],
-) -> Option<(Vec<f64>, Vec<f64>)> {
-    let whole = norm(&white);
-    let mut left = whole;
-    for _ in 0..2 {
-        let before = left;
-        for (other, unit) in known {
-            let part = dot(&white, unit);
-            for (value, u) in white.iter_mut().zip(unit) {
-                *value -= part * u;
-            }
-            for (value, o) in raw.iter_mut().zip(other) {
-                *value -= part * o;
-            }
-        }
-        left = norm(&white);
-        if left > ENOUGH * before {
-            break;
-        }
-    }
-    if left <= NEW * whole {
-        return None;
-    }
-    for value in raw.iter_mut().chain(&mut white) {
-        *value /= left;
-    }
-    Some((raw, white))
-}
-
-impl Scene {
+impl LinearisedModel {
     /// Square of the misfit that smooth functions follow; as many as there are of them by chance alone.
     pub(crate) fn structure(&self) -> f64 {
         self.smooth.iter().map(|d| dot(&d.unit, &self.z).powi(2)).sum()

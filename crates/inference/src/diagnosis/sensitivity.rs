@@ -1,6 +1,6 @@
 //! How effects would show in a record: the change of the force by the size of each effect, at the numbers that a model has now.
 
-use bulge_effects::{Catalogue, Effect, ParameterCard, Stage};
+use bulge_effects::{Catalogue, Effect, Mechanism, ParameterCard, Stage};
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ const NOTHING: f64 = 1e-9;
 
 /// One way in which an effect may show.
 #[derive(Debug, Clone)]
-pub(crate) struct Showing {
+pub(crate) struct Sensitivity {
     /// Place of the effect in [`Screened::effects`].
     pub(crate) effect: usize,
     /// All numbers of the effect (of one specimen), the sizes at `off`.
@@ -74,9 +74,9 @@ pub(crate) struct Screened {
 }
 
 /// All effects of the catalogue that the model doesn't have, and how they would show.
-pub(crate) struct Showings {
+pub(crate) struct Sensitivities {
     pub(crate) effects: Vec<Screened>,
-    pub(crate) showings: Vec<Showing>,
+    pub(crate) sensitivities: Vec<Sensitivity>,
 }
 
 /// Everything that the columns are taken from.
@@ -91,7 +91,7 @@ struct Ground<'a> {
     warm: &'a Warm,
 }
 
-impl Showings {
+impl Sensitivities {
     /// Of all effects of the catalogue (of some `only`, by name) that the model doesn't have, at the numbers `theta`, in the history as it was set.
     pub(crate) fn of(
         catalogue: &Catalogue,
@@ -119,28 +119,40 @@ impl Showings {
                 check_needs(effect, record).err().map(|_| format!("needs {}", card.needs.says()));
             effects.push(Screened { effect: Arc::clone(effect), untestable, nuisance });
         }
-        let found: Vec<Result<Vec<Showing>, String>> = effects
+        let found: Vec<Result<Vec<Sensitivity>, String>> = effects
             .par_iter()
             .enumerate()
             .map(|(place, screened)| {
                 if screened.untestable.is_some() {
                     return Ok(Vec::new());
                 }
-                ground.showings(place, screened).map_err(|error| error.to_string())
+                ground.sensitivities(place, screened).map_err(|error| error.to_string())
             })
             .collect();
-        let mut showings = Vec::new();
+        let mut sensitivities = Vec::new();
         for (screened, found) in effects.iter_mut().zip(found) {
             match found {
                 Ok(found) if found.is_empty() && screened.untestable.is_none() => {
                     screened.untestable = Some("does nothing at these pressures and contractions".to_owned());
                 }
-                Ok(found) => showings.extend(found),
+                Ok(found) => sensitivities.extend(found),
                 Err(why) => screened.untestable = Some(why),
             }
         }
-        Self { effects, showings }
+        Self { effects, sensitivities }
     }
+}
+
+/// Whether an effect relaxes with a time that these readings can show: slower than any sweep it is a spring.
+pub(crate) fn relaxes(effect: &Arc<dyn Effect>, record: &Record) -> bool {
+    effect.card().mechanism == Mechanism::Relaxation && record.has_time()
+}
+
+/// How long the longest sweep lasts \[s\].
+pub(crate) fn longest_sweep(record: &Record) -> f64 {
+    let moments = record.moments();
+    let lasts = |rows: &std::ops::Range<usize>| moments[rows.end - 1].clock - moments[rows.start].clock;
+    record.sweeps().iter().map(lasts).fold(0.0, f64::max)
 }
 
 /// Whether a model has an effect only as what data sheets leave open.
@@ -229,7 +241,7 @@ pub(crate) fn spread(card: &ParameterCard<'_>, count: usize) -> Vec<f64> {
 
 impl Ground<'_> {
     /// All ways in which an effect may show.
-    fn showings(&self, place: usize, screened: &Screened) -> Result<Vec<Showing>, ModelError> {
+    fn sensitivities(&self, place: usize, screened: &Screened) -> Result<Vec<Sensitivity>, ModelError> {
         let effect = &screened.effect;
         let cards: Vec<ParameterCard<'_>> =
             effect.parameters().into_iter().map(|card| card.of(self.prepared.model.muscle())).collect();
@@ -242,9 +254,9 @@ impl Ground<'_> {
         }
         let sizes = sizes(&cards);
         let mut found = Vec::new();
-        for values in forms(&cards, &sizes) {
+        for values in self.shown_within_a_sweep(effect, &cards, forms(&cards, &sizes)) {
             match self.at(place, effect, &model, &cards, &sizes, values) {
-                Ok(showing) => found.extend(showing),
+                Ok(sensitivity) => found.extend(sensitivity),
                 // A number without small values: tried as a whole below.
                 Err(_) if effect.card().stage == Stage::Shape && sizes.len() == 1 => {}
                 Err(error) => return Err(error),
@@ -262,13 +274,30 @@ impl Ground<'_> {
         Ok(found)
     }
 
+    /// The forms of a relaxation that ends within a sweep, at least the fastest: slower ones are springs, and crowd the list of what may explain the data.
+    fn shown_within_a_sweep(
+        &self,
+        effect: &Arc<dyn Effect>,
+        cards: &[ParameterCard<'_>],
+        mut forms: Vec<Vec<f64>>,
+    ) -> Vec<Vec<f64>> {
+        let is_time = |card: &ParameterCard<'_>| card.name == "time";
+        let Some(place) = cards.iter().position(is_time).filter(|_| relaxes(effect, self.record)) else {
+            return forms;
+        };
+        let fastest = forms.iter().map(|values| values[place]).fold(f64::INFINITY, f64::min);
+        let longest = longest_sweep(self.record).max(fastest);
+        forms.retain(|values| values[place] <= longest);
+        forms
+    }
+
     /// A rig error that the model has within its data sheet: the derivatives are those that the model has.
     fn of_nuisance(
         &self,
         place: usize,
         effect: &Arc<dyn Effect>,
         cards: &[ParameterCard<'_>],
-    ) -> Result<Vec<Showing>, ModelError> {
+    ) -> Result<Vec<Sensitivity>, ModelError> {
         let model = &self.prepared.model;
         let name = effect.card().name;
         let parameters: Vec<usize> =
@@ -278,11 +307,11 @@ impl Ground<'_> {
         let values = cards.iter().map(|card| card.off).collect();
         let columns: Vec<Vec<f64>> =
             sizes.iter().filter_map(|size| columns.get(size.place).cloned()).collect();
-        Ok(vec![Showing { effect: place, values, sizes, columns, whole: false }])
+        Ok(vec![Sensitivity { effect: place, values, sizes, columns, whole: false }])
     }
 
     /// The effect as a whole, beside the model without it.
-    fn whole(&self, place: usize, model: &Model, values: &[f64]) -> Option<Showing> {
+    fn whole(&self, place: usize, model: &Model, values: &[f64]) -> Option<Sensitivity> {
         let theta: Vec<f64> = self.theta.iter().chain(values).copied().collect();
         let Ok(with) = model.evaluate_warm(self.record, &theta, &Wanted::default(), &self.warm.shared())
         else {
@@ -301,7 +330,7 @@ impl Ground<'_> {
             secant: None,
         };
         let shows = self.shows(&change, 1.0);
-        shows.then(|| Showing {
+        shows.then(|| Sensitivity {
             effect: place,
             values: values.to_vec(),
             sizes: vec![size],
@@ -325,7 +354,7 @@ impl Ground<'_> {
         cards: &[ParameterCard<'_>],
         sizes: &[Size],
         values: Vec<f64>,
-    ) -> Result<Option<Showing>, ModelError> {
+    ) -> Result<Option<Sensitivity>, ModelError> {
         let copies = (model.parameters().len() - self.theta.len()) / cards.len().max(1);
         let mut theta = self.theta.to_vec();
         for _ in 0..copies {
@@ -365,7 +394,7 @@ impl Ground<'_> {
         let shows = !columns.is_empty();
         let absent = effect.card().stage == Stage::Shape
             && sizes.iter().any(|size| size.secant.is_some_and(|s| is_absent_below(effect, model, size, s)));
-        Ok((shows && !absent).then_some(Showing { effect: place, values, sizes, columns, whole: false }))
+        Ok((shows && !absent).then_some(Sensitivity { effect: place, values, sizes, columns, whole: false }))
     }
 
     /// Derivatives of the force by some numbers, column by column.
