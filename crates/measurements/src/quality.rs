@@ -249,6 +249,27 @@ impl<'a> Gate<'a> {
     }
 
     /// The name of the column of the motion.
+    /// A size of one of the columns with a usual unit.
+    fn with_unit(&self, column: &str, value: f64) -> String {
+        let (factor, unit) = match (column, self.data.motion()) {
+            ("force", _) => (1.0, "N"),
+            ("pressure", _) => (1e-5, "bar"),
+            (_, crate::Motion::Contraction(_)) => (100.0, "%"),
+            (_, crate::Motion::Length(_)) => (1e3, "mm"),
+        };
+        format!("{} {unit}", quantisation::four(factor * value))
+    }
+
+    /// A reading with its unit.
+    fn reading(&self, column: &str, row: usize) -> String {
+        let values = match column {
+            "force" => self.data.force(),
+            "pressure" => self.data.pressure(),
+            _ => self.motion,
+        };
+        self.with_unit(column, values[row])
+    }
+
     fn motion_name(&self) -> &'static str {
         match self.data.motion() {
             crate::Motion::Contraction(_) => "contraction",

@@ -28,6 +28,8 @@ use crate::error::InferenceError;
 const DEGREES: [usize; 2] = [7, 3];
 /// What an expression may miss, as a part of the noise of a reading: many rows see a tenth.
 const UNSEEN: f64 = 0.05;
+/// Part of what may be missed that the smallest coefficients may add up to: they only make a formula long.
+const TINY: f64 = 0.2;
 /// An expression that misses more than this part of the effect (RMS) is another effect.
 const ANOTHER: f64 = 0.5;
 /// Singular values below this part of the largest are rounding.
@@ -268,7 +270,7 @@ impl Expression {
         bases.sort_by_key(Vec::len);
         let mut best: Option<Self> = None;
         for basis in bases.into_iter().filter(|basis| basis.len() < whole.len()) {
-            let Some(found) = Self::fitted(state, whole, basis) else { continue };
+            let Some(found) = Self::fitted(state, whole, basis, TINY * unseen) else { continue };
             let is_enough = found.missed_n <= unseen;
             if best.as_ref().is_none_or(|best| found.missed_n < best.missed_n) {
                 best = Some(found);
@@ -280,7 +282,8 @@ impl Expression {
         best.unwrap_or_else(|| Self { terms: Vec::new(), missed_n: rms(whole) })
     }
 
-    fn fitted(state: &State, whole: &[f64], basis: Vec<(bool, usize, usize)>) -> Option<Self> {
+    /// Of these terms; the smallest that together change less than `tiny` \[N\] are 0.
+    fn fitted(state: &State, whole: &[f64], basis: Vec<(bool, usize, usize)>, tiny: f64) -> Option<Self> {
         let power =
             |axis: usize, row: usize, n: usize| (0..n).fold(1.0, |sum, _| sum * state.scaled[axis][row]);
         let design = DMatrix::from_fn(whole.len(), basis.len(), |row, column| {
@@ -291,7 +294,18 @@ impl Expression {
         let wanted = DVector::from_column_slice(whole);
         let svd = design.clone().svd(true, true);
         let smallest = ROUNDING * svd.singular_values.max();
-        let found = svd.solve(&wanted, smallest).ok()?;
+        let mut found = svd.solve(&wanted, smallest).ok()?;
+        let mut order: Vec<usize> = (0..basis.len()).collect();
+        order.sort_by(|a, b| found[*a].abs().total_cmp(&found[*b].abs()));
+        let mut dropped = 0.0;
+        for place in order {
+            // No term is larger than its coefficient: x and y lie within -1 and 1.
+            dropped += found[place].abs();
+            if dropped > tiny {
+                break;
+            }
+            found[place] = 0.0;
+        }
         let missed_n = rms((wanted - design * &found).as_slice());
         Some(Self { terms: basis.into_iter().zip(found.iter().copied()).collect(), missed_n })
     }
@@ -305,18 +319,19 @@ impl Expression {
                 .map(|j| {
                     // Horner's scheme: few operations, and no exponents to read.
                     of(j).rev().fold(String::new(), |inner, (_, c)| {
-                        let c = c / size;
-                        let x = state.text(0);
-                        if inner.is_empty() {
-                            format!("({c:.9e})")
-                        } else {
-                            format!("({c:.9e} + {x} * {inner})")
+                        let (c, x) = (c / size, state.text(0));
+                        match (c == 0.0, inner.is_empty()) {
+                            (true, true) => inner,
+                            (true, false) => format!("({x} * {inner})"),
+                            (false, true) => format!("({c:.9e})"),
+                            (false, false) => format!("({c:.9e} + {x} * {inner})"),
                         }
                     })
                 })
                 .collect();
             rows.into_iter().rev().fold(None, |inner, own| match inner {
                 None => Some(own).filter(|own| !own.is_empty()),
+                Some(inner) if own.is_empty() => Some(format!("({} * {inner})", state.text(1))),
                 Some(inner) => Some(format!("({own} + {} * {inner})", state.text(1))),
             })
         };

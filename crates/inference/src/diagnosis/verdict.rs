@@ -232,5 +232,8 @@ pub(crate) fn furthest(comparison: &Comparison) -> String {
     else {
         return String::new();
     };
-    format!("; furthest off is {what}, by {} N on average: repeat it", significant(bin.bias_n[1], 2))
+    let bias_n = bin.bias_n[1];
+    let side = if bias_n < 0.0 { "below" } else { "above" };
+    let by = significant(bias_n.abs(), 2);
+    format!("; furthest off is {what}, where the readings lie {by} N {side} the model on average: repeat it")
 }

@@ -19,19 +19,14 @@ const STILL: f64 = 0.02;
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     let of_column = |(name, rows): (&str, Vec<usize>)| {
-        let value = |row: usize| match name {
-            "force" => gate.data.force()[row],
-            "pressure" => gate.data.pressure()[row],
-            _ => gate.motion[row],
-        };
         gate.finding_if_any(
             FindingKind::Clipped,
             Severity::Warning,
             &rows,
             |count| {
-                let first = rows.first().map_or(0.0, |row| value(*row));
+                let first = rows.first().map_or_else(String::new, |row| gate.reading(name, *row));
                 format!(
-                    "the {name} stays at its extreme value of {first:.6} (SI) in {} while others move",
+                    "the {name} stays at its extreme value of {first} in {} while others move",
                     rows_in_words(count)
                 )
             },

@@ -1,6 +1,5 @@
 //! Is there enough, and does it vary: rows, pressures, contractions, temperature.
 
-use super::quantisation::four;
 use super::{Finding, FindingKind, Gate, Severity};
 use crate::resolution::bounds;
 
@@ -48,7 +47,8 @@ pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     }
     if motion.range <= TRAVEL * data.structure.scale && rows > 1 {
         let severity = if varies { Severity::Note } else { Severity::Warning };
-        let says = format!("the {} changes by no more than {} (SI)", gate.motion_name(), four(motion.range));
+        let name = gate.motion_name();
+        let says = format!("the {name} changes by no more than {}", gate.with_unit(name, motion.range));
         let instead = "measure over the working range of the contraction as well";
         found.push(whole(FindingKind::ContractionConstant, severity, says, instead));
     }

@@ -50,19 +50,14 @@ pub(super) fn in_columns<'a>(gate: &Gate<'a>) -> Vec<(&'static str, Vec<usize>)>
 
 pub(super) fn find(gate: &Gate) -> Vec<Finding> {
     let of_column = |(name, rows): (&str, Vec<usize>)| {
-        let value = |row: usize| match name {
-            "force" => gate.data.force()[row],
-            "pressure" => gate.data.pressure()[row],
-            _ => gate.motion[row],
-        };
         gate.finding_if_any(
             FindingKind::Spike,
             Severity::Warning,
             &rows,
             |count| {
-                let first = rows.first().map_or(0.0, |row| value(*row));
+                let first = rows.first().map_or_else(String::new, |row| gate.reading(name, *row));
                 format!(
-                    "the {name} of {} lies far from the rows around, the first at {first:.6} (SI)",
+                    "the {name} of {} lies far from the rows around, the first at {first}",
                     rows_in_words(count)
                 )
             },
