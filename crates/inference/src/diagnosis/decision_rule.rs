@@ -31,6 +31,10 @@ pub(crate) struct DecisionRule {
     /// Standard deviations of a form error as parts of the effect, and how likely each is before any data: half of all formulas hold as they are (pilot of the forms
     /// suite; one common size, and no bound, were worse). Larger ones bent the first effect to what a second and third did (36 tests of seed 47).
     pub(crate) form_errors: [(f64, f64); 3],
+    /// The same where a form is drawn, and the factor of the largest that a card allows: no rival stands beside it, and real formulas are wrong by as much (page of the pilot:
+    /// half of all effects exact, others up to 40 %).
+    pub(crate) drawn_errors: [(f64, f64); 5],
+    pub(crate) drawn: f64,
     /// An effect that is bent by a larger part of it in whitened coordinates is another effect (forms suite).
     pub(crate) most_bent: f64,
     /// So is one that is bent by more newtons than it has (RMS): where the noise is nearly alike in many rows, newtons may weigh little (forms suite).
@@ -113,6 +117,8 @@ pub(crate) const RULE: DecisionRule = DecisionRule {
     implausible: 8.0,
     simpler: 0.2,
     form_errors: [(0.0, 0.5), (0.05, 0.12), (0.1, 0.15)],
+    drawn_errors: [(0.0, 0.5), (0.05, 0.12), (0.1, 0.15), (0.2, 0.13), (0.4, 0.1)],
+    drawn: 4.0,
     most_bent: 0.4,
     most_bent_newtons: 1.0,
     by_bending: 0.1,

@@ -90,7 +90,12 @@ pub fn drawn_forms(data: &Data, muscle: &Muscle, options: &Options) -> Result<Dr
                 .into());
             };
             let nothing: [String; 0] = [];
-            let given = Given { only: Some(&nothing), is_planned: true, ..ground.given(law, &options) };
+            let given = Given {
+                only: Some(&nothing),
+                is_planned: true,
+                to_draw: true,
+                ..ground.given(law, &options)
+            };
             let near = (&base.prepared.model, &base.theta[..]);
             let drawn = given
                 .confirm(&model, &[], Some(near), &[])

@@ -18,6 +18,8 @@ use crate::dot::dot;
 
 /// Times that each standard deviation is chosen anew beside the others.
 const ROUNDS: usize = 2;
+/// Log evidence that a form error may lose where a form is drawn: of levels that are as likely the largest, so that its interval holds what the data leave open.
+const AS_LIKELY: f64 = 1.0;
 /// A direction in which form errors move the readings by a smaller part of their variance says nothing.
 const NOTHING: f64 = 0.01;
 
@@ -86,6 +88,8 @@ struct Columns {
     raw_gram: DMatrix<f64>,
     /// Lengths of the effects, whitened and in newtons.
     lengths: Vec<[f64; 2]>,
+    /// Standard deviations that form errors may have, and how likely each is.
+    levels: &'static [(f64, f64)],
 }
 
 impl Columns {
@@ -110,8 +114,8 @@ impl Columns {
     fn evidence(&self, sds: &[[f64; 4]]) -> Option<(f64, f64, Vec<f64>)> {
         let chosen = self.chosen(sds);
         let prior = |sd: f64| {
-            let level = RULE.form_errors.iter().find(|(level, _)| (level - sd).abs() < 1e-12);
-            level.map_or(0.0, |level| (level.1 / RULE.form_errors[0].1).ln())
+            let level = self.levels.iter().find(|(level, _)| (level - sd).abs() < 1e-12);
+            level.map_or(0.0, |level| (level.1 / self.levels[0].1).ln())
         };
         let mut log: f64 = sds.iter().flatten().map(|sd| prior(*sd)).sum();
         let (factor, right) = self.solved(&chosen)?;
@@ -149,12 +153,13 @@ fn gram(columns: &[&[f64]]) -> DMatrix<f64> {
 }
 
 impl FormError {
-    /// Of the effects of a model with these columns; `space` is without the model's tangents, `misfit` whitened, `whiten` whitens a column \[N\].
+    /// Of the effects of a model with these columns, to compare it with others or, `to_draw`, to draw their forms; `space` is without the model's tangents, `misfit` whitened, `whiten` whitens a column \[N\].
     pub(crate) fn of(
         bendings: &[Bending],
         space: &Space,
         misfit: &[f64],
         whiten: &dyn Fn(&[f64]) -> Vec<f64>,
+        to_draw: bool,
     ) -> (Self, Vec<FormDirection>) {
         let mut of = Vec::new();
         let mut white: Vec<Vec<f64>> = Vec::new();
@@ -184,23 +189,27 @@ impl FormError {
         let raw_gram = gram(&scaled.iter().map(Vec::as_slice).collect::<Vec<_>>());
         let gram = gram(&white.iter().map(Vec::as_slice).collect::<Vec<_>>());
         let along = DVector::from_fn(white.len(), |i, _| dot(&white[i], &left));
-        let columns = Columns { of, gram, along, raw_gram, lengths };
+        let levels: &[(f64, f64)] = if to_draw { &RULE.drawn_errors } else { &RULE.form_errors };
+        let columns = Columns { of, gram, along, raw_gram, lengths, levels };
+        let levels_of = |effect: &Arc<dyn Effect>| {
+            let largest = effect.card().form.largest_error() * if to_draw { RULE.drawn } else { 1.0 };
+            levels.iter().map(|(level, _)| *level).filter(move |level| *level <= largest)
+        };
         let mut sds = vec![[0.0; 4]; bendings.len()];
         let mut best = (0.0, 0.0, vec![0.0; bendings.len()]);
         for _ in 0..ROUNDS {
             let before = sds.clone();
             for (effect, bending) in bendings.iter().enumerate() {
-                let largest = bending.effect.card().form.largest_error();
                 for kind in Kind::ALL {
                     if !columns.of.contains(&(effect, kind as usize)) {
                         continue;
                     }
                     let mut kept = sds[effect][kind as usize];
-                    for (level, _) in RULE.form_errors.iter().filter(|(level, _)| *level <= largest) {
-                        sds[effect][kind as usize] = *level;
+                    for level in levels_of(&bending.effect) {
+                        sds[effect][kind as usize] = level;
                         let Some(found) = columns.evidence(&sds) else { continue };
                         if found.0 > best.0 {
-                            (best, kept) = (found, *level);
+                            (best, kept) = (found, level);
                         }
                     }
                     sds[effect][kind as usize] = kept;
@@ -208,6 +217,21 @@ impl FormError {
             }
             if sds == before {
                 break;
+            }
+        }
+        if to_draw {
+            let likeliest = best.0;
+            for (effect, bending) in bendings.iter().enumerate() {
+                for kind in Kind::ALL.map(|kind| kind as usize) {
+                    let chosen = sds[effect][kind];
+                    for level in levels_of(&bending.effect).filter(|level| chosen > 0.0 && *level > chosen) {
+                        let before = std::mem::replace(&mut sds[effect][kind], level);
+                        match columns.evidence(&sds).filter(|found| found.0 > likeliest - AS_LIKELY) {
+                            Some(found) => best = found,
+                            None => sds[effect][kind] = before,
+                        }
+                    }
+                }
             }
         }
         let (log_evidence, fall, parts) = best;
@@ -385,7 +409,7 @@ mod tests {
             *value += 0.2 * a - 0.15 * c;
         }
         let same = |column: &[f64]| column.to_vec();
-        let (found, directions) = FormError::of(std::slice::from_ref(&bent), &space, &misfit, &same);
+        let (found, directions) = FormError::of(std::slice::from_ref(&bent), &space, &misfit, &same, false);
         let sd = found.effects[0].sd;
         assert!(sd[Kind::State as usize] > 0.0 && sd[Kind::Turn as usize] > 0.0, "{sd:?}");
         let white: Vec<Vec<f64>> = bent.columns.iter().map(|(_, c)| space.outside(c)).collect();
@@ -425,14 +449,14 @@ mod tests {
         let same = |column: &[f64]| column.to_vec();
         let noise = columns(9, 1).remove(0);
         let loose = bending("coulomb-friction", &[Kind::State, Kind::Turn, Kind::Kin], 5, 30.0);
-        let (found, directions) = FormError::of(std::slice::from_ref(&loose), &space, &noise, &same);
+        let (found, directions) = FormError::of(std::slice::from_ref(&loose), &space, &noise, &same, false);
         assert!(found.log_evidence.abs() < 1e-12 && found.fall.abs() < 1e-12 && directions.is_empty());
         let mut misfit = noise;
         for (value, c) in misfit.iter_mut().zip(&loose.columns[0].1) {
             *value += 0.3 * c;
         }
         let exact = Bending { effect: Arc::clone(Catalogue::builtin().find("force-gain").unwrap()), ..loose };
-        let (found, directions) = FormError::of(&[exact], &space, &misfit, &same);
+        let (found, directions) = FormError::of(&[exact], &space, &misfit, &same, false);
         assert!(found.log_evidence.abs() < 1e-12 && directions.is_empty());
     }
 
@@ -445,7 +469,7 @@ mod tests {
         for (value, c) in misfit.iter_mut().zip(&loose.columns[0].1) {
             *value += 2.0 * c;
         }
-        let (found, _) = FormError::of(&[loose], &space, &misfit, &same);
+        let (found, _) = FormError::of(&[loose], &space, &misfit, &same, false);
         assert!(found.effects[0].part <= RULE.most_bent && !found.effects[0].may_bend());
     }
 
@@ -462,7 +486,7 @@ mod tests {
         for ((value, c), t) in misfit.iter_mut().zip(&column).zip(&raw) {
             *value += 0.1 * c + 7.0 * t;
         }
-        let (found, directions) = FormError::of(&[loose], &space, &misfit, &same);
+        let (found, directions) = FormError::of(&[loose], &space, &misfit, &same, false);
         let found =
             found.row_by_row(&directions, &misfit, &[(unit.clone(), unit.clone())], &["another"], &same);
         let expected = space.outside(&column);
@@ -490,7 +514,7 @@ mod tests {
         // The numbers are fitted.
         let misfit = space.outside(&misfit);
         let own: Vec<Vec<f64>> = loose.columns.iter().map(|(_, column)| column.clone()).collect();
-        let (found, directions) = FormError::of(&[loose], &space, &misfit, &same);
+        let (found, directions) = FormError::of(&[loose], &space, &misfit, &same, false);
         let found = found.row_by_row(&directions, &misfit, &tangents, &owner, &same);
         let bent = &found.effects[0];
         let levels = [Kind::State, Kind::State, Kind::Turn].map(|kind| bent.sd[kind as usize]);

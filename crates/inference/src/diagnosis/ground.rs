@@ -76,6 +76,7 @@ impl Ground {
             seed: options.seed,
             only: options.among.as_deref(),
             is_planned: false,
+            to_draw: false,
             progress: &options.progress,
             kin: None,
         }

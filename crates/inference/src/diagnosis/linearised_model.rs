@@ -40,6 +40,8 @@ pub(crate) struct Given<'a> {
     pub(crate) only: Option<&'a [String]>,
     /// Asks nothing of the misfit: there are no readings, or nothing is looked for.
     pub(crate) is_planned: bool,
+    /// Draws forms: they may be wrong by more than where models are compared.
+    pub(crate) to_draw: bool,
     /// Who hears of the work.
     pub(crate) progress: &'a Progress,
     /// Columns of kin that are known already.
@@ -108,6 +110,7 @@ impl<'a> Given<'a> {
             seed: 1,
             only: None,
             is_planned: false,
+            to_draw: false,
             progress,
             kin: None,
         }
@@ -170,7 +173,7 @@ impl Given<'_> {
     ) -> (FormError, Vec<FormDirection>) {
         let bendings = bendings(self.catalogue, prepared, theta, &whitened.tangent, self.kin);
         let whiten = |column: &[f64]| self.white(column, whitened.priors);
-        FormError::of(&bendings, space, &whitened.misfit, &whiten)
+        FormError::of(&bendings, space, &whitened.misfit, &whiten, self.to_draw)
     }
 
     /// A model with the numbers `theta`.

@@ -202,6 +202,7 @@ impl Planned {
             row_n: self.law.white_n,
             only: None,
             is_planned: false,
+            to_draw: false,
             progress: &NOBODY,
             kin: None,
         }
