@@ -142,6 +142,54 @@ impl Columns {
             is_itself(&seen, RULE.most_bent) && is_itself(&parts(&self.raw_gram, 1), RULE.most_bent_newtons);
         allowed.then_some((log, fall, seen))
     }
+
+    /// Standard deviations by effect and kind of the largest evidence, and what [`Columns::evidence`] says of them; where forms are drawn the largest that are as likely.
+    fn likeliest(&self, bendings: &[Bending], to_draw: bool) -> (Vec<[f64; 4]>, (f64, f64, Vec<f64>)) {
+        let levels_of = |effect: &Arc<dyn Effect>| {
+            let largest = effect.card().form.largest_error() * if to_draw { RULE.drawn } else { 1.0 };
+            self.levels.iter().map(|(level, _)| *level).filter(move |level| *level <= largest)
+        };
+        let mut sds = vec![[0.0; 4]; bendings.len()];
+        let mut best = (0.0, 0.0, vec![0.0; bendings.len()]);
+        for _ in 0..ROUNDS {
+            let before = sds.clone();
+            for (effect, bending) in bendings.iter().enumerate() {
+                for kind in Kind::ALL {
+                    if !self.of.contains(&(effect, kind as usize)) {
+                        continue;
+                    }
+                    let mut kept = sds[effect][kind as usize];
+                    for level in levels_of(&bending.effect) {
+                        sds[effect][kind as usize] = level;
+                        let Some(found) = self.evidence(&sds) else { continue };
+                        if found.0 > best.0 {
+                            (best, kept) = (found, level);
+                        }
+                    }
+                    sds[effect][kind as usize] = kept;
+                }
+            }
+            if sds == before {
+                break;
+            }
+        }
+        if to_draw {
+            let likeliest = best.0;
+            for (effect, bending) in bendings.iter().enumerate() {
+                for kind in Kind::ALL.map(|kind| kind as usize) {
+                    let chosen = sds[effect][kind];
+                    for level in levels_of(&bending.effect).filter(|level| chosen > 0.0 && *level > chosen) {
+                        let before = std::mem::replace(&mut sds[effect][kind], level);
+                        match self.evidence(&sds).filter(|found| found.0 > likeliest - AS_LIKELY) {
+                            Some(found) => best = found,
+                            None => sds[effect][kind] = before,
+                        }
+                    }
+                }
+            }
+        }
+        (sds, best)
+    }
 }
 
 /// All products of columns with each other.
@@ -191,49 +239,7 @@ impl FormError {
         let along = DVector::from_fn(white.len(), |i, _| dot(&white[i], &left));
         let levels: &[(f64, f64)] = if to_draw { &RULE.drawn_errors } else { &RULE.form_errors };
         let columns = Columns { of, gram, along, raw_gram, lengths, levels };
-        let levels_of = |effect: &Arc<dyn Effect>| {
-            let largest = effect.card().form.largest_error() * if to_draw { RULE.drawn } else { 1.0 };
-            levels.iter().map(|(level, _)| *level).filter(move |level| *level <= largest)
-        };
-        let mut sds = vec![[0.0; 4]; bendings.len()];
-        let mut best = (0.0, 0.0, vec![0.0; bendings.len()]);
-        for _ in 0..ROUNDS {
-            let before = sds.clone();
-            for (effect, bending) in bendings.iter().enumerate() {
-                for kind in Kind::ALL {
-                    if !columns.of.contains(&(effect, kind as usize)) {
-                        continue;
-                    }
-                    let mut kept = sds[effect][kind as usize];
-                    for level in levels_of(&bending.effect) {
-                        sds[effect][kind as usize] = level;
-                        let Some(found) = columns.evidence(&sds) else { continue };
-                        if found.0 > best.0 {
-                            (best, kept) = (found, level);
-                        }
-                    }
-                    sds[effect][kind as usize] = kept;
-                }
-            }
-            if sds == before {
-                break;
-            }
-        }
-        if to_draw {
-            let likeliest = best.0;
-            for (effect, bending) in bendings.iter().enumerate() {
-                for kind in Kind::ALL.map(|kind| kind as usize) {
-                    let chosen = sds[effect][kind];
-                    for level in levels_of(&bending.effect).filter(|level| chosen > 0.0 && *level > chosen) {
-                        let before = std::mem::replace(&mut sds[effect][kind], level);
-                        match columns.evidence(&sds).filter(|found| found.0 > likeliest - AS_LIKELY) {
-                            Some(found) => best = found,
-                            None => sds[effect][kind] = before,
-                        }
-                    }
-                }
-            }
-        }
+        let (sds, best) = columns.likeliest(bendings, to_draw);
         let (log_evidence, fall, parts) = best;
         let effects = bendings.iter().zip(&sds).zip(parts);
         let directions = columns.directions(&white, &raw, &sds);
