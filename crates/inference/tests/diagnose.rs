@@ -324,6 +324,11 @@ fn a_bent_effect_has_two_rungs_and_the_second_is_what_its_form_leaves() {
     let rmse = ((0..rows).map(|row| left(row).powi(2)).sum::<f64>() / rows as f64).sqrt();
     assert!((ladder[2].rmse_n / rmse - 1.0).abs() < 1e-9, "{} {rmse}", ladder[2].rmse_n);
     assert!(rmse < 0.8 * ladder[1].rmse_n && rmse < 2.2, "{ladder:?}");
+    // What the formula explains as it is, by the squares of the rungs (nearly white noise, nothing left).
+    let squares = [0, 1, 2].map(|rung| ladder[rung].rmse_n.powi(2));
+    let part = (squares[0] - squares[1]) / (squares[0] - squares[2]);
+    let by_formulas = diagnosis.remaining.by_formulas.unwrap();
+    assert!((by_formulas - part).abs() < 0.01 && part < 0.999, "{by_formulas} {part}");
     // Of a formula that holds there is one rung.
     let exact = found(sprung(|e| 500.0 * e));
     assert_eq!(names(&exact), ["bladder-axial"], "{}", exact.says);

@@ -5,7 +5,7 @@
 mod diagnosed;
 mod sample;
 
-use bulge_inference::{Comparison, Diagnosis};
+use bulge_inference::{Comparison, Diagnosis, Level};
 use bulge_report::PlotError;
 use bulge_report::diagnosis::{base_name, headlines, html, noise_says, plots, remains_says};
 use diagnosed::{adequate, cannot_tell, missing, unknown};
@@ -209,6 +209,26 @@ fn verdicts_stand_in_the_first_lines() {
         assert!(page.contains(&diagnosis.says));
         assert_eq!(page.contains("None is confirmed."), diagnosis.added().next().is_none());
     }
+}
+
+#[test]
+fn a_claim_goes_as_far_as_the_data_decide() {
+    let mut diagnosis = missing(comparison());
+    let first = |diagnosis: &Diagnosis| headlines(diagnosis)[0].clone();
+    diagnosis.missing[0].level = Level::Mechanism;
+    assert!(first(&diagnosis).starts_with("missing: rubber, likeliest bladder-elasticity (rubber; "));
+    diagnosis.missing[0].level = Level::Class;
+    let begins =
+        "missing: one of bladder-elasticity, wall-thickness (bladder-elasticity: rubber; on data like";
+    assert!(first(&diagnosis).starts_with(begins), "{}", first(&diagnosis));
+    diagnosis.missing[0].class.truncate(1);
+    assert!(first(&diagnosis).starts_with("missing: rubber, likeliest bladder-elasticity ("));
+    // A further effect of which not even the mechanism is likely is there, and is no claim.
+    let mut doubtful = diagnosis.missing.remove(1);
+    (doubtful.confidence_mechanism, doubtful.plausible) = (0.2, true);
+    diagnosis.nearest = vec![doubtful];
+    let says = "nearest: coulomb-friction (something is there, and these data don't tell what)";
+    assert_eq!(headlines(&diagnosis)[1], says);
 }
 
 #[test]

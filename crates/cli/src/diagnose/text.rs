@@ -1,6 +1,6 @@
 //! A diagnosis for people: the verdict first, then what it rests on, in about forty lines.
 
-use bulge_inference::{CandidateResult, Diagnosis, LadderStep, Missing, Verdict};
+use bulge_inference::{CandidateResult, Diagnosis, LadderStep, Level, Missing, Verdict};
 use bulge_report::diagnosis::{
     bending_says, chance, forms_says, further, headlines, is_significant, noise_says, once_in,
     others_in_class, remains_says, step_name,
@@ -113,7 +113,13 @@ fn found(out: &mut String, missing: &Missing, is_claimed: bool) {
             claims if claims == 0 || !is_claimed => String::new(),
             _ => format!(" (the class holds the right one {} of the time)", chance(missing.simulated.class)),
         };
-        paragraph(out, "    ", &format!("these data cannot tell it from: {}{right}", others.join(", ")));
+        // Where no more is claimed than the class, the line above has its names.
+        let told = if is_claimed && missing.level == Level::Class {
+            format!("these data cannot tell which{right}; the numbers below are those of {}", missing.effect)
+        } else {
+            format!("these data cannot tell it from: {}{right}", others.join(", "))
+        };
+        paragraph(out, "    ", &told);
     }
     for says in [forms_says(missing), bending_says(missing)].into_iter().flatten() {
         paragraph(out, "    ", &says);

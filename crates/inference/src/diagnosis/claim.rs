@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::decision_rule::RULE;
-use crate::diagnosis::document::{FormErrorAt, FormErrorResult};
+use crate::diagnosis::document::{FormErrorAt, FormErrorResult, Level};
 use crate::diagnosis::explained::bent_curves;
 use crate::diagnosis::form_error::Bent;
 use crate::dot::dot;
@@ -40,6 +40,18 @@ impl Levels {
     }
 }
 
+impl Levels {
+    /// The deepest level at which the claim is likelier right than wrong.
+    pub(crate) fn decided(self) -> Level {
+        match self {
+            Self { form, .. } if form >= RULE.decides => Level::Form,
+            Self { family, .. } if family >= RULE.decides => Level::Family,
+            Self { mechanism, .. } if mechanism >= RULE.decides => Level::Mechanism,
+            _ => Level::Class,
+        }
+    }
+}
+
 /// Whether two effects are one mechanism; users' effects without one are so by family only.
 fn is_same_mechanism(a: &Arc<dyn Effect>, b: &Arc<dyn Effect>) -> bool {
     let (a, b) = (a.card(), b.card());
@@ -67,5 +79,19 @@ pub(crate) fn form_error(record: &Record, bent: &Bent) -> FormErrorResult {
         rms_n: (dot(&bent.bending, &bent.bending) / rows).sqrt(),
         r#where: at,
         curves: if bent.may_bend() { bent_curves(record, bent) } else { Vec::new() },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_deepest_level_that_is_likelier_right_than_wrong_is_stated() {
+        let level = |mechanism, family, form| Levels { mechanism, family, form }.decided();
+        assert_eq!(level(0.9, 0.8, 0.6), Level::Form);
+        assert_eq!(level(0.9, 0.8, 0.4), Level::Family);
+        assert_eq!(level(0.9, 0.4, 0.4), Level::Mechanism);
+        assert_eq!(level(0.4, 0.3, 0.1), Level::Class);
     }
 }

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use crate::comparison::document::{Comparison, LeftOut, Mismatch};
 use crate::diagnosis::confidence::Confidence;
+use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::geometry::Geometry;
 use crate::diagnosis::not_looked_for::NotLookedFor;
 use crate::diagnosis::rungs::TOGETHER;
@@ -29,8 +30,8 @@ pub struct Diagnosis {
     pub says: String,
     /// Effects that are missing, in the order of adding.
     pub missing: Vec<Missing>,
-    /// Effects that lower the error and are no claim: where the verdict is *unknown*, where something remains and their numbers are implausible, and where
-    /// what is left without them is within the tolerance.
+    /// Effects that lower the error and are no claim: where the verdict is *unknown*, where something remains and their numbers are implausible, where what is left
+    /// without them is within the tolerance, and where the data don't say what a further effect is.
     pub nearest: Vec<Missing>,
     /// All effects that were looked at.
     pub candidates: Vec<CandidateResult>,
@@ -124,6 +125,31 @@ pub struct DiagnosedNoise {
     pub law: NoiseLaw,
 }
 
+/// How far the data decide what an effect is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Level {
+    /// This very effect.
+    Form,
+    /// Its family; other forms of it would do.
+    Family,
+    /// Its mechanism; other families of it would do.
+    Mechanism,
+    /// No more than that it is one of its class.
+    Class,
+}
+
+impl Level {
+    /// An effect as far as it is decided: `coulomb-friction`, `dry friction, likeliest coulomb-friction`, `one of fibre-stretch, end-slip`.
+    pub(crate) fn says(self, effect: &str, mechanism: &str, class: &[String]) -> String {
+        match self {
+            Self::Form | Self::Family => effect.to_owned(),
+            Self::Class if class.len() > 1 => format!("one of {}", class.join(", ")),
+            Self::Mechanism | Self::Class => format!("{mechanism}, likeliest {effect}"),
+        }
+    }
+}
+
 /// An effect that is missing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Missing {
@@ -141,6 +167,8 @@ pub struct Missing {
     pub forms: Vec<String>,
     /// How much the data bend its formula; none where the formula is exact.
     pub form_error: Option<FormErrorResult>,
+    /// The deepest level at which the claim is likelier right than wrong.
+    pub level: Level,
     /// How often such a claim names the right family on data like these.
     pub confidence: f64,
     /// How often it names the right mechanism.
@@ -157,6 +185,20 @@ pub struct Missing {
     pub detectability: f64,
     /// Rivals, with how far they are.
     pub rivals: Vec<RivalResult>,
+}
+
+impl Missing {
+    /// What is claimed, as far as the data decide it: `coulomb-friction`, `dry friction, likeliest coulomb-friction`, `one of fibre-stretch, end-slip`.
+    #[must_use]
+    pub fn claim(&self) -> String {
+        self.level.says(&self.effect, self.mechanism.name(), &self.class)
+    }
+
+    /// Whether the data don't even say its mechanism: beside other effects it is no claim.
+    #[must_use]
+    pub fn is_doubtful(&self) -> bool {
+        self.confidence_mechanism < RULE.doubtful
+    }
 }
 
 /// How much the data bend the formula of an effect.
@@ -297,6 +339,8 @@ pub struct Remaining {
     pub misfit_n: f64,
     /// Its 95 % interval \[N\].
     pub misfit_interval_n: [f64; 2],
+    /// Part of the base's misfit that the formulas of the effects that are shown explain as they are, not bent (as squares); none where no effect is shown.
+    pub by_formulas: Option<f64>,
     /// A further effect that changes less than this is not told from an error of the formulas that are named (RMS) \[N\]; none where those are exact.
     pub unseen_below_n: Option<f64>,
     /// What it looks like, in words.

@@ -64,6 +64,14 @@ impl Stage {
         (self.linear.structure() - self.linear.smooth.len() as f64).max(0.0)
     }
 
+    /// Part of the misfit of the base, as squares beyond chance, that the formulas of the effects explain as they are, not bent; 0 where they explain nothing.
+    pub(crate) fn by_formulas(&self, base: &Self) -> f64 {
+        let [exact, bent] = [self.confirmed.cost(), self.confirmed.bent_cost()];
+        let left = if self.adequate { 0.0 } else { self.excess() };
+        let all = base.confirmed.bent_cost() - bent + left;
+        if all > 0.0 { ((base.confirmed.bent_cost() - exact) / all).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
     /// Log evidence of something that nobody thought of on top of the model; 0 where nothing is left to explain.
     pub(crate) fn something_else(&self) -> f64 {
         if self.adequate { 0.0 } else { (RULE.something_else + smooth_evidence(&self.linear)).max(0.0) }

@@ -47,6 +47,7 @@ pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnos
             structured: false,
             misfit_n: 0.0,
             misfit_interval_n: [0.0, 0.0],
+            by_formulas: None,
             unseen_below_n: None,
             hints: Vec::new(),
             surface: Vec::new(),

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::comparison::document::{Bin, Comparison};
 use crate::comparison::rows::full_scale;
 use crate::diagnosis::bending::may_bend;
+use crate::diagnosis::claim::Levels;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::Verdict;
 use crate::diagnosis::misfit::misfit;
@@ -117,7 +118,7 @@ impl Findings<'_> {
             .added
             .iter()
             .filter(is_one)
-            .map(|effect| self.label(effect))
+            .map(|effect| self.claimed(effect))
             .collect::<Vec<_>>()
             .join(" and ")
     }
@@ -148,19 +149,27 @@ impl Findings<'_> {
         }
         let bent = self.is_bent();
         if last.adequate && !bent && self.search.something_else.is_none() {
-            let with = if all.len() == 1 { "it" } else { "them" };
+            let (claimed, doubtful) = self.apart(all);
+            let with = if claimed.len() + doubtful.len() == 1 { "it" } else { "them" };
             let but = if last.adequacy.repeats {
                 ", but for what recurs in other strokes and follows no smooth function"
             } else {
                 ""
             };
-            let says =
-                format!("missing: {}; with {with} the model explains the data{but}", self.labels(&all));
-            return Said { verdict: Verdict::Missing, says, claimed: all };
+            let and = if doubtful.is_empty() {
+                String::new()
+            } else {
+                format!(", and something that these data don't tell, nearest {}", self.labels(&doubtful))
+            };
+            let says = format!(
+                "missing: {}{and}; with {with} the model explains the data{but}",
+                self.labels(&claimed)
+            );
+            return Said { verdict: Verdict::Missing, says, claimed };
         }
         let most =
             last.excess() < RULE.left * self.search.stages[0].excess() || last.something_else() < RULE.weak;
-        let most = most && !bent && self.search.something_else != Some(0);
+        let most = most && !bent && self.search.something_else != Some(0) || self.is_nearly_exact();
         let (sound, odd): (Vec<String>, Vec<String>) = all.into_iter().partition(|name| self.plausible(name));
         if !sound.is_empty() && most {
             let beside = if odd.is_empty() {
@@ -184,6 +193,7 @@ impl Findings<'_> {
             );
             // Where something remains, numbers that no muscle has stand in for something else: no claim.
             let claimed = if last.adequate { sound.into_iter().chain(odd).collect() } else { sound };
+            let (claimed, _) = self.apart(claimed);
             return Said { verdict: Verdict::Missing, says, claimed };
         }
         let structure = if last.adequacy.repeats {
@@ -211,11 +221,27 @@ impl Findings<'_> {
         self.given.law.correlated_n.hypot(self.given.law.offset_n)
     }
 
+    /// Names that are claims, and those of further effects of which the data don't even say the mechanism; the surest is a claim.
+    fn apart(&self, names: Vec<String>) -> (Vec<String>, Vec<String>) {
+        let mechanism = |name: &String| {
+            let found = self.classes.iter().find(|(class, _)| class.effect.card().name == name);
+            found.map_or(1.0, |(class, sure)| Levels::of(class, sure, self.classes.len()).mechanism)
+        };
+        let surest = names.iter().map(mechanism).fold(0.0, f64::max);
+        names.into_iter().partition(|name| mechanism(name) >= RULE.doubtful.min(surest))
+    }
+
+    /// Whether the formulas of the effects explain nearly everything as they are: what is left is then their own error.
+    fn is_nearly_exact(&self) -> bool {
+        self.last().by_formulas(&self.search.stages[0]) >= RULE.by_formulas[1]
+    }
+
     /// Whether the claim rests on bending the formulas: then they are the nearest, and not what is missing.
     fn is_bent(&self) -> bool {
         let (base, last) = (&self.search.stages[0].confirmed, &self.last().confirmed);
         let (form, base_form) = (last.form.log_evidence, base.form.log_evidence);
         form - base_form > (1.0 - RULE.exact) * (last.log_evidence - base.log_evidence)
+            || self.last().by_formulas(&self.search.stages[0]) < RULE.by_formulas[0]
     }
 }
 

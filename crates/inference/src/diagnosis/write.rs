@@ -109,6 +109,7 @@ pub(crate) fn document(
             structured: !adequate,
             misfit_n,
             misfit_interval_n,
+            by_formulas: (named && !last.added.is_empty()).then(|| last.by_formulas(&search.stages[0])),
             unseen_below_n: if named { found.unseen_below_n() } else { None },
             hints: if adequate { Vec::new() } else { hints(given.record, &last.linear, &left) },
             surface: surface(given.record, &last.linear),
@@ -219,19 +220,18 @@ impl Findings<'_> {
         if is_short { COULOMB.to_owned() } else { card.name.to_owned() }
     }
 
-    fn missing(&self, class: &Class, sure: Confidence) -> Missing {
+    /// All effects that these data can't tell from one, itself first: the head of its family, and of each other family the best; and others of its own family.
+    fn names(&self, class: &Class) -> (Vec<String>, Vec<String>) {
         let name = self.label(&class.effect);
-        let card = class.effect.card();
-        let own = card.family.to_owned();
+        let own = class.effect.card().family;
         let mut names = vec![name.clone()];
         if name != own {
-            names.push(own.clone());
+            names.push(own.to_owned());
         }
-        let fitted = card.name.to_owned();
         let mut near: Vec<&Rival> = class.rivals.iter().filter(|rival| rival.in_class).collect();
         near.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         let mut forms = Vec::new();
-        let mut families = vec![card.family];
+        let mut families = vec![own];
         for rival in near {
             let card = rival.effect.card();
             if card.family == own {
@@ -243,6 +243,22 @@ impl Findings<'_> {
                 names.push(card.name.to_owned());
             }
         }
+        (names, forms)
+    }
+
+    /// What a claim names, as far as the data decide it: an effect, or one of a class.
+    pub(crate) fn claimed(&self, effect: &Arc<dyn Effect>) -> String {
+        let label = self.label(effect);
+        let is_it = |(class, _): &&(Class, Confidence)| class.effect.card().name == effect.card().name;
+        let Some((class, sure)) = self.classes.iter().find(is_it) else { return label };
+        let level = Levels::of(class, sure, self.classes.len()).decided();
+        level.says(&label, class.effect.card().mechanism.name(), &self.names(class).0)
+    }
+
+    fn missing(&self, class: &Class, sure: Confidence) -> Missing {
+        let card = class.effect.card();
+        let fitted = card.name.to_owned();
+        let (names, forms) = self.names(class);
         let levels = Levels::of(class, &sure, self.classes.len());
         let bent = &self.last().linear.form.effects;
         let bent = bent.iter().find(|bent| bent.effect.card().name == card.name);
@@ -250,12 +266,14 @@ impl Findings<'_> {
             class.rivals.iter().map(|rival| rival_result(rival, class)).collect();
         rivals.sort_by(|a, b| a.behind.total_cmp(&b.behind));
         Missing {
+            effect: self.label(&class.effect),
             class: names,
             fitted,
             forms,
-            family: own,
+            family: card.family.to_owned(),
             mechanism: card.mechanism,
             form_error: bent.map(|bent| form_error(self.given.record, bent)),
+            level: levels.decided(),
             confidence: levels.family,
             confidence_mechanism: levels.mechanism,
             confidence_form: levels.form,
@@ -264,7 +282,6 @@ impl Findings<'_> {
             plausible: self.plausible(class.effect.card().name),
             detectability: class.detectability,
             rivals,
-            effect: name,
         }
     }
 

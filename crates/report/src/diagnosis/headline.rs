@@ -1,6 +1,6 @@
 //! The verdict in plain words.
 
-use bulge_inference::{Diagnosis, MOST_EFFECTS, Missing, Remaining, Verdict};
+use bulge_inference::{Diagnosis, Level, MOST_EFFECTS, Missing, Remaining, Verdict};
 
 use crate::comparison::number::{newton, three};
 use crate::diagnosis::asides::asides;
@@ -25,7 +25,8 @@ const TOO_FEW: &str = "these data are too few or too noisy for a verdict";
 /// ```text
 /// missing: bladder-elasticity (rubber; on data like these such a claim is right 97 % of the time)
 /// ```
-/// What is missing comes first, then that something remains. Effects that were tried on the way to another verdict are `nearest: `: nothing is claimed of them.
+/// A claim that the data decide no further than to the mechanism or the class is said as that: `missing: dry friction, likeliest force-friction`,
+/// `missing: one of fibre-stretch, end-slip`. What is missing comes first, then that something remains. Effects that were tried on the way to another verdict are `nearest: `: nothing is claimed of them.
 /// Where the diagnosis has a sentence of its own for the verdict, with numbers, it is the line. Last come effects that could be the answer and were not looked for,
 /// and the geometry that all this depends on.
 #[must_use]
@@ -49,7 +50,8 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
         } else {
             String::new()
         };
-        format!("{MISSING}{} ({mechanism}; {right}{of_mechanism})", missing.effect)
+        let of = if missing.level == Level::Class { format!("{}: ", missing.effect) } else { String::new() };
+        format!("{MISSING}{} ({of}{mechanism}; {right}{of_mechanism})", missing.claim())
     };
     let nearest = |why: &str| -> Vec<String> {
         diagnosis.nearest.iter().map(|missing| format!("nearest: {} ({why})", missing.effect)).collect()
@@ -58,7 +60,9 @@ fn verdict(diagnosis: &Diagnosis) -> Vec<String> {
         Verdict::Missing => {
             let mut lines: Vec<String> = diagnosis.missing.iter().map(claim).collect();
             lines.extend(diagnosis.nearest.iter().map(|missing| {
-                let why = if missing.plausible {
+                let why = if missing.is_doubtful() {
+                    "something is there, and these data don't tell what"
+                } else if missing.plausible {
                     "not needed: what is left without it is within the tolerance"
                 } else {
                     "its numbers are implausible: it stands in for something else"

@@ -3,9 +3,9 @@
 use bulge_effects::Mechanism;
 use bulge_inference::{
     BentCurve, CandidateResult, Comparison, Confidence, CorrelationTime, DiagnosedData, DiagnosedNoise,
-    Diagnosis, ExplainedCurve, ExplainedStep, FormErrorAt, FormErrorResult, Geometry, LadderStep, Located,
-    Missing, NextExperiment, NoiseLaw, NoiseSource, ParameterResult, Remaining, RivalResult, SurfaceCurve,
-    Verdict,
+    Diagnosis, ExplainedCurve, ExplainedStep, FormErrorAt, FormErrorResult, Geometry, LadderStep, Level,
+    Located, Missing, NextExperiment, NoiseLaw, NoiseSource, ParameterResult, Remaining, RivalResult,
+    SurfaceCurve, Verdict,
 };
 
 /// Rubber and friction are missing, the second and third rungs of the comparison; rubber of another form than its formula's.
@@ -52,6 +52,7 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
             structured: false,
             misfit_n: 0.4,
             misfit_interval_n: [0.0, 1.2],
+            by_formulas: Some(0.95),
             unseen_below_n: Some(0.32),
             hints: vec!["grows with the pressure".to_owned()],
             surface: surface(),
@@ -139,6 +140,7 @@ fn bladder() -> Missing {
         family: "bladder-elasticity".to_owned(),
         mechanism: Mechanism::Rubber,
         form_error: Some(bent()),
+        level: Level::Form,
         confidence: 0.97,
         confidence_mechanism: 0.98,
         confidence_form: 0.9,
@@ -180,6 +182,7 @@ fn friction() -> Missing {
         family: "coulomb-friction".to_owned(),
         mechanism: Mechanism::DryFriction,
         form_error: Some(FormErrorResult { share: 0.0, rms_n: 0.0, r#where: None, curves: Vec::new() }),
+        level: Level::Form,
         confidence: 0.999,
         confidence_mechanism: 0.999,
         confidence_form: 0.9,
