@@ -44,7 +44,7 @@ pub(crate) struct DecisionRule {
     /// Part of the log evidence that the formulas must bring as they are: with less the claim rests on the bending, and is none (right names stood above 0.82 in the pilot, wrong
     /// ones up to 0.62).
     pub(crate) exact: f64,
-    /// Part of the misfit, as squares, that formulas must explain as they are: below the first their effects are no claim, above the second they are one though something
+    /// Part of the misfit, as squares, that formulas must explain as they are: below the first several effects are no claim, above the second they are one though something
     /// that nobody thought of does better on top, for what is left is then the error of these formulas (forms suite, seed 61: where nothing known is hidden 0.83 at most,
     /// known effects in a form of their own 0.95 and more).
     pub(crate) by_formulas: [f64; 2],

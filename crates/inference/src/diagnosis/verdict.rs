@@ -241,7 +241,8 @@ impl Findings<'_> {
         let (base, last) = (&self.search.stages[0].confirmed, &self.last().confirmed);
         let (form, base_form) = (last.form.log_evidence, base.form.log_evidence);
         form - base_form > (1.0 - RULE.exact) * (last.log_evidence - base.log_evidence)
-            || self.last().by_formulas(&self.search.stages[0]) < RULE.by_formulas[0]
+            || self.last().added.len() > 1
+                && self.last().by_formulas(&self.search.stages[0]) < RULE.by_formulas[0]
     }
 }
 
