@@ -22,7 +22,7 @@ use crate::fit::settle::{NEAR, cost, settled};
 use crate::fit::states::{is_of_rows, of_start, settled_where_possible};
 
 /// Tolerance of the fits, as a part of what the residuals are.
-const TOLERANCE: f64 = 1e-5;
+const TOLERANCE: f64 = 3e-4;
 const EVALUATIONS: usize = 50;
 /// Rows on which a start is looked for from where all have a state: rows without one take the longest to be solved.
 const FEW_ROWS: usize = 300;

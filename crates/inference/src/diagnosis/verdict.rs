@@ -103,6 +103,9 @@ impl Findings<'_> {
     /// The systematic misfit of the last model with its interval.
     fn size(&self) -> String {
         let (misfit_n, interval) = misfit(&self.last().linear, self.given.seed);
+        if interval[0] <= 0.0 {
+            return format!("at most {} N", significant(interval[1], 2));
+        }
         format!(
             "{} N ({} to {})",
             significant(misfit_n, 2),
@@ -231,9 +234,12 @@ impl Findings<'_> {
         names.into_iter().partition(|name| mechanism(name) >= RULE.doubtful.min(surest))
     }
 
-    /// Whether the formulas of the effects explain nearly everything as they are: what is left is then their own error.
+    /// Whether the formulas of the effects explain nearly everything as they are: what is left is then their own error. Of a misfit that may as well be none,
+    /// the part that counts for claims is enough.
     fn is_nearly_exact(&self) -> bool {
-        self.last().by_formulas(&self.search.stages[0]) >= RULE.by_formulas[1]
+        let part = self.last().by_formulas(&self.search.stages[0]);
+        let may_be_none = || misfit(&self.last().linear, self.given.seed).1[0] <= 0.0;
+        part >= RULE.by_formulas[1] || part >= RULE.exact && !self.is_bent() && may_be_none()
     }
 
     /// Whether the claim rests on bending the formulas: then they are the nearest, and not what is missing.
