@@ -339,12 +339,12 @@ fn a_bent_effect_has_two_rungs_and_the_second_is_what_its_form_leaves() {
 #[test]
 fn an_effect_is_claimed_beside_what_nothing_explains_if_its_formula_explains_nearly_all() {
     // A spring, and a wave along the contraction that no effect has.
-    let wavy = |size: f64| found(sprung(move |e| 500.0 * e + size * (120.0 * e).sin()));
-    let little = wavy(12.0);
+    let wavy = |size: f64, rate: f64| found(sprung(move |e| 500.0 * e + size * (rate * e).sin()));
+    let little = wavy(12.0, 120.0);
     assert_eq!(names(&little), ["bladder-axial"], "{}", little.says);
     let part = little.remaining.by_formulas.unwrap();
     assert!((0.95..0.99).contains(&part) && little.remaining.structured, "{part}");
-    let much = wavy(30.0);
+    let much = wavy(30.0, 60.0);
     assert_eq!(much.verdict, Verdict::Unknown, "{}", much.says);
     assert!(much.remaining.by_formulas.unwrap() < 0.95, "{:?}", much.remaining.by_formulas);
 }
