@@ -297,6 +297,14 @@ def score():
         one = answer(names, hidden)
         broken += one.all_right() is not by_family
         broken += one.all_right("mechanism") is not by_mechanism
+    claimed = answer(["creep"], [entry, other])
+    broken += [claimed.as_claimed(claim) for claim in (
+        {"effect": "creep", "level": "family"},
+        {"effect": "maxwell-slip", "level": "family"},
+        {"effect": "maxwell-slip", "level": "mechanism"},
+        {"effect": "end-slip", "level": "class", "class": ["end-slip", "creep"]},
+        {"effect": "end-slip", "level": "class", "class": ["end-slip"]},
+    )] != [True, False, True, True, False]
     claim = {"confidence": {"mechanism": 0.9, "family": 0.8, "form": 0.5}}
     broken += forms_metrics.confidence(claim, "mechanism") != 0.9 or forms_metrics.confidence({"confidence": 0.7}, "family") != 0.7
     return float(broken)

@@ -59,9 +59,16 @@ class Answer:
             return False
         return any(all(matches(claim, entry, level) for claim, entry in zip(claims, order)) for order in permutations(known))
 
-    def in_class(self):
-        """Whether the class of the first claim holds the hidden family, or one that is identical with it on these data."""
-        names = [self.claims[0]["effect"], *self.claims[0].get("class", [])]
+    def as_claimed(self, claim):
+        """Whether a claim is right as far as it goes: that it is one of a class, a mechanism, or a family."""
+        level = claim.get("level")
+        if level == "class":
+            return self.in_class(claim)
+        return self.right(claim, "mechanism" if level == "mechanism" else "family")
+
+    def in_class(self, claim):
+        """Whether the class of a claim holds a hidden family, or one that is identical with it on these data."""
+        names = [claim["effect"], *claim.get("class", [])]
         return any(matches({"effect": name}, entry, "family") for name in names for entry in self.known)
 
     def found(self, entry, level="family"):
@@ -151,7 +158,7 @@ def _one(one):
         rows.append(rate_row(f"one effect, {title}: family right and nothing else named", [a.all_right() for a in some]))
     decided = [a for a in one if len(a.known[0]["class"]) == 1]
     rows.append(rate_row("one effect, no rival within 3.29 sigma: family right and nothing else named", [a.all_right() for a in decided]))
-    rows.append(rate_row("one effect: one claim, the hidden family in its class", [len(a.claims) == 1 and a.in_class() for a in one]))
+    rows.append(rate_row("one effect: one claim, the hidden family in its class", [len(a.claims) == 1 and a.in_class(a.claims[0]) for a in one]))
     rows.append(rate_row("one effect: found, whatever else is named", [a.found(a.known[0]) for a in one]))
     rows.append(rate_row("one effect: more than one name", [len(a.claims) > 1 for a in one]))
     rows.append(rate_row("one effect: called unknown", [a.verdict == "unknown" for a in one]))
@@ -185,7 +192,7 @@ def _quiet_and_unknown(everything):
         rate_row("outside the catalogue: not noticed", [a.quiet for a in alone]),
         rate_row("beside a known effect: called unknown", [a.verdict == "unknown" for a in beside]),
         rate_row("beside a known effect: the known family alone, structure said to remain", left),
-        rate_row("beside a known effect: either of the two", [a.verdict == "unknown" or good for a, good in zip(beside, left)]),
+        rate_row("beside a known effect: called unknown, or the known family alone with structure that remains", [a.verdict == "unknown" or good for a, good in zip(beside, left)]),
     ]
 
 
@@ -194,6 +201,7 @@ def _names(everything):
     return [
         rate_row("wrong names, of all names (by family)", [not a.right(claim) for a, claim in claims]),
         rate_row("wrong names, of all names (by mechanism)", [not a.right(claim, "mechanism") for a, claim in claims]),
+        rate_row("claims that are wrong as far as they go", [not a.as_claimed(claim) for a, claim in claims]),
         rate_row("a wrong name, and the data said to be explained", [
             a.verdict == "missing" and not a.structured and any(not a.right(claim) for claim in a.claims) for a in everything
         ]),
