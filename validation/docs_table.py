@@ -74,7 +74,7 @@ FORMS = (
     ("beside a known effect: called unknown", ">= 85 %"),
     ("beside a known effect: called unknown, or the known family alone with structure that remains", ""),
     ("wrong names, of all names (by family)", "<= 3 %"),
-    ("claims that are wrong as far as they go", ""),
+    ("claims that are wrong at the level that they state", ""),
     ("calibration of the family: mean distance of confidence and rate", "<= 0.05"),
     ("seconds per case, mean", ""),
     ("seconds per case, 95th percentile", ""),
@@ -88,7 +88,7 @@ FORMS_FRONT = (
     "nothing hidden: quiet",
     "outside the catalogue: called unknown",
     "wrong names, of all names (by family)",
-    "claims that are wrong as far as they go",
+    "claims that are wrong at the level that they state",
     "family right when its confidence is 0.9 to 0.97",
 )
 """What of it stands on the front page."""

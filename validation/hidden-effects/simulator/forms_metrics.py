@@ -60,7 +60,7 @@ class Answer:
         return any(all(matches(claim, entry, level) for claim, entry in zip(claims, order)) for order in permutations(known))
 
     def as_claimed(self, claim):
-        """Whether a claim is right as far as it goes: that it is one of a class, a mechanism, or a family."""
+        """Whether a claim is right at the level that it states: one of a class, a mechanism, or a family."""
         level = claim.get("level")
         if level == "class":
             return self.in_class(claim)
@@ -201,7 +201,7 @@ def _names(everything):
     return [
         rate_row("wrong names, of all names (by family)", [not a.right(claim) for a, claim in claims]),
         rate_row("wrong names, of all names (by mechanism)", [not a.right(claim, "mechanism") for a, claim in claims]),
-        rate_row("claims that are wrong as far as they go", [not a.as_claimed(claim) for a, claim in claims]),
+        rate_row("claims that are wrong at the level that they state", [not a.as_claimed(claim) for a, claim in claims]),
         rate_row("a wrong name, and the data said to be explained", [
             a.verdict == "missing" and not a.structured and any(not a.right(claim) for claim in a.claims) for a in everything
         ]),

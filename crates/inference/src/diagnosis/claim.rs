@@ -38,9 +38,7 @@ impl Levels {
         // A user's formula without a mechanism stands for itself: what it isn't, it can't be.
         Self { mechanism: mechanism.max(family), family, form: part(&|_| false).min(family) }
     }
-}
 
-impl Levels {
     /// The deepest level at which the claim is likelier right than wrong.
     pub(crate) fn decided(self) -> Level {
         match self {

@@ -21,7 +21,8 @@ use crate::fit::problem::{FitProblem, free};
 use crate::fit::settle::{NEAR, cost, settled};
 use crate::fit::states::{is_of_rows, of_start, settled_where_possible};
 
-/// Tolerance of the fits, as a part of what the residuals are.
+/// Tolerance of the fits, as a part of what the residuals are: no step promises more than its square, 1e-7, of the sum of squares, and evidence counts in hundredths. In the
+/// flat valleys of effects that do nearly the same a hundred times less took five times as long.
 const TOLERANCE: f64 = 3e-4;
 const EVALUATIONS: usize = 50;
 /// Rows on which a start is looked for from where all have a state: rows without one take the longest to be solved.

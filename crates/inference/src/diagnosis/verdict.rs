@@ -190,13 +190,13 @@ impl Findings<'_> {
             } else {
                 "that no further effect explains"
             };
-            let says = format!(
-                "missing: {}; {beside} most of the misfit, and {size} of structure remain {further}",
-                self.labels(&sound)
-            );
             // Where something remains, numbers that no muscle has stand in for something else: no claim.
             let claimed = if last.adequate { sound.into_iter().chain(odd).collect() } else { sound };
             let (claimed, _) = self.apart(claimed);
+            let says = format!(
+                "missing: {}; {beside} most of the misfit, and {size} of structure remain {further}",
+                self.labels(&claimed)
+            );
             return Said { verdict: Verdict::Missing, says, claimed };
         }
         let structure = if last.adequacy.repeats {

@@ -26,8 +26,8 @@ const TOO_FEW: &str = "these data are too few or too noisy for a verdict";
 /// missing: bladder-elasticity (rubber; on data like these such a claim is right 97 % of the time)
 /// ```
 /// A claim that the data decide no further than to the mechanism or the class is said as that: `missing: dry friction, likeliest force-friction`,
-/// `missing: one of fibre-stretch, end-slip`. What is missing comes first, then that something remains. Effects that were tried on the way to another verdict are `nearest: `: nothing is claimed of them.
-/// Where the diagnosis has a sentence of its own for the verdict, with numbers, it is the line. Last come effects that could be the answer and were not looked for,
+/// `missing: one of fibre-stretch, end-slip`. What is missing comes first, then that something remains. Effects that were tried on the way to another verdict are
+/// `nearest: `: nothing is claimed of them. Where the diagnosis has a sentence of its own for the verdict, with numbers, it is the line. Last come effects that could be the answer and were not looked for,
 /// and the geometry that all this depends on.
 #[must_use]
 pub fn headlines(diagnosis: &Diagnosis) -> Vec<String> {
