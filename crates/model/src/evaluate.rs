@@ -314,9 +314,14 @@ impl Run<'_> {
     ) -> Option<Arc<Lattice>> {
         let matters = self.matters(record, counts);
         let counted = matters.iter().filter(|matters| **matters).count();
-        let unsolved = Lattice::unsolved(equilibrium, self.shapes.len(), self.model.refinement);
-        let spans = self.spans(record, &matters, &unsolved);
-        let lattice = unsolved.around(&spans);
+        let around = |levels: bool| {
+            let unsolved =
+                Lattice::unsolved(equilibrium, self.shapes.len(), self.model.refinement, levels);
+            let spans = self.spans(record, &matters, &unsolved);
+            (unsolved.around(&spans), spans)
+        };
+        let (even, of_levels) = (around(false), around(true));
+        let (lattice, spans) = if of_levels.0.needed() < even.0.needed() { of_levels } else { even };
         // A node costs what a row costs, in one evaluation; what is held serves many.
         let evaluations = if slots.holds { HELD_FOR } else { 1 };
         if lattice.needed() >= evaluations * counted {
@@ -353,7 +358,8 @@ impl Run<'_> {
             Model::equilibrium(&muscle, &variables).ok()
         };
         let Some(equilibrium) = (alone > FEWEST_NODES).then(there).flatten() else { return };
-        let unsolved = Lattice::unsolved(&equilibrium, held.shapes.len(), self.model.refinement);
+        let levels = held.lattice.is_of_levels();
+        let unsolved = Lattice::unsolved(&equilibrium, held.shapes.len(), self.model.refinement, levels);
         let mut spans = self.spans(record, &self.matters(record, counts), &unsolved);
         spans.extend(&held.spans);
         spans.sort_unstable();

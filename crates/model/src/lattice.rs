@@ -1,7 +1,8 @@
 //! A lattice of solved equilibria between which many rows are interpolated.
 //!
 //! Shooting takes some 10 to 500 us; a file may have 10^6 rows. Equilibria are therefore solved on a fixed lattice in ln(p) and in a stretched
-//! contraction s, only where rows need them, and interpolated by local Lagrange polynomials of degree 5 in both directions:
+//! contraction s, only where rows need them, and interpolated by local Lagrange polynomials of degree 5 in both directions, of degree 2 between the three
+//! nearest lines of a finer lattice where rows are kept at a few levels of pressure and ask for fewer nodes so:
 //!
 //! ```text
 //! s = asinh(eps/0.02)    (ln(eps) where the force is infinite at eps = 0)
@@ -23,14 +24,16 @@ use crate::answer::{Answer, Graded, SHAPE};
 use crate::base::Equilibrium;
 use crate::solved::Starts;
 
-/// Nodes of a stencil in each direction.
+/// Nodes of a stencil along the contraction, and along the pressure on an even lattice.
 const WIDTH: usize = 6;
-/// The same as an index.
-const SPAN: i64 = 6;
+/// Nodes of a stencil along the pressure where rows are kept at levels.
+const LEVEL_WIDTH: usize = 3;
 /// Nodes that a lattice has at least: for fewer rows none is worth its while.
 pub(crate) const FEWEST_NODES: usize = WIDTH * WIDTH;
 /// Steps of ln(p) and s at refinement 1.
-const STEP: [f64; 2] = [0.125, 0.1];
+const STEP: [f64; 2] = [0.15, 0.13];
+/// Steps of ln(p) at levels in one of those.
+const LEVEL_STEPS: i64 = 5;
 /// Contraction below which the lattice is even, above which it is logarithmic.
 const BEND: f64 = 0.02;
 /// Nodes by which a stencil may lie aside, so that the row stays within it, and the most in both directions together: beyond that a row is solved itself.
@@ -65,6 +68,8 @@ pub(crate) struct Lattice {
     scale_free: bool,
     shapes: usize,
     steps: [f64; 2],
+    /// Nodes of a stencil along the pressure.
+    width: usize,
     /// Lowest index and number of nodes, by direction.
     low: [i64; 2],
     count: [usize; 2],
@@ -89,13 +94,16 @@ struct Place {
 pub(crate) type Span = [[i64; 2]; 2];
 
 impl Lattice {
-    /// A lattice without nodes.
-    pub(crate) fn unsolved(equilibrium: &Equilibrium, shapes: usize, refinement: f64) -> Self {
+    /// A lattice without nodes, even in ln(p) or for rows at levels.
+    pub(crate) fn unsolved(equilibrium: &Equilibrium, shapes: usize, refinement: f64, levels: bool) -> Self {
+        let scale_free = equilibrium.is_scale_free();
+        let [by_pressure, by_contraction] = STEP.map(|step| step / refinement);
         Self {
             singular: equilibrium.is_singular(),
-            scale_free: equilibrium.is_scale_free(),
+            scale_free,
             shapes,
-            steps: STEP.map(|step| step / refinement),
+            steps: [if levels { by_pressure / LEVEL_STEPS as f64 } else { by_pressure }, by_contraction],
+            width: if scale_free { 1 } else if levels { LEVEL_WIDTH } else { WIDTH },
             low: [0, 0],
             count: [0, 0],
             needed: Vec::new(),
@@ -128,6 +136,11 @@ impl Lattice {
         }
         self.needed = needed;
         self
+    }
+
+    /// Whether it is one for rows at levels of pressure.
+    pub(crate) fn is_of_levels(&self) -> bool {
+        self.width == LEVEL_WIDTH
     }
 
     /// How many nodes there are to solve.
@@ -223,13 +236,9 @@ impl Lattice {
 
     /// Why there is no equilibrium at a contraction: at both pressures beside it they ended more than a cell before. None if there may be one.
     fn beyond(&self, pressure: f64, contraction: f64) -> Option<&FibreError> {
-        let along_s = self.place(1, self.contraction_axis(contraction)?)?;
-        let column = along_s.first + SPAN / 2 - 1 - self.low[1];
-        let line = if self.scale_free {
-            0
-        } else {
-            self.place(0, self.pressure_axis(pressure)?)?.first + SPAN / 2 - 1 - self.low[0]
-        };
+        let cell = |axis: usize, x: f64| Some(index_of((x / self.steps[axis]).floor())? - self.low[axis]);
+        let column = cell(1, self.contraction_axis(contraction)?)?;
+        let line = if self.scale_free { 0 } else { cell(0, self.pressure_axis(pressure)?)? };
         let end = |line: i64| {
             let (end, error) = self.ends.get(usize::try_from(line).ok()?)?.as_ref()?;
             (usize::try_from(column).ok()? > *end).then_some(error)
@@ -238,9 +247,14 @@ impl Lattice {
         (self.scale_free || end(line + 1).is_some()).then_some(error)
     }
 
+    /// Places of a node in the steps of the finer lattice.
     fn key(&self, row: usize, column: usize) -> [i64; 2] {
         // Indices are below 1e6 (see `place`).
-        [self.low[0] + i64::try_from(row).unwrap_or(0), self.low[1] + i64::try_from(column).unwrap_or(0)]
+        let unit = if self.is_of_levels() { 1 } else { LEVEL_STEPS };
+        [
+            unit * (self.low[0] + i64::try_from(row).unwrap_or(0)),
+            self.low[1] + i64::try_from(column).unwrap_or(0),
+        ]
     }
 
     fn contraction(&self, column: usize) -> f64 {
@@ -253,9 +267,9 @@ impl Lattice {
         let p = self.place(0, self.pressure_axis(pressure)?)?;
         let [a, b] = [self.contraction_axis(low)?, self.contraction_axis(high)?];
         let [a, b] = [self.place(1, a)?, self.place(1, b)?];
-        let last = SPAN - 1;
-        let pressures = if self.scale_free { [0, 0] } else { [p.first, p.first + last] };
-        Some([pressures, [a.first.min(b.first), b.first.max(a.first) + last]])
+        let [pressures, contractions] = [0, 1].map(|axis| self.last(axis));
+        let p = if self.scale_free { 0 } else { p.first };
+        Some([[p, p + pressures], [a.first.min(b.first), b.first.max(a.first) + contractions]])
     }
 
     fn pressure_axis(&self, pressure: f64) -> Option<f64> {
@@ -269,14 +283,16 @@ impl Lattice {
         contraction.is_finite().then(|| (contraction / BEND).asinh())
     }
 
+    /// Last node of a stencil, from its first.
+    fn last(&self, axis: usize) -> i64 {
+        let width = if axis == 0 { self.width } else { WIDTH };
+        i64::try_from(width).unwrap_or(1) - 1
+    }
+
+    /// The stencil whose middle is nearest.
     fn place(&self, axis: usize, x: f64) -> Option<Place> {
         let steps = x / self.steps[axis];
-        let cell = steps.floor();
-        if cell.is_nan() || cell.abs() >= 1e6 {
-            return None;
-        }
-        #[expect(clippy::cast_possible_truncation, reason = "below 1e6")]
-        let first = cell as i64 - (SPAN / 2 - 1);
+        let first = index_of((steps - 0.5 * (self.last(axis) - 1) as f64).floor())?;
         Some(Place { first, offset: steps - first as f64 })
     }
 
@@ -310,16 +326,15 @@ impl Lattice {
     /// The stencil around a pressure and a contraction, moved inwards where equilibria end: a row in the last cells is still between solved nodes. The least moved
     /// counts, along the contraction first; none if there is no such stencil.
     fn within(&self, around: [Place; 2]) -> Option<[Place; 2]> {
-        let rows = if self.scale_free { 1 } else { WIDTH };
         let moved = |place: Place, shift: i64| Place {
             first: place.first + shift,
             offset: place.offset - shift as f64,
         };
         let is_solved = |[pressure, contraction]: &[Place; 2]| {
-            (pressure.first..).zip(0..rows).all(|(row, _)| {
+            (pressure.first..).zip(0..self.width).all(|(row, _)| {
                 let start = self
                     .index(row, contraction.first)
-                    .filter(|_| self.index(row, contraction.first + SPAN - 1).is_some());
+                    .filter(|_| self.index(row, contraction.first + self.last(1)).is_some());
                 let nodes = start.and_then(|start| self.is_solved.get(start..start + WIDTH));
                 nodes.is_some_and(|nodes| nodes.iter().all(|solved| *solved))
             })
@@ -342,9 +357,12 @@ impl Lattice {
             around[0].first = 0;
         }
         let [along_p, along_s] = self.within(around)?;
-        let (wp, dp) = if self.scale_free { flat() } else { weights(along_p.offset) };
-        let first = along_p.first;
-        let rows = if self.scale_free { 1 } else { WIDTH };
+        let (wp, dp) = match self.width {
+            1 => flat(),
+            LEVEL_WIDTH => parabola(along_p.offset),
+            _ => weights(along_p.offset),
+        };
+        let (first, rows) = (along_p.first, self.width);
         let (ws, ds) = weights(along_s.offset);
         // Values with their shape derivatives, and the values' slopes in steps.
         let mut starts = [0; WIDTH];
@@ -424,6 +442,21 @@ fn flat() -> ([f64; WIDTH], [f64; WIDTH]) {
     let mut one = [0.0; WIDTH];
     one[0] = 1.0;
     (one, [0.0; WIDTH])
+}
+
+/// An index, of a number below 1e6.
+fn index_of(whole: f64) -> Option<i64> {
+    #[expect(clippy::cast_possible_truncation, reason = "below 1e6")]
+    let index = whole as i64;
+    (whole.abs() < 1e6).then_some(index)
+}
+
+/// Lagrange's weights of the nodes 0 to 2 at `t`, and their slopes.
+fn parabola(t: f64) -> ([f64; WIDTH], [f64; WIDTH]) {
+    let (mut w, mut d) = ([0.0; WIDTH], [0.0; WIDTH]);
+    w[..LEVEL_WIDTH].copy_from_slice(&[0.5 * (t - 1.0) * (t - 2.0), t * (2.0 - t), 0.5 * t * (t - 1.0)]);
+    d[..LEVEL_WIDTH].copy_from_slice(&[t - 1.5, 2.0 - 2.0 * t, t - 0.5]);
+    (w, d)
 }
 
 /// Lagrange's weights of the nodes 0 to 5 at `t`, and their slopes.

@@ -15,7 +15,7 @@ pub(crate) fn braid(radius: f64, c10: f64) -> (Muscle, Equilibrium) {
 
 /// Nodes for rows about a pressure, from 1 % to a contraction.
 pub(crate) fn lattice(equilibrium: &Equilibrium, pressure: f64, most: f64) -> Lattice {
-    let empty = Lattice::unsolved(equilibrium, 0, 1.0);
+    let empty = Lattice::unsolved(equilibrium, 0, 1.0, false);
     let spans = [0.9, 1.0, 1.1].map(|part| empty.span(part * pressure, [0.01, most]).unwrap());
     empty.around(&spans)
 }
@@ -65,27 +65,33 @@ fn rows_beyond_the_end_change_nothing_before_it() {
     assert!(ended.is_some());
 }
 
-/// Largest error over the force at 2 %, away from where equilibria end: 1e-6 of it, 1e-4 on the coarser lattice of a search, and the sixth order between them.
+/// Largest error over the force at 2 %, away from where equilibria end: 1e-6 of it, 1e-4 on the coarser lattice of a search, and the sixth order between them; the third
+/// order in the pressure where rows are at levels.
 #[test]
-fn errors_fall_with_the_sixth_power_of_the_step() {
+fn errors_fall_with_the_power_of_the_step() {
     let equilibrium = braid(10.0, 1e5).1;
     let exact = |p: f64, contraction: f64| equilibrium.answer(p, contraction, None).unwrap().0.force.value;
-    let error = |refinement: f64| {
-        let empty = Lattice::unsolved(&equilibrium, 0, refinement);
-        let spans = [1.5e5, 2e5, 3e5].map(|p| empty.span(p, [0.01, 0.15]).unwrap());
-        let wider = spans.map(|span| span.map(|[low, high]| [low - 6, high + 6]));
-        let lattice = empty.around(&wider).solved(&equilibrium, &Starts::default()).0;
-        let rows = (0..40).map(|i| (1.5e5 + 3.7e3 * f64::from(i), 0.01 + 0.0035 * f64::from((7 * i) % 40)));
-        rows.map(|(p, e)| (lattice.answer(p, e).unwrap().force.value - exact(p, e)).abs() / exact(p, 0.02))
+    let error = |refinement: f64, levels: bool| {
+        let empty = Lattice::unsolved(&equilibrium, 0, refinement, levels);
+        let pressures = (0..40).map(|i| 1.5e5 + 3.7e3 * f64::from(i));
+        let rows: Vec<(f64, f64)> =
+            pressures.zip((0..40).map(|i| 0.01 + 0.0035 * f64::from((7 * i) % 40))).collect();
+        let spans: Vec<Span> = rows.iter().map(|(p, _)| empty.span(*p, [0.01, 0.15]).unwrap()).collect();
+        let lattice = empty.around(&spans).solved(&equilibrium, &Starts::default()).0;
+        rows.iter()
+            .map(|(p, e)| (lattice.answer(*p, *e).unwrap().force.value - exact(*p, *e)).abs() / exact(*p, 0.02))
             .fold(0.0, f64::max)
     };
-    let [coarse, usual] = [0.5, 1.0].map(error);
-    assert!(usual < 1e-6 && coarse < 1e-4, "{usual:e} {coarse:e}");
-    assert!((16.0..256.0).contains(&(coarse / usual)), "{usual:e} {coarse:e}");
+    for (levels, order) in [(false, 16.0..256.0), (true, 4.0..256.0)] {
+        let [coarse, usual] = [0.5, 1.0].map(|refinement| error(refinement, levels));
+        println!("{levels} {coarse:e} {usual:e}");
+        assert!(usual < 1e-6 && coarse < 1e-4, "{levels}: {usual:e} {coarse:e}");
+        assert!(order.contains(&(coarse / usual)), "{levels}: {usual:e} {coarse:e}");
+    }
 }
 
 #[test]
-fn weights_are_exact_for_degree_five() {
+fn weights_are_exact_to_their_degree() {
     for t in [2.0, 2.3, 2.9, 3.0] {
         let (w, d) = weights(t);
         let f = |x: f64| ((x - 1.3) * x + 2.0) * x.powi(3) - 4.0;
@@ -93,5 +99,9 @@ fn weights_are_exact_for_degree_five() {
         let value: f64 = (0..WIDTH).map(|k| w[k] * f(k as f64)).sum();
         let slope: f64 = (0..WIDTH).map(|k| d[k] * f(k as f64)).sum();
         assert!((value - f(t)).abs() < 1e-11 * f(t).abs() && (slope - f_t(t)).abs() < 1e-11 * f_t(t));
+        let (w, d) = parabola(t);
+        let square = |k: usize| (k as f64 - 1.3) * k as f64 + 2.0;
+        let [value, slope] = [w, d].map(|weights| (0..WIDTH).map(|k| weights[k] * square(k)).sum::<f64>());
+        assert!((value - ((t - 1.3) * t + 2.0)).abs() < 1e-12 && (slope - (2.0 * t - 1.3)).abs() < 1e-12);
     }
 }
