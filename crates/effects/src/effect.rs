@@ -39,7 +39,7 @@ pub struct Moment {
     pub pressure_step: f64,
     /// Temperature above that of the first row \[K\]; 0 without the column.
     pub temperature: f64,
-    /// Number of the cycle, from 0.
+    /// Loops so far, from 0, with the part of the one under way: half of it at the far end.
     pub cycle: f64,
     /// Largest contraction so far in the sweep, this row included.
     pub largest: f64,

@@ -14,6 +14,7 @@ pub(crate) mod document;
 pub(crate) mod drawn;
 mod either;
 pub(crate) mod explained;
+pub(crate) mod fits;
 pub(crate) mod form_error;
 pub(crate) mod geometry;
 pub(crate) mod ground;

@@ -315,8 +315,7 @@ impl Run<'_> {
         let matters = self.matters(record, counts);
         let counted = matters.iter().filter(|matters| **matters).count();
         let around = |levels: bool| {
-            let unsolved =
-                Lattice::unsolved(equilibrium, self.shapes.len(), self.model.refinement, levels);
+            let unsolved = Lattice::unsolved(equilibrium, self.shapes.len(), self.model.refinement, levels);
             let spans = self.spans(record, &matters, &unsolved);
             (unsolved.around(&spans), spans)
         };

@@ -103,7 +103,13 @@ impl Lattice {
             scale_free,
             shapes,
             steps: [if levels { by_pressure / LEVEL_STEPS as f64 } else { by_pressure }, by_contraction],
-            width: if scale_free { 1 } else if levels { LEVEL_WIDTH } else { WIDTH },
+            width: if scale_free {
+                1
+            } else if levels {
+                LEVEL_WIDTH
+            } else {
+                WIDTH
+            },
             low: [0, 0],
             count: [0, 0],
             needed: Vec::new(),

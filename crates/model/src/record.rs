@@ -141,6 +141,9 @@ impl Record {
     }
 }
 
+/// Part of a loop up to which it is under way: a longer one is not the next.
+const MOST_OF_LOOP: f64 = 0.999;
+
 /// What moments need of how the muscle moved; the rest of it is gone before they are made.
 struct Moved {
     direction: Vec<f64>,
@@ -192,6 +195,40 @@ fn append(moments: &mut Vec<Moment>, data: &Data, path: &Moved, contraction: &[f
     }
     if let Some(sweep) = moments.get_mut(rows) {
         step(sweep, path.is_path);
+        if path.is_path {
+            under_way(sweep);
+        }
+    }
+}
+
+/// Adds to the number of each loop of a sweep the part of it that is done: the way since it began over that of a whole loop, twice the range of what is driven.
+fn under_way(sweep: &mut [Moment]) {
+    let is_held = sweep.iter().all(|m| m.direction == 0.0);
+    let driven = |m: &Moment| if is_held { m.pressure } else { m.contraction };
+    let branch = |m: &Moment| if is_held { m.pressure_direction } else { m.direction };
+    let [low, high] = sweep
+        .iter()
+        .map(driven)
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    let whole = 2.0 * (high - low);
+    if whole <= 0.0 {
+        return;
+    }
+    let (mut number, mut done, mut direction) = (f64::NAN, 0.0, 0.0);
+    let (mut turned, mut last) = (0.0, 0.0);
+    for moment in sweep {
+        let (x, now) = (driven(moment), branch(moment));
+        if moment.cycle.total_cmp(&number).is_ne() {
+            (number, done, turned) = (moment.cycle, 0.0, if moment.begins { x } else { last });
+        } else if now * direction < 0.0 {
+            // From turn to turn: noise on the way is no way.
+            (done, turned) = (done + f64::abs(last - turned), last);
+        }
+        if now != 0.0 {
+            direction = now;
+        }
+        moment.cycle += ((done + f64::abs(x - turned)) / whole).min(MOST_OF_LOOP);
+        last = x;
     }
 }
 
@@ -339,6 +376,24 @@ impl Record {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn loops_are_counted_with_the_part_that_is_done() {
+        // Two loops of eight rows and half of a third, at a stroke of 4 %.
+        let at = |i: usize| {
+            let place = [0.0, 1.0, 2.0, 3.0, 4.0, 3.0, 2.0, 1.0][i % 8];
+            let direction = if i % 8 < 5 && i % 8 > 0 { 1.0 } else { -1.0 };
+            let direction = if i == 0 { 1.0 } else { direction };
+            let cycle = (i.max(1) - 1) / 8;
+            Moment { direction, cycle: cycle as f64, begins: i == 0, ..Moment::at_rest(1e5, 0.01 * place) }
+        };
+        let mut sweep: Vec<Moment> = (0..21).map(at).collect();
+        under_way(&mut sweep);
+        for (i, moment) in sweep.iter().enumerate() {
+            let expected = i as f64 / 8.0;
+            assert!((moment.cycle - expected).abs() < 1.1e-3, "{i}: {} {expected}", moment.cycle);
+        }
+    }
 
     #[test]
     fn copies_with_other_forces_share_what_was_moved() {

@@ -1,7 +1,7 @@
 """Forms of what the rig adds: give of frame and fittings, leaks, regulators, load cells that bend or are late, fibres that go slack.
 
 Give: Hertz 1882, deflection ~ F^(2/3); bolts that stiffen; play that closes. Pressure: losses of a thin line by Poiseuille's law for a gas (squares of
-absolute pressures), by a turbulent leak, by a leak that opens. Regulator: turbulent valve, second order, dead zone. Load cell: cubic, saturating,
+absolute pressures), by a turbulent one, by a leak that opens. Regulator: turbulent valve, second order, dead zone. Load cell: exponential, saturating,
 two slopes. Late force: one and two poles, dead time and a pole, moving average. Slack: mean of max(f, 0) over other distributions than the normal one.
 """
 
@@ -74,12 +74,13 @@ def _draw_reference(rng, scales):
 
 
 def _turbulent_leak(state, amplitude, c):
-    p = state.pressure
-    return -amplitude * c["pressure"] * np.abs(p / c["pressure"]) ** c["power"]
+    """A mass flow ~ p through a rough or smooth line (Blasius 1913: power 1.75), whose gas is the denser the higher the absolute pressure."""
+    p, usual = state.pressure, c["pressure"]
+    return -amplitude * usual * np.abs(p / usual) ** c["power"] * (usual + ATMOSPHERE) / (np.abs(p) + ATMOSPHERE)
 
 
 def _draw_turbulent_leak(rng, scales):
-    return {"pressure": 0.7 * scales.pressure, "power": rng.uniform(1.4, 2.0)}
+    return {"pressure": 0.7 * scales.pressure, "power": rng.uniform(1.7, 2.0)}
 
 
 def _opening_leak(state, amplitude, c):
@@ -149,12 +150,14 @@ def _draw_dead_zone(rng, scales):
 # Load cell: the change of the reading [N] for an amplitude in 1/N.
 
 
-def _cubic(state, amplitude, c):
-    return amplitude * state.force**3 / c["force"]
+def _exponential(state, amplitude, c):
+    """A F^2 at small forces and ever more at large ones: the spring gives way."""
+    size = state.force / c["force"]
+    return 2.0 * amplitude * c["force"] ** 2 * (np.expm1(size) - size)
 
 
-def _draw_force(rng, scales):
-    return {"force": scales.force}
+def _draw_exponential(rng, scales):
+    return {"force": scales.force * rng.uniform(0.25, 0.6)}
 
 
 def _saturating(state, amplitude, c):
@@ -258,7 +261,7 @@ FORMS = (
     Form("regulator-lag", "turbulent-valve", "pressure", _draw_turbulent_valve, _turbulent_valve),
     Form("regulator-lag", "second-order", "pressure", _draw_second_order, _second_order),
     Form("regulator-lag", "dead-zone", "pressure", _draw_dead_zone, _dead_zone),
-    Form("force-nonlinearity", "cubic", "reading", _draw_force, _cubic),
+    Form("force-nonlinearity", "exponential", "reading", _draw_exponential, _exponential),
     Form("force-nonlinearity", "saturating", "reading", _draw_saturating, _saturating),
     Form("force-nonlinearity", "two-slopes", "reading", _draw_two_slopes, _two_slopes),
     Form("force-lag", "one-pole", "reading", _nothing, _one_pole),

@@ -2,7 +2,7 @@
 
 Relaxation: two Kelvin elements; stretched exponential (Kohlrausch 1854); power of time (Andrade 1910); Burgers 1935; logarithm with another onset
 than a second; Boltzmann 1874, the load's own history under a stretched exponential. Softening: Mullins 1948 by the largest stretch so far (error
-function after Ogden and Roxburgh 1999), travel, power of the cycle. Warmth: Arrhenius 1889; a muscle that lags behind the air; two thermal masses; a power balance
+function after Ogden and Roxburgh 1999), stretched exponential of the travel, power of the cycle. Warmth: Arrhenius 1889; a muscle that lags behind the air; two thermal masses; a power balance
 of work and cooling.
 """
 
@@ -102,11 +102,12 @@ def loops(path, pressure):
 
 
 def _travel(state, amplitude, c):
-    return amplitude * np.exp(-loops(state.path, state.pressure) / c["loops"]) * state.bare
+    """Filler of many strengths breaks along the way: a stretched exponential of it."""
+    return amplitude * np.exp(-((loops(state.path, state.pressure) / c["loops"]) ** c["power"])) * state.bare
 
 
 def _draw_travel(rng, scales):
-    return {"loops": rng.uniform(0.6, 2.0)}
+    return {"loops": rng.uniform(0.6, 2.0), "power": rng.uniform(0.5, 0.8)}
 
 
 def _power_of_cycle(state, amplitude, c):

@@ -95,9 +95,8 @@ class FormsWorld(World):
     def _wall(self, path, force, pressure, contraction):
         virgin = self.amplitude("stress-softening")
         if virgin:
-            # By the number of the loop of each run, as the column of the file counts it.
-            number = np.floor(loops(path, pressure) * (1.0 - 1e-9))
-            force = force + virgin * np.exp(-number / self.nature.conditioning_loops) * self._softens(force, pressure, contraction)
+            # Along the loops of each run, as the catalogue has it: it is a rival.
+            force = force + virgin * np.exp(-loops(path, pressure) / self.nature.conditioning_loops) * self._softens(force, pressure, contraction)
         force = self.changed({"stress-softening": 0.0})._plain_wall(path, force, pressure, contraction)
         state = self._state(path, None, pressure, contraction, force)
         total = 0.0

@@ -7,9 +7,9 @@ use crate::effect::{Effect, Jet, Moment, Place, Setting};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{PERCENT, SECOND};
 
-/// `modulus -> modulus (1 + a (1 - exp(-t/tau)))`, t since the first row; without a bladder the whole force.
+/// `modulus -> modulus (1 + a w)`, `F -> F (1 + b w)`, w = 1 - exp(-t/tau), t since the first row; without a bladder a is of the whole force too.
 ///
-/// a = alpha_b dT: temperature rise and coefficient show in the force only as their product.
+/// a = alpha_b dT, b = alpha dT of the effect `temperature`: rise and coefficient show in the force only as their product.
 #[derive(Debug)]
 pub(crate) struct SelfHeating;
 
@@ -22,17 +22,18 @@ impl Effect for SelfHeating {
             form: Form::Loose,
             title: "Warming up by work",
             about: "Gas that is pumped in and out and rubber that is kneaded warm the muscle up, most at its closed end, until it gives off as \
-                    much heat as it gets. Its rubber gets stiffer meanwhile: 10 K are 3.4 %. Where there is no bladder the whole force changes.",
-            equation: "modulus x (1 + a (1 - exp(-t/tau))),   t since the first row;   without a bladder the force x the same",
+                    much heat as it gets. Its rubber gets stiffer meanwhile: 10 K are 3.4 %. Everything else that warmth does is a relative change \
+                    of the force.",
+            equation: "modulus x (1 + a w),   force x (1 + b w),   w = 1 - exp(-t/tau),   t since the first row;   without a bladder a is of the force",
             source: "S3, section 4 (the closed end gets hot); first-order heating; 0.34 % of the modulus per kelvin",
             evidence: Evidence::Literature,
             group: Group::Load,
             stage: Stage::Input,
             kind: None,
             signature: Signature {
-                pressure: "0",
+                pressure: "0 and 1",
                 parity: Parity::Even,
-                shape: "as the bladder's force, settling with the clock",
+                shape: "as the bladder's force, and as the force, settling with the clock",
             },
             twins: &[
                 Twin {
@@ -49,13 +50,23 @@ impl Effect for SelfHeating {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
+        let of_force = "relative change of the force when it is warm; of no account without a bladder";
         vec![
-            ParameterCard::new("amplitude", PERCENT, (-50.0, 50.0), 3.4, "relative change when it is warm")
-                .prior(0.0, 5.0)
-                .plausible(-15.0, 15.0),
+            ParameterCard::new(
+                "amplitude",
+                PERCENT,
+                (-50.0, 50.0),
+                3.4,
+                "relative change of the modulus when it is warm",
+            )
+            .prior(0.0, 5.0)
+            .plausible(-15.0, 15.0),
             ParameterCard::new("time", SECOND, (10.0, 1e5), 600.0, "time within which it warms up")
                 .off_at(600.0)
                 .logarithmic(),
+            ParameterCard::new("force", PERCENT, (-50.0, 50.0), 1.0, of_force)
+                .prior(0.0, 3.0)
+                .plausible(-15.0, 15.0),
         ]
     }
 
@@ -64,8 +75,12 @@ impl Effect for SelfHeating {
             let warmed = -(-(Jet::from(moment.clock) / theta[1])).exp() + 1.0;
             let factor = theta[0] * warmed + 1.0;
             input.wall = input.wall * factor;
-            if !setting.has_bladder {
-                // F = wall B(p area/wall): both together multiply the force.
+            // F = wall B(p area/wall): both together multiply the force.
+            if setting.has_bladder {
+                let force = theta[2] * warmed + 1.0;
+                input.wall = input.wall * force;
+                input.area = input.area * force;
+            } else {
                 input.area = input.area * factor;
             }
         }
@@ -83,7 +98,7 @@ mod tests {
     fn it_settles_with_the_clock() {
         // 1 + 0.034 (1 - 1/e) after one time constant.
         for (clock, expected) in [(0.0, 1.0), (600.0, 1.021_492_099), (1e5, 1.034)] {
-            let found = input(&SelfHeating, &[0.034, 600.0], |moment| moment.clock = clock);
+            let found = input(&SelfHeating, &[0.034, 600.0, 0.0], |moment| moment.clock = clock);
             assert!((found.wall.value() - expected).abs() < 1e-9, "{clock}");
             assert_eq!(found.wall, found.area);
         }
@@ -110,7 +125,7 @@ mod tests {
         let likeness = |kelvin: &dyn Fn(f64) -> f64| {
             let measured = column(&Temperature, &[0.0, 0.0], 1, kelvin);
             let of_time = |time: f64| {
-                let own = column(&SelfHeating, &[0.0, time], 0, kelvin);
+                let own = column(&SelfHeating, &[0.0, time, 0.0], 0, kelvin);
                 dot(&measured, &own).abs() / (dot(&measured, &measured) * dot(&own, &own)).sqrt()
             };
             [30.0, 100.0, 300.0, 600.0, 2e3, 1e4, 1e5].map(of_time).into_iter().fold(0.0, f64::max)
@@ -127,8 +142,14 @@ mod tests {
         let setting = Setting { has_bladder: true, ..SETTING };
         let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
         let moment = Moment { clock: 600.0, ..Moment::at_rest(2e5, 0.1) };
-        SelfHeating.act(&moment, &setting, &[0.034, 600.0].map(Jet::from), &mut [], Place::Input(&mut input));
+        let theta = [0.034, 600.0, 0.0].map(Jet::from);
+        SelfHeating.act(&moment, &setting, &theta, &mut [], Place::Input(&mut input));
         assert!((input.wall.value() - 1.021_492_099).abs() < 1e-9);
         assert_eq!(input.area, Jet::from(1.0));
+        // Of the force it is both.
+        let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
+        let theta = [0.0, 600.0, 0.034].map(Jet::from);
+        SelfHeating.act(&moment, &setting, &theta, &mut [], Place::Input(&mut input));
+        assert!((input.wall.value() - 1.021_492_099).abs() < 1e-9 && input.area == input.wall);
     }
 }

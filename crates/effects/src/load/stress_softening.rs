@@ -7,10 +7,10 @@ use crate::effect::{Effect, Jet, Moment, Place, Setting};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NUMBER, PERCENT};
 
-/// `factor = 1 + D exp(-N/N0)`, N the number of the cycle from 0: on the modulus of the bladder, or on the whole force where there is none.
+/// `factor = 1 + D exp(-N/N0)`, N the loops so far with the part of the one under way: on the modulus of the bladder, or on the whole force where there is none.
 ///
-/// Within the first cycle rubber is stiff only where it is stretched further than ever before, and soft on the way back. That part of the
-/// effect looks like friction in one cycle; it is left out here, because a factor that jumps at the reversal would be a friction of its own.
+/// Filler breaks along the way, most of it on the first one, and nothing jumps from loop to loop. Within the first loop rubber is also stiffer where it is stretched
+/// further than ever before, and soft on the way back: that part looks like friction in one loop, and is left out.
 #[derive(Debug)]
 pub(crate) struct StressSoftening;
 
@@ -24,7 +24,7 @@ impl Effect for StressSoftening {
             title: "Softening in the first cycles",
             about: "New rubber is stiffer: the first cycles break up its filler, and it settles down to its later stiffness within a few. \
                     Where the muscle has no bladder, all of its force settles in the same way.",
-            equation: "modulus x (1 + D exp(-N/N0)),   N number of the cycle from 0;   without a bladder the force x the same",
+            equation: "modulus x (1 + D exp(-N/N0)),   N loops so far, with the part of the one under way;   without a bladder the force x the same",
             source: "Mullins 1948; exponential form of conditioning; 10 to 40 % in the first cycle",
             evidence: Evidence::Literature,
             group: Group::Load,

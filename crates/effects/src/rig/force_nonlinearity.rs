@@ -5,8 +5,14 @@ use bulge_numerics::Real;
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
 use crate::mechanism::{Form, Mechanism};
+use crate::unit::NUMBER;
 
-/// `reading = F + q F^2`.
+/// Force at which the curvature is stated \[N\].
+const REFERENCE: f64 = 1e3;
+
+/// `reading = F + q F |F| (|F|/1 kN)^(k - 2)`, for a pull.
+///
+/// k = 2 is the bridge that bends one way; a cell that is alike for pulls and pushes has k = 3.
 #[derive(Debug)]
 pub(crate) struct ForceNonlinearity;
 
@@ -19,7 +25,7 @@ impl Effect for ForceNonlinearity {
             form: Form::Loose,
             title: "Bent characteristic of the load cell",
             about: "The load cell reads right at small loads and a little too much or too little at large ones.",
-            equation: "reading = F + q F^2",
+            equation: "reading = F + q F^2 (F/1 kN)^(k - 2),   k = 2 a bent characteristic, 3 one that is alike for pulls and pushes",
             source: "data sheets of load cells: 0.02 to 0.5 % of full scale",
             evidence: Evidence::Derived,
             group: Group::Rig,
@@ -37,17 +43,22 @@ impl Effect for ForceNonlinearity {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        let about = "relative error per force";
+        let about = "relative error per force, at 1 kN";
+        let power = "power of the force with which the error grows";
         vec![
             ParameterCard::new("curvature", ("%/kN", 1e-5), (-20.0, 20.0), 0.0, about)
                 .prior(0.0, 0.5)
                 .plausible(-2.0, 2.0),
+            ParameterCard::new("power", NUMBER, (1.2, 6.0), 2.0, power).plausible(1.5, 3.5).off_at(2.0),
         ]
     }
 
     fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
         if let Place::Output(_, reading) = place {
-            *reading += theta[0] * reading.squared();
+            let size = reading.abs();
+            if size.value() > 0.0 {
+                *reading += theta[0] * size * size * ((theta[1] - 2.0) * (size / REFERENCE).ln()).exp();
+            }
         }
     }
 }
@@ -60,6 +71,8 @@ mod tests {
     #[test]
     fn the_square_of_the_force_is_added() {
         // 2 %/kN of 500 N: 1 % of 500 N.
-        assert!((reading(&ForceNonlinearity, &[2e-5], |_| ()) - 505.0).abs() < 1e-12);
+        assert!((reading(&ForceNonlinearity, &[2e-5, 2.0], |_| ()) - 505.0).abs() < 1e-9);
+        // Of 1 kN as much with any power, of a half of it a quarter or an eighth.
+        assert!((reading(&ForceNonlinearity, &[2e-5, 3.0], |_| ()) - 502.5).abs() < 1e-9);
     }
 }

@@ -13,6 +13,8 @@ use crate::comparison::rows::{full_scale, lines};
 const LARGE: f64 = 0.08;
 /// Part of the error that may be left if the readings were meant otherwise.
 const LEFT: f64 = 0.35;
+/// An offset as large as the air's is geometry or an effect as well, where more than this part of the error is left and it is large still.
+const LEFT_SURELY: f64 = 0.15;
 /// Factors between these are gains, geometry, or effects.
 const USUAL: (f64, f64) = (0.55, 1.8);
 /// Two meanings with errors that differ by less than this factor are both named.
@@ -137,7 +139,7 @@ pub(crate) fn questions(
     let least = tried.first().map_or(0.0, |(after, meaning)| after / size(meaning));
     tried.retain(|(after, meaning)| *after <= ALIKE * least * size(meaning));
     if !tried.is_empty() {
-        found.extend(tried.into_iter().map(|(after, meaning)| asked(before, after, meaning)));
+        found.extend(tried.into_iter().map(|(after, meaning)| asked(before, after, full, meaning)));
         return found;
     }
     found.extend(scale(&thin, &counts, &force, before));
@@ -165,11 +167,11 @@ fn is_best(trial: &Trial<'_>, after: f64, meaning: &Meaning) -> bool {
         || [ATMOSPHERE - OTHER_OFFSET, ATMOSPHERE + OTHER_OFFSET].into_iter().all(is_worse)
 }
 
-fn asked(before: f64, after: f64, meaning: Meaning) -> Mismatch {
+fn asked(before: f64, after: f64, full: f64, meaning: Meaning) -> Mismatch {
     let Meaning { kind, with, question, instead, .. } = meaning;
     Mismatch {
         kind,
-        decided: true,
+        decided: kind != "absolute-pressure" || after <= LARGE * full || after <= LEFT_SURELY * before,
         rmse_n: before,
         meant_rmse_n: Some(after),
         says: format!(

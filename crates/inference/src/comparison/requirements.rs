@@ -53,7 +53,7 @@ pub(crate) fn check_needs(effect: &Arc<dyn Effect>, record: &Record) -> Result<(
         Needs::Motion => moments.iter().any(|m| m.branch() != 0.0),
         Needs::PressurePath => record.has_time() && moments.iter().any(|m| m.pressure_direction != 0.0),
         Needs::Time => record.has_time(),
-        Needs::Cycles => moments.iter().any(|m| m.cycle > 0.0),
+        Needs::Cycles => moments.iter().any(|m| m.cycle >= 1.0),
         Needs::Temperature => moments.iter().any(|m| m.temperature != 0.0),
         Needs::Specimens => record.specimens().len() > 1,
     };

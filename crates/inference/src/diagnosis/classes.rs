@@ -53,6 +53,18 @@ pub(crate) struct Class {
 }
 
 impl Class {
+    /// Keeps the fits of all rivals beside the other effects of a stage.
+    pub(crate) fn remember(&self, given: &Given<'_>, stage: &Stage) {
+        let Some(fits) = given.fits else { return };
+        let is_other = |effect: &&Arc<dyn Effect>| effect.card().name != self.effect.card().name;
+        let others: Vec<Arc<dyn Effect>> = stage.added.iter().filter(is_other).cloned().collect();
+        for (rival, fit) in self.rivals.iter().filter_map(|rival| Some((rival, rival.fit.as_ref()?))) {
+            let mut all = others.clone();
+            all.push(Arc::clone(&rival.effect));
+            fits.add(&all, fit);
+        }
+    }
+
     /// An effect without which there is no model at all: nothing stands beside it, and it is as long as what it made the misfit of the base fall by.
     pub(crate) fn alone(stage: &Stage, place: usize, base: &Stage) -> Self {
         let effect = Arc::clone(&stage.added[place]);
@@ -124,9 +136,8 @@ impl Given<'_> {
                 let (linear, gain_of) = (hypothesis.log_evidence, hypothesis.gain);
                 let place = hypothesis.effects[0];
                 let known = without.tried.iter().find(|tried| tried.hypothesis.effects == [place]);
-                let tried = near.then(|| {
-                    known.cloned().unwrap_or_else(|| beside.fitted(base, without, hypothesis, None))
-                });
+                let tried =
+                    near.then(|| known.cloned().unwrap_or_else(|| beside.fitted(base, without, hypothesis)));
                 let fit = tried.as_ref().and_then(|tried| tried.confirmed.as_ref());
                 let own = fit.filter(|fit| fit.form.log_evidence > 0.0);
                 let own = own.map_or(Vec::new(), |fit| {
@@ -196,6 +207,9 @@ impl Given<'_> {
         stage: &Stage,
         others: &[Arc<dyn Effect>],
     ) -> Result<Confirmed, ModelError> {
+        if let Some(known) = self.fits.and_then(|fits| fits.of(others)).filter(|known| known.converged) {
+            return Ok(known);
+        }
         let carried = self.confirm(base, others, Some(stage.confirmed.numbers()), &[]);
         let mut best = carried;
         for part in [1.0, 0.1] {

@@ -102,11 +102,10 @@ pub(crate) struct DecisionRule {
     pub(crate) outside: f64,
     /// How often a claim is right for each further effect that is named beside it (the same).
     pub(crate) further: f64,
-    /// How often a level of a claim must be right for it to be the one that is stated: a name that is likelier wrong than right is one of its class.
+    /// How often a level of a claim must be right for it to be the one that is stated: a name that is likelier wrong than right is one of its class. A further effect
+    /// of which not even the mechanism is right as often is no claim: something is there, and the data don't say what (forms suite, seeds 61 and 67: of eleven such
+    /// names two or three were right).
     pub(crate) decides: f64,
-    /// A further effect whose mechanism is right less often than that is no claim: something is there, and the data don't say what (forms suite, seed 61: of such
-    /// names one in four was right).
-    pub(crate) doubtful: f64,
 
     /// Square of the sigmas from the stated geometry beyond which another answer is asked for: of four numbers chance alone gives as much once in 300 times.
     pub(crate) departed: f64,
@@ -156,7 +155,6 @@ pub(crate) const RULE: DecisionRule = DecisionRule {
     outside: 0.06,
     further: 0.9,
     decides: 0.5,
-    doubtful: 0.3,
     departed: 16.0,
     another_muscle: 3.0,
 };

@@ -15,6 +15,7 @@ use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
 use crate::diagnosis::document::Diagnosis;
 use crate::diagnosis::either::quieter;
+use crate::diagnosis::fits::Fits;
 use crate::diagnosis::geometry::{Doubt, geometry};
 use crate::diagnosis::ground::{Ground, Stop, effective_rows, ground, ground_again, row_sd};
 use crate::diagnosis::linearised_model::Given;
@@ -26,7 +27,6 @@ use crate::diagnosis::stage::Stage;
 use crate::diagnosis::unanswered::{cannot_tell, unanswered};
 use crate::diagnosis::write::{Findings, document};
 use crate::error::InferenceError;
-use crate::noise::law::NoiseLaw;
 use crate::progress::Progress;
 
 /// Times that rows without a state are left out.
@@ -192,27 +192,33 @@ fn on_rows(
     };
     progress.at(0.25, "the catalogue");
     let near = (&base.prepared.model, &base.theta[..]);
-    let searched = |ground: &Ground, law: &NoiseLaw, before: Option<&Search>| {
-        let search = ground.given(law, options).search(&model, near, before);
+    let searched = |ground: &Ground, given: &Given<'_>| {
+        let search = given.search(&model, near);
         search.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))
     };
-    let mut search = searched(&ground, law, None)?;
+    let first = Fits::after(None);
+    let mut search = searched(&ground, &ground.given(law, options, Some(&first)))?;
     // The misfit of the base is in the first law as far as no smooth function follows it: about a better model the noise is better known.
     let again = ground_again(analysis, &search, &ground, used, options);
-    let (ground, law) = match again.as_ref().and_then(|again| Some((again, again.law.as_ref()?))) {
+    let second = Fits::after(Some(&first));
+    let (ground, given) = match again.as_ref().and_then(|again| Some((again, again.law.as_ref()?))) {
         Some((again, law)) => {
-            search = searched(again, law, Some(&search))?;
-            (again, law)
+            let given = again.given(law, options, Some(&second));
+            search = searched(again, &given)?;
+            (again, given)
         }
-        None => (&ground, law),
+        None => (&ground, ground.given(law, options, Some(&first))),
     };
-    let given = ground.given(law, options);
     let quieter = quieter(&given, ground, &model, &mut search);
     let quieter = quieter.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))?;
     match &quieter {
-        Some((law, whitening)) => {
-            concluded(analysis, (&Given { whitening, law, ..given }, ground), &model, search, options)
-        }
+        Some((law, whitening)) => concluded(
+            analysis,
+            (&Given { whitening, law, fits: None, ..given }, ground),
+            &model,
+            search,
+            options,
+        ),
         None => concluded(analysis, (&given, ground), &model, search, options),
     }
 }
@@ -296,5 +302,9 @@ fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
         let confidence = Confidence::of_tried(&before.tried, name, &before.linear.sensitivities.effects);
         Judged { class: Class::alone(last, place, before), confidence, models: None }
     };
-    (0..last.added.len()).into_par_iter().map(of).collect()
+    let judged: Vec<Judged> = (0..last.added.len()).into_par_iter().map(of).collect();
+    for one in &judged {
+        one.class.remember(given, last);
+    }
+    judged
 }

@@ -197,7 +197,7 @@ impl Missing {
     /// Whether the data don't even say its mechanism: beside other effects it is no claim.
     #[must_use]
     pub fn is_doubtful(&self) -> bool {
-        self.confidence_mechanism < RULE.doubtful
+        self.confidence_mechanism < RULE.decides
     }
 }
 

@@ -94,7 +94,7 @@ pub fn drawn_forms(data: &Data, muscle: &Muscle, options: &Options) -> Result<Dr
                 only: Some(&nothing),
                 is_planned: true,
                 to_draw: true,
-                ..ground.given(law, &options)
+                ..ground.given(law, &options, None)
             };
             let near = (&base.prepared.model, &base.theta[..]);
             let drawn = given

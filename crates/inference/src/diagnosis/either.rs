@@ -41,7 +41,7 @@ pub(crate) fn quieter(
     let Ok(whitening) = Whitening::new(&law, given.record, &all, ground.input_variances()) else {
         return Ok(None);
     };
-    let noisy = Given { whitening: &whitening, law: &law, ..*given };
+    let noisy = Given { whitening: &whitening, law: &law, fits: None, ..*given };
     let confirmed = noisy.confirm(model, &[], Some(search.stages[0].confirmed.numbers()), &[])?;
     let stage = noisy.stage(Vec::new(), confirmed)?;
     if !stage.adequate {

@@ -7,6 +7,7 @@ use crate::diagnosis::as_set::as_set;
 use crate::diagnosis::averaged::Averaged;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::diagnose::DiagnoseOptions;
+use crate::diagnosis::fits::Fits;
 use crate::diagnosis::linearised_model::Given;
 use crate::diagnosis::noise::Source;
 use crate::diagnosis::search::Search;
@@ -66,7 +67,13 @@ impl<E: Into<InferenceError>> From<E> for Stop {
 }
 
 impl Ground {
-    pub(crate) fn given<'a>(&'a self, law: &'a NoiseLaw, options: &'a DiagnoseOptions) -> Given<'a> {
+    /// What models are tried with; `fits` are those made under this law.
+    pub(crate) fn given<'a>(
+        &'a self,
+        law: &'a NoiseLaw,
+        options: &'a DiagnoseOptions,
+        fits: Option<&'a Fits<'a>>,
+    ) -> Given<'a> {
         Given {
             catalogue: &options.base.catalogue,
             record: &self.record,
@@ -79,6 +86,7 @@ impl Ground {
             to_draw: false,
             progress: &options.progress,
             kin: None,
+            fits,
         }
     }
 

@@ -5,6 +5,7 @@ use bulge_model::{ModelError, Record};
 
 use crate::diagnosis::bending::{Kin, bendings, may_bend};
 use crate::diagnosis::candidates::Candidate;
+use crate::diagnosis::fits::Fits;
 use crate::diagnosis::form_error::{FormDirection, FormError};
 use crate::diagnosis::lack_of_fit::lack_of_fit;
 use crate::diagnosis::null::{Chance, Null, Statistics};
@@ -46,6 +47,8 @@ pub(crate) struct Given<'a> {
     pub(crate) progress: &'a Progress,
     /// Columns of kin that are known already.
     pub(crate) kin: Option<&'a Kin>,
+    /// Fits that were made already.
+    pub(crate) fits: Option<&'a Fits<'a>>,
 }
 
 /// A smooth function outside what the model's numbers can do.
@@ -113,6 +116,7 @@ impl<'a> Given<'a> {
             to_draw: false,
             progress,
             kin: None,
+            fits: None,
         }
     }
 }

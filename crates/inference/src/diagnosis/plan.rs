@@ -205,6 +205,7 @@ impl Planned {
             to_draw: false,
             progress: &NOBODY,
             kin: None,
+            fits: None,
         }
     }
 }

@@ -40,20 +40,6 @@ impl Search {
         self.stages.iter().find(|stage| names(stage.added.iter()) == asked)
     }
 
-    /// The fit of these effects, in any order, where one was made.
-    fn fit_of(&self, effects: &[Arc<dyn Effect>]) -> Option<&Confirmed> {
-        let asked = names(effects.iter());
-        let is_it = |(stage, tried): &(&Stage, &Tried)| {
-            let all = &stage.linear.sensitivities.effects;
-            let new = tried.hypothesis.effects.iter().map(|place| &all[*place].effect);
-            names(stage.added.iter().chain(new)) == asked
-        };
-        let mut tried = self.stages.iter().flat_map(|stage| stage.tried.iter().map(move |one| (stage, one)));
-        self.of_effects(effects)
-            .map(|stage| &stage.confirmed)
-            .or_else(|| tried.find(is_it).and_then(|(_, tried)| tried.confirmed.as_ref()))
-    }
-
     /// Another model instead of the last one, and of those on the way to it that aren't on the way to this one.
     pub(crate) fn replace_last(&mut self, stage: Stage) {
         let has = |effect: &Arc<dyn Effect>| {
@@ -67,13 +53,8 @@ impl Search {
 impl Given<'_> {
     /// From the base model to the set of effects that explains the data, or to where nothing more helps.
     ///
-    /// `near` are numbers that the base is known to have about; `before` is a search of the same readings with another noise: where its fits ended, fits begin.
-    pub(crate) fn search(
-        &self,
-        base: &Model,
-        near: (&Model, &[f64]),
-        before: Option<&Search>,
-    ) -> Result<Search, ModelError> {
+    /// `near` are numbers that the base is known to have about.
+    pub(crate) fn search(&self, base: &Model, near: (&Model, &[f64])) -> Result<Search, ModelError> {
         let confirmed = self.confirm(base, &[], Some(near), &[])?;
         let mut stages = vec![self.stage(Vec::new(), confirmed)?];
         let mut again = false;
@@ -85,7 +66,7 @@ impl Given<'_> {
             if stage.adequate && !is_bent || room == 0 || something_else.is_some() {
                 break;
             }
-            stage.tried = self.tried(base, stage, room, before);
+            stage.tried = self.tried(base, stage, room);
             if !again && let Some(lower) = self.lower(base, stage) {
                 (*stage, again) = (lower, true);
                 continue;
@@ -210,12 +191,15 @@ impl Given<'_> {
     }
 
     /// The best hypotheses of a stage with so much `room` for further effects, each fitted.
-    fn tried(&self, base: &Model, stage: &Stage, room: usize, before: Option<&Search>) -> Vec<Tried> {
+    fn tried(&self, base: &Model, stage: &Stage, room: usize) -> Vec<Tried> {
         let hypotheses = hypotheses(&stage.linear, &stage.confirmed.prepared.model, room);
         let (singles, pairs): (Vec<_>, Vec<_>) = hypotheses.into_iter().partition(|h| h.effects.len() == 1);
         let fitted = |list: Vec<Hypothesis>, kin: &Kin| -> Vec<Tried> {
             let known = Given { kin: Some(kin), ..*self };
-            list.into_par_iter().map(|hypothesis| known.fitted(base, stage, hypothesis, before)).collect()
+            let tried: Vec<Tried> =
+                list.into_par_iter().map(|hypothesis| known.fitted(base, stage, hypothesis)).collect();
+            tried.iter().for_each(|one| self.remember(stage, one));
+            tried
         };
         let mut kin = stage.confirmed.form.kin.clone();
         let mut tried = fitted(singles, &kin);
@@ -226,27 +210,27 @@ impl Given<'_> {
         tried
     }
 
+    /// Keeps a fit of a hypothesis on top of a stage.
+    pub(crate) fn remember(&self, stage: &Stage, tried: &Tried) {
+        if let (Some(fits), Some(confirmed)) = (self.fits, &tried.confirmed) {
+            fits.add(&stage.with(&tried.hypothesis.effects), confirmed);
+        }
+    }
+
     /// A hypothesis fitted on top of a stage.
-    pub(crate) fn fitted(
-        &self,
-        base: &Model,
-        stage: &Stage,
-        hypothesis: Hypothesis,
-        search: Option<&Search>,
-    ) -> Tried {
-        let effects: Vec<Arc<dyn Effect>> = hypothesis
-            .effects
-            .iter()
-            .map(|i| Arc::clone(&stage.linear.sensitivities.effects[*i].effect))
-            .collect();
-        let all: Vec<Arc<dyn Effect>> = stage.added.iter().chain(&effects).cloned().collect();
+    pub(crate) fn fitted(&self, base: &Model, stage: &Stage, hypothesis: Hypothesis) -> Tried {
+        let all = stage.with(&hypothesis.effects);
+        let effects = &all[stage.added.len()..];
         let before = Self::numbers_of(base, stage);
         let starts: Vec<Vec<f64>> =
             hypothesis.starts.iter().map(|start| before.iter().chain(start).copied().collect()).collect();
         let holds =
             |confirmed: &Confirmed| stage.confirmed.cost() - confirmed.cost() >= PROMISED * hypothesis.gain;
-        let known = search.and_then(|search| search.fit_of(&all));
-        let again = known.and_then(|known| self.confirm(base, &all, Some(known.numbers()), &[]).ok());
+        let near = self.fits.and_then(|fits| fits.near(&all));
+        // The very same model needs no other fit.
+        let again = self.fits.and_then(|fits| fits.of(&all)).or_else(|| {
+            near.as_ref().and_then(|near| self.confirm(base, &all, Some(near.numbers()), &[]).ok())
+        });
         let mut confirmed = match again {
             Some(again) if holds(&again) => Some(again),
             again => {
@@ -254,13 +238,13 @@ impl Given<'_> {
                 lower(again, found)
             }
         };
-        // The search before has tried further starts already.
-        let is_far = hypothesis.gain > FAR && known.is_none() && !confirmed.as_ref().is_some_and(holds);
+        // The fit before has tried further starts already.
+        let is_far = hypothesis.gain > FAR && near.is_none() && !confirmed.as_ref().is_some_and(holds);
         if confirmed.is_none() || is_far {
             // Far from where the tangents hold: usual numbers, and nearly none of them.
             let further: Vec<Vec<f64>> = [1.0, 0.1]
                 .iter()
-                .map(|part| before.iter().copied().chain(Self::usual(base, &effects, *part)).collect())
+                .map(|part| before.iter().copied().chain(Self::usual(base, effects, *part)).collect())
                 .collect();
             confirmed =
                 lower(confirmed, self.confirm(base, &all, Some(stage.confirmed.numbers()), &further).ok());

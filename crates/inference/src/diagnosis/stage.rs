@@ -59,6 +59,13 @@ impl Stage {
         others.map(|(_, effect)| Arc::clone(effect)).collect()
     }
 
+    /// The added effects with those at these places of the linearised model's list.
+    pub(crate) fn with(&self, places: &[usize]) -> Vec<Arc<dyn Effect>> {
+        let effects = &self.linear.sensitivities.effects;
+        let new = places.iter().map(|place| &effects[*place].effect);
+        self.added.iter().chain(new).cloned().collect()
+    }
+
     /// Square of the misfit that smooth functions follow, beyond what chance gives.
     pub(crate) fn excess(&self) -> f64 {
         (self.linear.structure() - self.linear.smooth.len() as f64).max(0.0)

@@ -224,14 +224,17 @@ impl Findings<'_> {
         self.given.law.correlated_n.hypot(self.given.law.offset_n)
     }
 
-    /// Names that are claims, and those of further effects of which the data don't even say the mechanism; the surest is a claim.
+    /// Names that are claims, and those of further effects whose mechanism is likelier wrong than right; the first is a claim, and so is the surest.
     fn apart(&self, names: Vec<String>) -> (Vec<String>, Vec<String>) {
+        let first = self.last().added.first().map(|effect| effect.card().name);
         let mechanism = |name: &String| {
             let found = self.classes.iter().find(|(class, _)| class.effect.card().name == name);
             found.map_or(1.0, |(class, sure)| Levels::of(class, sure, self.classes.len()).mechanism)
         };
         let surest = names.iter().map(mechanism).fold(0.0, f64::max);
-        names.into_iter().partition(|name| mechanism(name) >= RULE.doubtful.min(surest))
+        names
+            .into_iter()
+            .partition(|name| Some(name.as_str()) == first || mechanism(name) >= RULE.decides.min(surest))
     }
 
     /// Whether the formulas of the effects explain nearly everything as they are: what is left is then their own error. Of a misfit that may as well be none,

@@ -79,7 +79,9 @@ fn errors_fall_with_the_power_of_the_step() {
         let spans: Vec<Span> = rows.iter().map(|(p, _)| empty.span(*p, [0.01, 0.15]).unwrap()).collect();
         let lattice = empty.around(&spans).solved(&equilibrium, &Starts::default()).0;
         rows.iter()
-            .map(|(p, e)| (lattice.answer(*p, *e).unwrap().force.value - exact(*p, *e)).abs() / exact(*p, 0.02))
+            .map(|(p, e)| {
+                (lattice.answer(*p, *e).unwrap().force.value - exact(*p, *e)).abs() / exact(*p, 0.02)
+            })
             .fold(0.0, f64::max)
     };
     for (levels, order) in [(false, 16.0..256.0), (true, 4.0..256.0)] {
