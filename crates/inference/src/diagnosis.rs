@@ -27,6 +27,7 @@ pub(crate) mod next;
 pub(crate) mod noise;
 pub(crate) mod not_looked_for;
 pub(crate) mod null;
+pub(crate) mod oscillation;
 pub(crate) mod plan;
 pub(crate) mod pure_error;
 mod rungs;

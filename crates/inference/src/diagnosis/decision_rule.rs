@@ -14,6 +14,8 @@ pub(crate) struct DecisionRule {
     pub(crate) smooth_beside_names: f64,
     /// Chance with which near replicates may raise one: 1 false alarm in 236 quiet tests of eight noise laws (suite, forms suite).
     pub(crate) near_replicates: f64,
+    /// Chance with which a line in the spectrum may raise one: it is asked of each model that explains the rest.
+    pub(crate) oscillation: f64,
     /// Readings scatter about a model if the mean square of their misfit is that many standard deviations beyond 1, and larger than this ratio: noise laws
     /// from few rows are wrong by as much (suite).
     pub(crate) scatters: [f64; 2],
@@ -119,6 +121,7 @@ pub(crate) const RULE: DecisionRule = DecisionRule {
     smooth: 0.006,
     smooth_beside_names: 0.01,
     near_replicates: 0.003,
+    oscillation: 2e-4,
     scatters: [6.0, 1.5],
     worth: [-2.0, 0.0],
     something_else: -2.0,

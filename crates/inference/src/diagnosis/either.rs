@@ -84,7 +84,7 @@ fn is_chance(search: &Search) -> bool {
     let [only] = &search.stages[..] else { return false };
     !only.adequate
         && !only.adequacy.fit_fails
-        && !only.adequacy.repeats
+        && !only.adequacy.recurs()
         && !only.linear.smooth.is_empty()
         && smooth_evidence(&only.linear) <= 0.0
 }

@@ -9,6 +9,7 @@ use crate::diagnosis::fits::Fits;
 use crate::diagnosis::form_error::{FormDirection, FormError};
 use crate::diagnosis::lack_of_fit::lack_of_fit;
 use crate::diagnosis::null::{Chance, Null, Statistics};
+use crate::diagnosis::oscillation::oscillation;
 use crate::diagnosis::sensitivity::Sensitivities;
 use crate::diagnosis::smooth::{Variable, smooth};
 use crate::diagnosis::space::{Space, orthogonal};
@@ -306,6 +307,11 @@ impl LinearisedModel {
     /// How often chance gives near replicates that miss as much in common; none if there are too few of them.
     pub(crate) fn lack_of_fit(&self, record: &Record) -> Option<f64> {
         lack_of_fit(record, &self.space.outside_of_left_out(&self.white), self.space.left_out())
+    }
+
+    /// The period \[s\] of an oscillation in what is left; none if there is none.
+    pub(crate) fn oscillation(&self, record: &Record) -> Option<f64> {
+        oscillation(record, &self.space.outside_of_left_out(&self.white))
     }
 
     fn units(&self) -> Vec<Vec<f64>> {

@@ -79,12 +79,16 @@ impl Given<'_> {
             let Some((next, stands_out, worth)) = next else {
                 // The screen alone, and no effect that is worth its price: chance.
                 let adequacy = &stage.adequacy;
-                let is_chance = !adequacy.smooth_fails() && !adequacy.fit_fails && !adequacy.repeats;
+                let is_chance = !adequacy.smooth_fails() && !adequacy.fit_fails && !adequacy.recurs();
                 if let Some(stage) = stages.last_mut() {
                     stage.adequate |= is_chance;
                 }
                 break;
             };
+            // Where all that is left recurs or oscillates, an effect that leaves it explains nothing.
+            if stage.adequacy.recurs() && !stage.adequate && next.adequacy.recurs() {
+                break;
+            }
             let replaces_bending = || {
                 let [bent, left] = [stage, &next].map(|stage| stage.confirmed.form.log_evidence);
                 next.adequate && worth > RULE.superfluous && left < RULE.less_bent * bent

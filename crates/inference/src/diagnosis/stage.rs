@@ -23,6 +23,8 @@ pub(crate) struct Adequacy {
     pub(crate) fit_fails: bool,
     /// Whether near replicates miss in common what the rest doesn't see. Asked only where the rest holds.
     pub(crate) repeats: bool,
+    /// Period \[s\] of an oscillation that the rest doesn't see. Asked only where the rest holds.
+    pub(crate) oscillates: Option<f64>,
 }
 
 impl Adequacy {
@@ -32,6 +34,11 @@ impl Adequacy {
 
     pub(crate) fn smooth_fails(&self) -> bool {
         self.chance[1] < if self.names { RULE.smooth_beside_names } else { RULE.smooth }
+    }
+
+    /// Whether something is left that no smooth function follows: it recurs in other strokes, or oscillates.
+    pub(crate) fn recurs(&self) -> bool {
+        self.repeats || self.oscillates.is_some()
     }
 
     pub(crate) fn holds(&self) -> bool {
@@ -119,7 +126,8 @@ impl Given<'_> {
         let linear = known.linearised(&confirmed.prepared, &confirmed.theta)?;
         let (null, chance) = linear.chance(self);
         let fit_fails = self.scatters(&confirmed);
-        let mut adequacy = Adequacy { null, names: !added.is_empty(), chance, fit_fails, repeats: false };
+        let names = !added.is_empty();
+        let mut adequacy = Adequacy { null, names, chance, fit_fails, repeats: false, oscillates: None };
         // A test may be surprised by what no smooth misfit explains: that is no structure.
         let is_chance = || {
             !added.is_empty()
@@ -130,8 +138,9 @@ impl Given<'_> {
         let holds = adequacy.holds() || is_chance();
         adequacy.repeats =
             holds && linear.lack_of_fit(self.record).is_some_and(|chance| chance < RULE.near_replicates);
-        // What repeats beside effects that explain the rest is no reason to bend or add more of them.
-        let adequate = holds && (adequacy.names || !adequacy.repeats);
+        adequacy.oscillates = if holds { linear.oscillation(self.record) } else { None };
+        // What recurs beside effects that explain the rest is no reason to bend or add more of them.
+        let adequate = holds && (adequacy.names || !adequacy.recurs());
         Ok(Stage { added, confirmed, linear, adequate, adequacy, tried: Vec::new() })
     }
 

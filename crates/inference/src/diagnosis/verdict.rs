@@ -154,10 +154,12 @@ impl Findings<'_> {
         if last.adequate && !bent && self.search.something_else.is_none() {
             let (claimed, doubtful) = self.apart(all);
             let with = if claimed.len() + doubtful.len() == 1 { "it" } else { "them" };
-            let but = if last.adequacy.repeats {
-                ", but for what recurs in other strokes and follows no smooth function"
+            let but = if let Some(period) = last.adequacy.oscillates {
+                format!(", but for an oscillation with a period of {} s", significant(period, 3))
+            } else if last.adequacy.repeats {
+                ", but for what recurs in other strokes and follows no smooth function".to_owned()
             } else {
-                ""
+                String::new()
             };
             let and = if doubtful.is_empty() {
                 String::new()
@@ -199,7 +201,9 @@ impl Findings<'_> {
             );
             return Said { verdict: Verdict::Missing, says, claimed };
         }
-        let structure = if last.adequacy.repeats {
+        let structure = if let Some(period) = last.adequacy.oscillates {
+            format!("an oscillation with a period of {} s that", significant(period, 3))
+        } else if last.adequacy.repeats {
             "a misfit that recurs in other strokes, which no smooth function follows and".to_owned()
         } else {
             format!("a structure of {size} that")

@@ -1,0 +1,138 @@
+//! An oscillation of its own, of a valve, a supply or a frame: a line in the spectrum of what a model leaves, faster than any smooth function of time.
+//!
+//! ```text
+//! P(f) = |sum over rows of e exp(2 pi i f t)|^2/(sum of e^2)                                      (Lomb 1976; Scargle 1982)
+//! chance = 1 - (1 - exp(-P/L))^M,    L the level of the spectrum around f, M frequencies
+//! ```
+//! e are whitened misfits outside of the model's numbers. Under noise P/L has an exponential distribution, whatever the distribution of single readings and however the noise is coloured:
+//! L is what neighbouring frequencies have, by their median.
+
+use bulge_model::Record;
+
+use crate::diagnosis::decision_rule::RULE;
+use crate::median::median;
+
+/// Frequencies in one of the record's own, 1/(its time).
+const FINER: usize = 2;
+/// Periods in the record below which smooth functions follow it.
+const SMOOTH: usize = 12;
+/// Frequencies on either side that say how high the spectrum is.
+const NEIGHBOURS: usize = 150;
+/// Rows below which there is no spectrum.
+const FEWEST: usize = 60;
+
+/// The period \[s\] of an oscillation that chance hardly gives; none without time, or where there is none. `left` is the whitened misfit, row by row.
+pub(crate) fn oscillation(record: &Record, left: &[f64]) -> Option<f64> {
+    let clock: Vec<f64> = record.moments().iter().map(|m| m.clock).collect();
+    let rows = clock.len();
+    let mut steps: Vec<f64> = record.moments().iter().map(|m| m.since).filter(|since| *since > 0.0).collect();
+    if !record.is_path() || !record.has_time() || rows < FEWEST || steps.is_empty() {
+        return None;
+    }
+    let first = clock.iter().copied().fold(f64::INFINITY, f64::min);
+    let whole = clock.iter().copied().fold(f64::NEG_INFINITY, f64::max) - first;
+    let step = median(&mut steps);
+    if whole <= 0.0 || step <= 0.0 {
+        return None;
+    }
+    let unit = 1.0 / (FINER as f64 * whole);
+    // Up to half of the readings' own frequency; no more of them than there are readings, where pauses make the time long.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of frequencies")]
+    let last = ((0.5 / (step * unit)) as usize).min(FINER * 4 * rows);
+    let begin = FINER * SMOOTH;
+    if last < begin + NEIGHBOURS {
+        return None;
+    }
+    let power = spectrum(&clock.iter().map(|t| t - first).collect::<Vec<_>>(), left, unit, begin..last);
+    let level = |place: usize| {
+        let around = place.saturating_sub(NEIGHBOURS)..(place + NEIGHBOURS + 1).min(power.len());
+        // The line itself and its flanks are no level.
+        let others = around.filter(|other| other.abs_diff(place) > FINER);
+        median(&mut others.map(|other| power[other]).collect::<Vec<f64>>()) / std::f64::consts::LN_2
+    };
+    let (place, height) = (0..power.len())
+        .map(|place| (place, power[place] / level(place).max(f64::MIN_POSITIVE)))
+        .max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let chance = -(power.len() as f64 * (-(-height).exp()).ln_1p()).exp_m1();
+    (chance < RULE.oscillation).then(|| 1.0 / (unit * (begin + place) as f64))
+}
+
+/// The spectrum at multiples of a frequency; a phasor of each row is turned on from one to the next.
+fn spectrum(time: &[f64], left: &[f64], unit: f64, multiples: std::ops::Range<usize>) -> Vec<f64> {
+    let turn = |t: &f64, multiple: f64| (std::f64::consts::TAU * unit * multiple * t).sin_cos();
+    let mut phasors: Vec<(f64, f64)> = time.iter().map(|t| turn(t, multiples.start as f64)).collect();
+    let turns: Vec<(f64, f64)> = time.iter().map(|t| turn(t, 1.0)).collect();
+    let square: f64 = left.iter().take(time.len()).map(|e| e * e).sum();
+    multiples
+        .map(|_| {
+            let (mut sine, mut cosine) = (0.0, 0.0);
+            for ((phasor, turn), e) in phasors.iter_mut().zip(&turns).zip(left) {
+                let (s, c) = *phasor;
+                (sine, cosine) = (sine + s * e, cosine + c * e);
+                *phasor = (s * turn.1 + c * turn.0, c * turn.1 - s * turn.0);
+            }
+            (sine * sine + cosine * cosine) / square
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bulge_effects::Moment;
+    use bulge_numerics::Random;
+
+    /// Three sweeps of 300 rows at 0.2 s, a minute apart.
+    fn record() -> Record {
+        let moment = |i: u32| {
+            let clock = 0.2 * f64::from(i) + 60.0 * f64::from(i / 300);
+            let begins = i.is_multiple_of(300);
+            let since = if begins { 0.0 } else { 0.2 };
+            let contraction = 0.1 + 1e-4 * f64::from(i % 300);
+            let time = 0.2 * f64::from(i % 300);
+            Moment { direction: 1.0, clock, time, since, begins, ..Moment::at_rest(2e5, contraction) }
+        };
+        let sweeps = (0..3).map(|i| 300 * i..300 * (i + 1)).collect();
+        Record::from_moments((0..900).map(moment).collect(), vec![0.0; 900], sweeps).unwrap()
+    }
+
+    /// White noise and a hum of a size.
+    fn left(record: &Record, size: f64, period: f64, seed: u64) -> Vec<f64> {
+        let mut random = Random::new(seed, 0);
+        let hum = |m: &Moment| size * (std::f64::consts::TAU * m.clock / period).sin();
+        record.moments().iter().map(|m| hum(m) + random.normal()).collect()
+    }
+
+    #[test]
+    fn a_hum_is_found_with_its_period() {
+        let record = record();
+        for period in [0.9, 2.3, 7.0] {
+            // |e|^2/2 = 900 0.4^2/4: 36 times the level.
+            let found = oscillation(&record, &left(&record, 0.4, period, 5)).unwrap();
+            assert!((found / period - 1.0).abs() < 0.01, "{found} {period}");
+        }
+    }
+
+    #[test]
+    fn noise_has_no_line_more_often_than_it_may() {
+        let record = record();
+        let found = (0..300).filter(|seed| oscillation(&record, &left(&record, 0.0, 1.0, *seed)).is_some());
+        // One in five thousand may.
+        assert!(found.count() <= 2);
+    }
+
+    #[test]
+    fn the_spectrum_is_the_sum_over_the_rows() {
+        let record = record();
+        let (time, e): (Vec<f64>, _) =
+            (record.moments().iter().map(|m| m.clock).collect(), left(&record, 0.4, 3.0, 2));
+        let found = spectrum(&time, &e, 1e-3, 100..400);
+        for (place, power) in found.iter().enumerate().step_by(37) {
+            let angle = |t: &f64| std::f64::consts::TAU * 1e-3 * (100 + place) as f64 * t;
+            let sine: f64 = time.iter().zip(&e).map(|(t, e)| angle(t).sin() * e).sum();
+            let cosine: f64 = time.iter().zip(&e).map(|(t, e)| angle(t).cos() * e).sum();
+            let square: f64 = e.iter().map(|e| e * e).sum();
+            assert!((power - (sine * sine + cosine * cosine) / square).abs() < 1e-9 * (1.0 + power));
+        }
+    }
+}
