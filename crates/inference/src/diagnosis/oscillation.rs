@@ -1,4 +1,4 @@
-//! An oscillation of its own, of a valve, a supply or a frame: a line in the spectrum of what a model leaves, faster than any smooth function of time.
+//! An oscillation of its own, of a valve, a supply or an amplifier: a line in the spectrum of what a model leaves. A law of slow noise takes its power away and leaves the line.
 //!
 //! ```text
 //! P(f) = |sum over rows of e exp(2 pi i f t)|^2/(sum of e^2)                                      (Lomb 1976; Scargle 1982)
@@ -14,10 +14,10 @@ use crate::median::median;
 
 /// Frequencies in one of the record's own, 1/(its time).
 const FINER: usize = 2;
-/// Periods in the record below which smooth functions follow it.
-const SMOOTH: usize = 12;
-/// Frequencies on either side that say how high the spectrum is.
-const NEIGHBOURS: usize = 150;
+/// Periods in the record below which it is a drift.
+const DRIFT: usize = 3;
+/// Frequencies on either side that say how high the spectrum is: the larger level counts, as slow noise is higher at low ones.
+const NEIGHBOURS: [usize; 2] = [150, 60];
 /// Rows below which there is no spectrum.
 const FEWEST: usize = 60;
 
@@ -39,17 +39,19 @@ pub(crate) fn oscillation(record: &Record, left: &[f64]) -> Option<f64> {
     // Up to half of the readings' own frequency; no more of them than there are readings, where pauses make the time long.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of frequencies")]
     let last = ((0.5 / (step * unit)) as usize).min(FINER * 4 * rows);
-    let begin = FINER * SMOOTH;
-    if last < begin + NEIGHBOURS {
+    let begin = FINER * DRIFT;
+    if last < begin + NEIGHBOURS[0] {
         return None;
     }
     let power = spectrum(&clock.iter().map(|t| t - first).collect::<Vec<_>>(), left, unit, begin..last);
-    let level = |place: usize| {
-        let around = place.saturating_sub(NEIGHBOURS)..(place + NEIGHBOURS + 1).min(power.len());
+    let level_among = |place: usize, neighbours: usize| {
+        let around = place.saturating_sub(neighbours)..(place + neighbours + 1).min(power.len());
         // The line itself and its flanks are no level.
         let others = around.filter(|other| other.abs_diff(place) > FINER);
         median(&mut others.map(|other| power[other]).collect::<Vec<f64>>()) / std::f64::consts::LN_2
     };
+    let level =
+        |place: usize| NEIGHBOURS.map(|count| level_among(place, count)).into_iter().fold(0.0, f64::max);
     let (place, height) = (0..power.len())
         .map(|place| (place, power[place] / level(place).max(f64::MIN_POSITIVE)))
         .max_by(|a, b| a.1.total_cmp(&b.1))?;
