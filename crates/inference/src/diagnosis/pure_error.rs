@@ -6,13 +6,16 @@
 //! r_i is a residual of one cycle, r_j and r_(j+1) its neighbours in contraction in another cycle, of the same specimen, level of pressure and direction; at held
 //! length they are neighbours in pressure, at the same length. Of a law,
 //! s^2 is white noise with that part of the correlated noise which has decayed since the other cycle. Cycles may differ by physics too (creep, softening): so
-//! the pure error bounds the noise from above, never from below.
+//! the pure error bounds the noise from above, never from below. Sweeps that were run again at the same level bound the offsets of sweeps likewise, by half of the mean square
+//! of their mean differences: what is off at one pressure each time is a function of the pressure.
 
 use bulge_model::Record;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::collections::BTreeMap;
 
 use crate::diagnosis::strokes::{Stroke, strokes};
 use crate::noise::law::{CorrelationTime, NoiseLaw};
+use crate::noise::offset_belief::rms;
 use crate::noise::whitening::moment_of;
 
 /// Neighbours further apart than this part of the range say nothing between them.
@@ -21,6 +24,9 @@ const NEAR: f64 = 0.1;
 const ENOUGH: usize = 20;
 /// Pairs of two strokes of different sweeps from which a difference of the sweeps can be told: fewer share their neighbours, and their mean takes noise away with it.
 const FEWEST: usize = 6;
+/// Pairs of sweeps from which offsets are bounded, and the chance that they are larger than the bound.
+const PAIRS: usize = 3;
+const LARGER: f64 = 0.05;
 /// Relative standard deviation of the pure error that is there however many pairs there are.
 const SURE: f64 = 0.1;
 /// A correlated part beyond this multiple of the pure error repeats: it is no noise.
@@ -35,7 +41,12 @@ pub(crate) struct BetweenCycles {
     lags: Vec<f64>,
     /// Seconds (rows) of all sweeps together.
     span: f64,
+    /// Mean difference of each two sweeps that were run at the same level \[N\].
+    offsets: Vec<f64>,
 }
+
+/// Differences of two sweeps: their sum and their number.
+type Offsets = BTreeMap<[usize; 2], (f64, f64)>;
 
 impl BetweenCycles {
     /// Of residuals \[N\], one for each row of a record; none if no cycle is repeated.
@@ -44,7 +55,7 @@ impl BetweenCycles {
             return None;
         }
         let at = moment_of(record, seconds(record));
-        let (mut sum, mut lags) = (0.0, Vec::new());
+        let (mut sum, mut lags, mut offsets) = (0.0, Vec::new(), Offsets::new());
         // Without the first of a sweep where there are others enough: it lacks the history of those after it.
         let mut alike: BTreeMap<_, Vec<Stroke>> = BTreeMap::new();
         for stroke in strokes(record).into_iter().filter(|stroke| !stroke.is_first) {
@@ -56,20 +67,56 @@ impl BetweenCycles {
                 // The next, and one that is far in time.
                 let others = [place + 1, place + half.max(2)];
                 for other in others.iter().filter_map(|other| strokes.get(*other)) {
-                    sum += compared(stroke, other, residual, &at, &mut lags);
+                    sum += compared(stroke, other, residual, &at, (&mut lags, &mut offsets));
                 }
             }
         }
         let of_sweep =
             |rows: &std::ops::Range<usize>| (at(rows.end.saturating_sub(1)) - at(rows.start)).max(0.0);
         let span = record.sweeps().iter().map(of_sweep).sum();
-        (lags.len() >= ENOUGH && sum > 0.0).then(|| Self { variance: sum / lags.len() as f64, lags, span })
+        let offsets = offsets.into_values().map(|(sum, count)| sum / count).collect();
+        (lags.len() >= ENOUGH && sum > 0.0).then(|| Self {
+            variance: sum / lags.len() as f64,
+            lags,
+            span,
+            offsets,
+        })
+    }
+
+    /// The law with no larger offsets than sweeps at the same level differ by: sizes beyond that are out.
+    fn bounds_offsets(&self, mut law: NoiseLaw) -> NoiseLaw {
+        let pairs = self.offsets.len();
+        let Some(chi) = ChiSquared::new(pairs as f64).ok().filter(|_| pairs >= PAIRS && law.offset_n > 0.0)
+        else {
+            return law;
+        };
+        let square: f64 = self.offsets.iter().map(|d| 0.5 * d * d).sum();
+        let most = (square / chi.inverse_cdf(LARGER)).sqrt();
+        if law.offset_beliefs.iter().all(|belief| belief.sd_n <= most) && law.offset_n <= most {
+            return law;
+        }
+        law.offset_beliefs.retain(|belief| belief.sd_n <= most);
+        let left: f64 = law.offset_beliefs.iter().map(|belief| belief.weight).sum();
+        for belief in &mut law.offset_beliefs {
+            belief.weight /= left.max(f64::MIN_POSITIVE);
+        }
+        let believed = rms(&law.offset_beliefs);
+        let larger = law.offset_n > most;
+        law.offset_n = if left > 0.0 { believed } else { most }.min(law.offset_n);
+        if larger {
+            law.says = format!(
+                "{}; {pairs} sweeps that were run again are off by at most {most:.3} N: offsets that recur are no noise",
+                law.says
+            );
+        }
+        law
     }
 
     /// The law with no more noise than cycles differ by: its variances beyond that are misfit that repeats.
     ///
     /// `inputs` is the mean variance from noise of the inputs, which is in the scatter too \[N^2\].
-    pub(crate) fn bounds(&self, mut law: NoiseLaw, inputs: f64) -> NoiseLaw {
+    pub(crate) fn bounds(&self, law: NoiseLaw, inputs: f64) -> NoiseLaw {
+        let mut law = self.bounds_offsets(law);
         let time = law.time.map_or(1.0, CorrelationTime::value);
         let decayed = |lag: &f64| -(-lag / time).exp_m1();
         let part = self.lags.iter().map(decayed).sum::<f64>() / self.lags.len() as f64;
@@ -111,13 +158,13 @@ fn seconds(record: &Record) -> Option<CorrelationTime> {
     record.has_time().then_some(CorrelationTime::Seconds(1.0))
 }
 
-/// Sum of squared differences between two strokes, in variances of one residual; the lags go to the list.
+/// Sum of squared differences between two strokes, in variances of one residual; the lags go to the list, and what two sweeps differ by to theirs.
 fn compared(
     one: &Stroke,
     other: &Stroke,
     residual: &[f64],
     at: &dyn Fn(usize) -> f64,
-    lags: &mut Vec<f64>,
+    (lags, offsets): (&mut Vec<f64>, &mut Offsets),
 ) -> f64 {
     let mut found: Vec<(f64, f64, f64)> = Vec::with_capacity(one.points.len());
     for point in &one.points {
@@ -139,6 +186,9 @@ fn compared(
     if one.sweep != other.sweep && found.len() >= FEWEST {
         // Sweeps may be off as a whole.
         let mean = found.iter().map(|f| f.0).sum::<f64>() / found.len() as f64;
+        let differs = offsets.entry([one.sweep.min(other.sweep), one.sweep.max(other.sweep)]).or_default();
+        let side = if one.sweep < other.sweep { 1.0 } else { -1.0 };
+        *differs = (differs.0 + side * mean, differs.1 + 1.0);
         for pair in &mut found {
             pair.0 -= mean;
         }
@@ -199,6 +249,40 @@ mod tests {
             assert!((total / 1.5 - 1.0).abs() < 0.2, "{cycles} cycles: {total}");
         }
         assert!(BetweenCycles::of(&record(1), &[0.0; 80]).is_none());
+    }
+
+    /// Sweeps of a loop at six pressures, run twice, with an offset by pressure or by sweep.
+    #[test]
+    fn offsets_that_recur_at_a_pressure_are_no_noise_and_others_stay() {
+        let moments: Vec<Moment> = (0..12 * 80)
+            .map(|i| {
+                let (x, sweep) = ((i % 80) as f64 / 80.0, i / 80);
+                Moment {
+                    direction: if x < 0.5 { 1.0 } else { -1.0 },
+                    clock: 2.0 * i as f64,
+                    time: 2.0 * (i % 80) as f64,
+                    begins: i % 80 == 0,
+                    ..Moment::at_rest(1e5 * (1 + sweep % 6) as f64, 0.2 * (1.0 - (2.0 * x - 1.0).abs()))
+                }
+            })
+            .collect();
+        let sweeps = (0..12).map(|i| 80 * i..80 * (i + 1)).collect();
+        let record = Record::from_moments(moments, vec![0.0; 960], sweeps).unwrap();
+        let mut random = Random::new(4, 0);
+        let sizes: Vec<f64> = (0..12).map(|_| 5.0 * random.normal()).collect();
+        let law = |by: &dyn Fn(usize) -> f64| {
+            let mut random = Random::new(5, 0);
+            let residual: Vec<f64> = (0..960).map(|row| by(row / 80) + 1.5 * random.normal()).collect();
+            let found = BetweenCycles::of(&record, &residual).unwrap();
+            let law = NoiseLaw {
+                offset_n: 5.0,
+                ..NoiseLaw::white(1.5, NoiseSource::Saturated, 500.0, String::new())
+            };
+            found.bounds(law, 0.0)
+        };
+        let recurring = law(&|sweep| sizes[sweep % 6]);
+        assert!(recurring.offset_n < 0.6, "{}", recurring.offset_n);
+        assert!((law(&|sweep| sizes[sweep]).offset_n - 5.0).abs() < 1e-12);
     }
 
     #[test]
