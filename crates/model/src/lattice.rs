@@ -31,7 +31,7 @@ const LEVEL_WIDTH: usize = 3;
 /// Nodes that a lattice has at least: for fewer rows none is worth its while.
 pub(crate) const FEWEST_NODES: usize = WIDTH * WIDTH;
 /// Steps of ln(p) and s at refinement 1.
-const STEP: [f64; 2] = [0.15, 0.13];
+const STEP: [f64; 2] = [0.15, 0.115];
 /// Steps of ln(p) at levels in one of those.
 const LEVEL_STEPS: i64 = 5;
 /// Contraction below which the lattice is even, above which it is logarithmic.

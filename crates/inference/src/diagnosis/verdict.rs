@@ -152,6 +152,16 @@ impl Findings<'_> {
         }
         let bent = self.is_bent();
         if last.adequate && !bent && self.search.something_else.is_none() {
+            if let [only] = &all[..]
+                && self.mechanism(only) < RULE.nameless
+            {
+                let says = format!(
+                    "something may be missing, and these data don't say what: {} is the likeliest, and such a name is right in fewer than one case in six; measure more \
+                     rows, or more of what moves",
+                    self.labels(&all)
+                );
+                return Said::nothing(Verdict::CannotTell, says);
+            }
             let (claimed, doubtful) = self.apart(all);
             let with = if claimed.len() + doubtful.len() == 1 { "it" } else { "them" };
             let but = if let Some(period) = last.adequacy.oscillates {
@@ -228,13 +238,16 @@ impl Findings<'_> {
         self.given.law.correlated_n.hypot(self.given.law.offset_n)
     }
 
+    /// How often the mechanism of a named effect is right.
+    fn mechanism(&self, name: &str) -> f64 {
+        let found = self.classes.iter().find(|(class, _)| class.effect.card().name == name);
+        found.map_or(1.0, |(class, sure)| Levels::of(class, sure, self.classes.len()).mechanism)
+    }
+
     /// Names that are claims, and those of further effects whose mechanism is likelier wrong than right; the first is a claim, and so is the surest.
     fn apart(&self, names: Vec<String>) -> (Vec<String>, Vec<String>) {
         let first = self.last().added.first().map(|effect| effect.card().name);
-        let mechanism = |name: &String| {
-            let found = self.classes.iter().find(|(class, _)| class.effect.card().name == name);
-            found.map_or(1.0, |(class, sure)| Levels::of(class, sure, self.classes.len()).mechanism)
-        };
+        let mechanism = |name: &String| self.mechanism(name);
         let surest = names.iter().map(mechanism).fold(0.0, f64::max);
         names
             .into_iter()
