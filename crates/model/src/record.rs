@@ -382,8 +382,7 @@ mod tests {
         // Two loops of eight rows and half of a third, at a stroke of 4 %.
         let at = |i: usize| {
             let place = [0.0, 1.0, 2.0, 3.0, 4.0, 3.0, 2.0, 1.0][i % 8];
-            let direction = if i % 8 < 5 && i % 8 > 0 { 1.0 } else { -1.0 };
-            let direction = if i == 0 { 1.0 } else { direction };
+            let direction = if i == 0 || (1..5).contains(&(i % 8)) { 1.0 } else { -1.0 };
             let cycle = (i.max(1) - 1) / 8;
             Moment { direction, cycle: cycle as f64, begins: i == 0, ..Moment::at_rest(1e5, 0.01 * place) }
         };

@@ -256,13 +256,13 @@ mod tests {
     fn offsets_that_recur_at_a_pressure_are_no_noise_and_others_stay() {
         let moments: Vec<Moment> = (0..12 * 80)
             .map(|i| {
-                let (x, sweep) = ((i % 80) as f64 / 80.0, i / 80);
+                let (x, sweep) = (f64::from(i % 80) / 80.0, i / 80);
                 Moment {
                     direction: if x < 0.5 { 1.0 } else { -1.0 },
-                    clock: 2.0 * i as f64,
-                    time: 2.0 * (i % 80) as f64,
+                    clock: 2.0 * f64::from(i),
+                    time: 2.0 * f64::from(i % 80),
                     begins: i % 80 == 0,
-                    ..Moment::at_rest(1e5 * (1 + sweep % 6) as f64, 0.2 * (1.0 - (2.0 * x - 1.0).abs()))
+                    ..Moment::at_rest(1e5 * f64::from(1 + sweep % 6), 0.2 * (1.0 - (2.0 * x - 1.0).abs()))
                 }
             })
             .collect();

@@ -202,7 +202,9 @@ impl Given<'_> {
             let known = Given { kin: Some(kin), ..*self };
             let tried: Vec<Tried> =
                 list.into_par_iter().map(|hypothesis| known.fitted(base, stage, hypothesis)).collect();
-            tried.iter().for_each(|one| self.remember(stage, one));
+            for one in &tried {
+                self.remember(stage, one);
+            }
             tried
         };
         let mut kin = stage.confirmed.form.kin.clone();

@@ -152,35 +152,7 @@ impl Findings<'_> {
         }
         let bent = self.is_bent();
         if last.adequate && !bent && self.search.something_else.is_none() {
-            if let [only] = &all[..]
-                && self.mechanism(only) < RULE.nameless
-            {
-                let says = format!(
-                    "something may be missing, and these data don't say what: {} is the likeliest, and such a name is right in fewer than one case in six; measure more \
-                     rows, or more of what moves",
-                    self.labels(&all)
-                );
-                return Said::nothing(Verdict::CannotTell, says);
-            }
-            let (claimed, doubtful) = self.apart(all);
-            let with = if claimed.len() + doubtful.len() == 1 { "it" } else { "them" };
-            let but = if let Some(period) = last.adequacy.oscillates {
-                format!(", but for an oscillation with a period of {} s", significant(period, 3))
-            } else if last.adequacy.repeats {
-                ", but for what recurs in other strokes and follows no smooth function".to_owned()
-            } else {
-                String::new()
-            };
-            let and = if doubtful.is_empty() {
-                String::new()
-            } else {
-                format!(", and something that these data don't tell, nearest {}", self.labels(&doubtful))
-            };
-            let says = format!(
-                "missing: {}{and}; with {with} the model explains the data{but}",
-                self.labels(&claimed)
-            );
-            return Said { verdict: Verdict::Missing, says, claimed };
+            return self.explained_by(all);
         }
         let most =
             last.excess() < RULE.left * self.search.stages[0].excess() || last.something_else() < RULE.weak;
@@ -236,6 +208,38 @@ impl Findings<'_> {
     /// Noise that readings share with their neighbours \[N\].
     fn slow_n(&self) -> f64 {
         self.given.law.correlated_n.hypot(self.given.law.offset_n)
+    }
+
+    /// What is said where these effects explain the data.
+    fn explained_by(&self, all: Vec<String>) -> Said {
+        let last = self.last();
+        if let [only] = &all[..]
+            && self.mechanism(only) < RULE.nameless
+        {
+            let says = format!(
+                "something may be missing, and these data don't say what: {} is the likeliest, and such a name is right in fewer than one case in six; measure more \
+                 rows, or more of what moves",
+                self.labels(&all)
+            );
+            return Said::nothing(Verdict::CannotTell, says);
+        }
+        let (claimed, doubtful) = self.apart(all);
+        let with = if claimed.len() + doubtful.len() == 1 { "it" } else { "them" };
+        let but = if let Some(period) = last.adequacy.oscillates {
+            format!(", but for an oscillation with a period of {} s", significant(period, 3))
+        } else if last.adequacy.repeats {
+            ", but for what recurs in other strokes and follows no smooth function".to_owned()
+        } else {
+            String::new()
+        };
+        let and = if doubtful.is_empty() {
+            String::new()
+        } else {
+            format!(", and something that these data don't tell, nearest {}", self.labels(&doubtful))
+        };
+        let says =
+            format!("missing: {}{and}; with {with} the model explains the data{but}", self.labels(&claimed));
+        Said { verdict: Verdict::Missing, says, claimed }
     }
 
     /// How often the mechanism of a named effect is right.
