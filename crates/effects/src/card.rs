@@ -221,6 +221,8 @@ pub struct ParameterCard<'a> {
     pub logarithmic: bool,
     /// Whether a result is also shown as its reciprocal: name and unit with its size in SI.
     pub reciprocal: Option<(&'a str, &'a str, f64)>,
+    /// Whether a muscle file may leave it out: then it is off, as in files from before the effect had it.
+    pub may_be_absent: bool,
     /// What it is.
     pub about: &'a str,
 }
@@ -249,6 +251,7 @@ impl<'a> ParameterCard<'a> {
             relative_to: None,
             logarithmic: false,
             reciprocal: None,
+            may_be_absent: false,
             about,
         }
     }
@@ -290,6 +293,12 @@ impl<'a> ParameterCard<'a> {
     #[must_use]
     pub const fn key(self, key: &'a str) -> Self {
         Self { key, ..self }
+    }
+
+    /// The same, which a muscle file may leave out.
+    #[must_use]
+    pub const fn off_if_absent(self) -> Self {
+        Self { may_be_absent: true, ..self }
     }
 
     /// The same with another value, in the shown unit (or as a multiple), at which the effect does nothing.

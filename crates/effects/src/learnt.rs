@@ -85,6 +85,9 @@ fn numbers(stated: &Learnt, effect: &dyn Effect, muscle: &Muscle) -> Result<Vec<
 fn value(stated: &Learnt, card: &ParameterCard<'_>) -> Result<f64, FileError> {
     let example = format!("write `{} = \"{}\"`", card.key, shown(card.typical, card));
     let Some(value) = stated.value(card.key) else {
+        if card.may_be_absent {
+            return Ok(card.off);
+        }
         let what = format!("the effect `{}` needs `{}`, {}", stated.name(), card.key, card.about);
         return Err(stated.error(what, example));
     };
@@ -118,6 +121,20 @@ fn shown(si: f64, card: &ParameterCard<'_>) -> String {
 mod tests {
     use super::*;
     use bulge_muscles::{Quantity, SHAPE_EFFECTS, from_toml, preset, to_toml};
+
+    #[test]
+    fn files_from_before_an_effect_had_a_number_mean_what_they_meant() {
+        for (table, expected) in [
+            ("[effects.line-drop]\nloss = \"2 %\"", vec![0.02, 1.0]),
+            ("[effects.force-nonlinearity]\ncurvature = \"1 %/kN\"", vec![1e-5, 2.0]),
+            ("[effects.self-heating]\namplitude = \"3 %\"\ntime = \"600 s\"", vec![0.03, 600.0, 0.0]),
+        ] {
+            let found = with("pleated", table).unwrap();
+            let gap = found[0].1.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(found[0].1.len() == expected.len() && gap < 1e-12, "{table}: {:?}", found[0].1);
+        }
+        assert!(with("pleated", "[effects.self-heating]\namplitude = \"3 %\"").is_err());
+    }
 
     fn with(kind: &str, table: &str) -> Result<Vec<Known>, FileError> {
         let text = if kind == "pleated" {

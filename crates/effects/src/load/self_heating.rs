@@ -66,7 +66,8 @@ impl Effect for SelfHeating {
                 .logarithmic(),
             ParameterCard::new("force", PERCENT, (-50.0, 50.0), 1.0, of_force)
                 .prior(0.0, 3.0)
-                .plausible(-15.0, 15.0),
+                .plausible(-15.0, 15.0)
+                .off_if_absent(),
         ]
     }
 

@@ -49,7 +49,10 @@ impl Effect for ForceNonlinearity {
             ParameterCard::new("curvature", ("%/kN", 1e-5), (-20.0, 20.0), 0.0, about)
                 .prior(0.0, 0.5)
                 .plausible(-2.0, 2.0),
-            ParameterCard::new("power", NUMBER, (1.2, 6.0), 2.0, power).plausible(1.5, 3.5).off_at(2.0),
+            ParameterCard::new("power", NUMBER, (1.2, 6.0), 2.0, power)
+                .plausible(1.5, 3.5)
+                .off_at(2.0)
+                .off_if_absent(),
         ]
     }
 

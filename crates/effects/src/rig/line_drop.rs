@@ -55,7 +55,10 @@ impl Effect for LineDrop {
         let power = "power of the pressure with which the loss grows";
         vec![
             ParameterCard::new("loss", PERCENT, (0.0, 20.0), 1.0, about).prior(0.0, 1.0).plausible(0.0, 5.0),
-            ParameterCard::new("power", NUMBER, (0.5, 4.0), 1.0, power).plausible(1.0, 2.2).off_at(1.0),
+            ParameterCard::new("power", NUMBER, (0.5, 4.0), 1.0, power)
+                .plausible(1.0, 2.2)
+                .off_at(1.0)
+                .off_if_absent(),
         ]
     }
 
