@@ -13,6 +13,7 @@ pub(crate) mod diagnose;
 pub(crate) mod document;
 pub(crate) mod drawn;
 mod either;
+mod exchange;
 pub(crate) mod explained;
 pub(crate) mod fits;
 pub(crate) mod form_error;

@@ -4,7 +4,7 @@ use bulge_effects::{Effect, Mechanism};
 use bulge_model::Record;
 use std::sync::Arc;
 
-use crate::diagnosis::classes::Class;
+use crate::diagnosis::classes::{Class, Rival};
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::{FormErrorAt, FormErrorResult, Level};
@@ -21,20 +21,21 @@ pub(crate) struct Levels {
 }
 
 impl Levels {
-    /// Of one of `named` effects: the evidence of its kin among that of all rivals, and no more than what was simulated.
+    /// Of one of `named` effects: the evidence of its kin, and of what is the same on these data, among that of all rivals, and no more than what was simulated.
     pub(crate) fn of(class: &Class, simulated: &Confidence, named: usize) -> Self {
         let own = class.effect.card();
-        let weights = |counts: &dyn Fn(&Arc<dyn Effect>) -> bool| -> f64 {
-            let rivals =
-                class.rivals.iter().filter(|rival| rival.log_evidence.is_finite() && counts(&rival.effect));
-            rivals.map(|rival| ((rival.log_evidence - class.log_evidence) / RULE.tempered).exp()).sum()
+        let weights = |counts: &dyn Fn(&Rival) -> bool| -> f64 {
+            let rivals = class.rivals.iter().filter(|rival| rival.log_evidence.is_finite() && counts(rival));
+            rivals.map(|rival| (rival.log_evidence - class.log_evidence).exp()).sum()
         };
         let all = 1.0 + weights(&|_| true);
-        let sure = (1.0 - RULE.outside)
+        let sure = (1.0 - RULE.incomplete)
             * RULE.further.powi(i32::try_from(named).unwrap_or(i32::MAX).saturating_sub(1));
-        let part = |counts: &dyn Fn(&Arc<dyn Effect>) -> bool| sure * (1.0 + weights(counts)) / all;
-        let mechanism = part(&|effect| is_same_mechanism(effect, &class.effect));
-        let family = part(&|effect| effect.card().family == own.family).min(simulated.named);
+        let part = |counts: &dyn Fn(&Rival) -> bool| sure * (1.0 + weights(counts)) / all;
+        let is_same = |rival: &Rival| rival.separation < RULE.same;
+        let mechanism = part(&|rival| is_same(rival) || is_same_mechanism(&rival.effect, &class.effect));
+        let family = part(&|rival| is_same(rival) || rival.effect.card().family == own.family);
+        let family = family.min(simulated.named);
         // A user's formula without a mechanism stands for itself: what it isn't, it can't be.
         Self { mechanism: mechanism.max(family), family, form: part(&|_| false).min(family) }
     }

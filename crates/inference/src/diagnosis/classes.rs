@@ -98,14 +98,14 @@ impl Given<'_> {
             known
         } else {
             let others = stage.without(place);
-            let fitted = self.refitted(base, stage, &others).ok()?;
+            let fitted = self.refitted(base, &stage.confirmed, &others).ok()?;
             &*made.insert(self.stage(others, fitted).ok()?)
         };
         let signal = self.signal(&stage.confirmed, &without.linear).ok()?;
         let bent: Vec<&Vec<f64>> = stage.linear.bent.iter().collect();
         let plain = self.beside(&without.linear, &signal, &bent);
         let name = effect.card().name;
-        let own = without.linear.sensitivities.effects.iter().position(|s| s.effect.card().name == name);
+        let own = without.linear.place(name);
         let effect_log_prior = own.map_or(0.0, |own| effect_log_prior(&without.linear, own));
         let scatter = stage.scatter();
         let gain = without.confirmed.bent_cost() - stage.confirmed.bent_cost();
@@ -174,7 +174,7 @@ impl Given<'_> {
             return None;
         }
         let others = stage.without(place);
-        let fitted = self.refitted(base, stage, &others).ok()?;
+        let fitted = self.refitted(base, &stage.confirmed, &others).ok()?;
         let other = self.stage(others, fitted).ok()?;
         (other.adequate || !stage.adequate).then_some(other)
     }
@@ -199,18 +199,18 @@ impl Given<'_> {
         (other.adequate || !stage.adequate).then_some(other)
     }
 
-    /// A stage with fewer effects: from where it was, else from usual numbers; what was best with the effect may not even have an equilibrium
+    /// A model with fewer effects: from where it was `with` all, else from usual numbers; what was best with the effect may not even have an equilibrium
     /// without it.
-    fn refitted(
+    pub(crate) fn refitted(
         &self,
         base: &Model,
-        stage: &Stage,
+        with: &Confirmed,
         others: &[Arc<dyn Effect>],
     ) -> Result<Confirmed, ModelError> {
         if let Some(known) = self.fits.and_then(|fits| fits.of(others)).filter(|known| known.converged) {
             return Ok(known);
         }
-        let carried = self.confirm(base, others, Some(stage.confirmed.numbers()), &[]);
+        let carried = self.confirm(base, others, Some(with.numbers()), &[]);
         let mut best = carried;
         for part in [1.0, 0.1] {
             if best.as_ref().is_ok_and(|found| found.converged) {
@@ -377,8 +377,7 @@ mod tests {
             given.confirm(&base, &[Arc::clone(&worse.added[0]), Arc::clone(&other)], None, &[]).unwrap();
         assert!(given.lower(&base, &worse).is_none());
         worse.confirmed.minimum.cost += 40.0;
-        let place =
-            worse.linear.sensitivities.effects.iter().position(|s| s.effect.card().name == other.card().name);
+        let place = worse.linear.place(other.card().name);
         let hypothesis =
             Hypothesis { effects: vec![place.unwrap()], log_evidence: 0.0, gain: 0.0, starts: Vec::new() };
         assert!(idle.is_idle(&[other]), "friction that falls with the pressure leaves it off");

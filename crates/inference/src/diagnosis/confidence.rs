@@ -74,8 +74,7 @@ pub(crate) fn confidence(
 ) -> Confidence {
     let unit = 1.0 / class.scatter.sqrt();
     let found: Vec<f64> = linear.z.iter().map(|z| z * unit).collect();
-    let place = |name: &str| linear.sensitivities.effects.iter().position(|s| s.effect.card().name == name);
-    let Some(named) = place(class.effect.card().name) else {
+    let Some(named) = linear.place(class.effect.card().name) else {
         return Confidence { named: 0.0, class: 0.0, interval: [0.0, 1.0], claims: 0 };
     };
     let worth = RULE.worth[usize::from(class.is_further)];
@@ -159,13 +158,7 @@ fn truths<'a>(
         .rivals
         .iter()
         .filter(|rival| rival.fit.is_some() && rival.log_evidence.is_finite())
-        .filter_map(|rival| {
-            let name = rival.effect.card().name;
-            Some((
-                linear.sensitivities.effects.iter().position(|s| s.effect.card().name == name)?,
-                rival.log_evidence,
-            ))
-        })
+        .filter_map(|rival| Some((linear.place(rival.effect.card().name)?, rival.log_evidence)))
         .collect();
     fitted.push((named, class.log_evidence));
     for (effect, evidence) in fitted {

@@ -219,7 +219,10 @@ fn on_rows(
             search,
             options,
         ),
-        None => concluded(analysis, (&given, ground), &model, search, options),
+        None => {
+            given.exchange(&model, &mut search);
+            concluded(analysis, (&given, ground), &model, search, options)
+        }
     }
 }
 

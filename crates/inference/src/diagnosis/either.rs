@@ -47,7 +47,7 @@ pub(crate) fn quieter(
     if !stage.adequate {
         return Ok(None);
     }
-    *search = Search { stages: vec![stage], something_else: None };
+    *search = Search { stages: vec![stage], something_else: None, beside: Vec::new() };
     Ok(Some((law, whitening)))
 }
 

@@ -287,6 +287,11 @@ impl Given<'_> {
 }
 
 impl LinearisedModel {
+    /// The place of an effect in the list of sensitivities.
+    pub(crate) fn place(&self, name: &str) -> Option<usize> {
+        self.sensitivities.effects.iter().position(|one| one.effect.card().name == name)
+    }
+
     /// Square of the misfit that smooth functions follow; as many as there are of them by chance alone.
     pub(crate) fn structure(&self) -> f64 {
         self.smooth.iter().map(|d| dot(&d.unit, &self.z).powi(2)).sum()

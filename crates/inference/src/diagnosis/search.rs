@@ -24,10 +24,12 @@ pub(crate) struct Search {
     pub(crate) stages: Vec<Stage>,
     /// The stage of which something that nobody thought of explains what is left better than the best effect: what was added after it is the nearest, and no claim.
     pub(crate) something_else: Option<usize>,
+    /// Models beside the way, each linearised.
+    pub(crate) beside: Vec<Stage>,
 }
 
 /// Names of effects, sorted.
-fn names<'e>(effects: impl Iterator<Item = &'e Arc<dyn Effect>>) -> Vec<String> {
+pub(crate) fn names<'e>(effects: impl Iterator<Item = &'e Arc<dyn Effect>>) -> Vec<String> {
     let mut names: Vec<String> = effects.map(|effect| effect.card().name.to_owned()).collect();
     names.sort_unstable();
     names
@@ -37,7 +39,7 @@ impl Search {
     /// The stage of these effects, in any order.
     pub(crate) fn of_effects(&self, effects: &[Arc<dyn Effect>]) -> Option<&Stage> {
         let asked = names(effects.iter());
-        self.stages.iter().find(|stage| names(stage.added.iter()) == asked)
+        self.stages.iter().chain(&self.beside).find(|stage| names(stage.added.iter()) == asked)
     }
 
     /// Another model instead of the last one, and of those on the way to it that aren't on the way to this one.
@@ -106,7 +108,7 @@ impl Given<'_> {
             }
             stages.push(next);
         }
-        Ok(Search { stages, something_else })
+        Ok(Search { stages, something_else, beside: Vec::new() })
     }
 
     /// The stage at a lower minimum of its model, where a fit with further effects came to one and left them off.

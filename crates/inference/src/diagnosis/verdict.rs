@@ -157,7 +157,7 @@ impl Findings<'_> {
         let most =
             last.excess() < RULE.left * self.search.stages[0].excess() || last.something_else() < RULE.weak;
         let most = most && !bent && self.search.something_else != Some(0) || self.is_nearly_exact();
-        let (sound, odd): (Vec<String>, Vec<String>) = all.into_iter().partition(|name| self.plausible(name));
+        let (sound, odd): (Vec<String>, Vec<String>) = all.into_iter().partition(|name| self.possible(name));
         if !sound.is_empty() && most {
             let beside = if odd.is_empty() {
                 "that explains".to_owned()
@@ -217,7 +217,7 @@ impl Findings<'_> {
             && self.mechanism(only) < RULE.nameless
         {
             let says = format!(
-                "something may be missing, and these data don't say what: {} is the likeliest, and such a name is right in fewer than one case in six; measure more \
+                "something may be missing, and these data don't say what: {} is the likeliest, and such a name is right in fewer than one case in three; measure more \
                  rows, or more of what moves",
                 self.labels(&all)
             );

@@ -331,11 +331,21 @@ impl Findings<'_> {
     }
 
     pub(crate) fn plausible(&self, effect: &str) -> bool {
+        self.is_within(effect, 0.0)
+    }
+
+    /// Whether the numbers of an effect are such that it may be what it is called: what is plausible is itself known only so far.
+    pub(crate) fn possible(&self, effect: &str) -> bool {
+        self.is_within(effect, RULE.beyond)
+    }
+
+    /// Whether the numbers of an effect of the last model are plausible, or beyond that by no more than this part of what is.
+    fn is_within(&self, effect: &str, part: f64) -> bool {
         let confirmed = &self.last().confirmed;
         let numbers = confirmed.prepared.model.parameters().iter().zip(&confirmed.theta);
         numbers.filter(|(p, _)| p.effect == effect).all(|(p, value)| {
-            let rounding = 1e-9 * (p.high - p.low);
-            (p.plausible.0 - rounding..=p.plausible.1 + rounding).contains(value)
+            let beyond = 1e-9 * (p.high - p.low) + part * (p.plausible.1 - p.plausible.0);
+            (p.plausible.0 - beyond..=p.plausible.1 + beyond).contains(value)
         })
     }
 }
