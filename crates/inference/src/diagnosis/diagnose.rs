@@ -211,19 +211,12 @@ fn on_rows(
     };
     let quieter = quieter(&given, ground, &model, &mut search);
     let quieter = quieter.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))?;
-    match &quieter {
-        Some((law, whitening)) => concluded(
-            analysis,
-            (&Given { whitening, law, fits: None, ..given }, ground),
-            &model,
-            search,
-            options,
-        ),
-        None => {
-            given.exchange(&model, &mut search);
-            concluded(analysis, (&given, ground), &model, search, options)
-        }
+    if let Some((law, whitening)) = &quieter {
+        let quiet = Given { whitening, law, fits: None, ..given };
+        return concluded(analysis, (&quiet, ground), &model, search, options);
     }
+    given.exchange(&model, &mut search);
+    concluded(analysis, (&given, ground), &model, search, options)
 }
 
 /// Classes, confidence and the ladder of what a search has found.

@@ -183,6 +183,8 @@ pub struct Missing {
     pub plausible: bool,
     /// Its length in sigmas, beside everything else that could explain it.
     pub detectability: f64,
+    /// Log evidence over the model without it, natural logarithm.
+    pub log_evidence: f64,
     /// Rivals, with how far they are.
     pub rivals: Vec<RivalResult>,
 }
@@ -194,10 +196,10 @@ impl Missing {
         self.level.says(&self.effect, self.mechanism.name(), &self.class)
     }
 
-    /// Whether the data don't even say its mechanism: beside other effects it is no claim.
+    /// Whether the data don't even say its mechanism, or it hardly leads a model without it: beside other effects it is no claim.
     #[must_use]
     pub fn is_doubtful(&self) -> bool {
-        self.confidence_mechanism < RULE.decides
+        self.confidence_mechanism < RULE.decides || self.log_evidence < RULE.seen
     }
 }
 

@@ -8,6 +8,8 @@ use crate::comparison::document::{Bin, Comparison};
 use crate::comparison::rows::full_scale;
 use crate::diagnosis::bending::may_bend;
 use crate::diagnosis::claim::Levels;
+use crate::diagnosis::classes::Class;
+use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::Verdict;
 use crate::diagnosis::misfit::misfit;
@@ -244,18 +246,24 @@ impl Findings<'_> {
 
     /// How often the mechanism of a named effect is right.
     fn mechanism(&self, name: &str) -> f64 {
-        let found = self.classes.iter().find(|(class, _)| class.effect.card().name == name);
+        let found = self.class(name);
         found.map_or(1.0, |(class, sure)| Levels::of(class, sure, self.classes.len()).mechanism)
     }
 
-    /// Names that are claims, and those of further effects whose mechanism is likelier wrong than right; the first is a claim, and so is the surest.
+    fn class(&self, name: &str) -> Option<&(Class, Confidence)> {
+        self.classes.iter().find(|(class, _)| class.effect.card().name == name)
+    }
+
+    /// Names that are claims, and those of further effects that hardly lead a model without them, or whose mechanism is likelier wrong than right; the effect of the
+    /// largest evidence is a claim, and the surest need not be likelier right than wrong.
     fn apart(&self, names: Vec<String>) -> (Vec<String>, Vec<String>) {
-        let first = self.last().added.first().map(|effect| effect.card().name);
-        let mechanism = |name: &String| self.mechanism(name);
-        let surest = names.iter().map(mechanism).fold(0.0, f64::max);
-        names
-            .into_iter()
-            .partition(|name| Some(name.as_str()) == first || mechanism(name) >= RULE.decides.min(surest))
+        let evidence =
+            |name: &String| self.class(name).map_or(f64::INFINITY, |(class, _)| class.log_evidence);
+        let most = names.iter().map(evidence).fold(f64::NEG_INFINITY, f64::max);
+        let surest = names.iter().map(|name| self.mechanism(name)).fold(0.0, f64::max);
+        let is_seen = |name: &String| evidence(name) >= RULE.seen.min(most);
+        let is_decided = |name: &String| self.mechanism(name) >= RULE.decides.min(surest);
+        names.into_iter().partition(|name| evidence(name) >= most || is_seen(name) && is_decided(name))
     }
 
     /// Whether the formulas of the effects explain nearly everything as they are: what is left is then their own error. Of a misfit that may as well be none,

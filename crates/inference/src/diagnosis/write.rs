@@ -281,6 +281,7 @@ impl Findings<'_> {
             parameters: self.parameters(&class.effect),
             plausible: self.plausible(class.effect.card().name),
             detectability: class.detectability,
+            log_evidence: class.log_evidence,
             rivals,
         }
     }

@@ -22,7 +22,8 @@ pub(super) fn check(diagnosis: &Diagnosis) -> Result<(), PlotError> {
         finite("a fitted number", missing.parameters.values().map(|p| p.value))?;
         finite(
             "a confidence",
-            [missing.confidence, missing.detectability, missing.simulated.class].into_iter(),
+            [missing.confidence, missing.detectability, missing.log_evidence, missing.simulated.class]
+                .into_iter(),
         )?;
         finite("a confidence", missing.simulated.interval.into_iter())?;
         finite("a separation", missing.rivals.iter().map(|rival| rival.separation))?;

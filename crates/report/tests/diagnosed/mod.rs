@@ -148,6 +148,7 @@ fn bladder() -> Missing {
         parameters: [("modulus".to_owned(), number(0.31, "MPa", 0.28, 0.33))].into(),
         plausible: true,
         detectability: 9.3,
+        log_evidence: 40.0,
         // Not in order.
         rivals: vec![rival("hoop-elasticity", 25.0, 7.5), rival("wall-thickness", 0.8, 1.2)],
     }
@@ -190,6 +191,7 @@ fn friction() -> Missing {
         parameters: [("friction".to_owned(), number(14.0, "N", 8.0, 20.0))].into(),
         plausible: false,
         detectability: 40.0,
+        log_evidence: 800.0,
         rivals: vec![rival("force-lag", 300.0, 32.0)],
     }
 }
