@@ -388,6 +388,21 @@ fn spikes_and_heavy_tails_are_no_physics() {
 }
 
 #[test]
+fn slow_noise_far_beyond_the_data_sheet_is_not_adequate() {
+    // Readings that share 9 N with their neighbours, where the data sheet of the load cell says 2 N: something moves that nobody stated. 3 N may be as well.
+    let verdict = |correlated_n| diagnosed(&measured(&[], &protocol(2.0, correlated_n), 5));
+    let (usual, far) = (verdict(3.0), verdict(9.0));
+    assert_eq!(
+        (usual.verdict, far.verdict),
+        (Verdict::Adequate, Verdict::CannotTell),
+        "{}; {}",
+        usual.says,
+        far.says
+    );
+    assert!(far.missing.is_empty() && far.says.contains("noise as large"), "{}", far.says);
+}
+
+#[test]
 fn units_that_cannot_be_true_are_asked_about() {
     let asked = |change: &dyn Fn(&mut Columns)| {
         let mut columns = recorded(|_, direction| 8.0 * direction, false, 6);

@@ -81,7 +81,8 @@ pub(crate) struct DecisionRule {
     /// Part of the full scale that the misfit may have (the upper end) from which no model is called adequate beside slow noise: nobody has seen it apart from the misfit that
     /// it explains (suite).
     pub(crate) maybe: f64,
-    /// How much larger than the scatter of single readings that noise then is (suite).
+    /// How much larger than the scatter of single readings that noise then is (suite); so much slow noise as a multiple of what the data sheet of the load cell states is
+    /// *cannot tell* too: a jump in one sweep passes for it.
     pub(crate) slow: f64,
 
     /// Rivals whose log evidence is less than this below stay in the class: one in twenty (Kass and Raftery 1995: from 3 on strong).

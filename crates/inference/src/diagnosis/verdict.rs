@@ -189,6 +189,8 @@ impl Findings<'_> {
             format!("an oscillation with a period of {} s that", significant(period, 3))
         } else if last.adequacy.repeats {
             "a misfit that recurs in other strokes, which no smooth function follows and".to_owned()
+        } else if misfit(&last.linear, self.given.seed).1[1] <= 0.0 {
+            "a misfit that no smooth function follows and".to_owned()
         } else {
             format!("a structure of {size} that")
         };
@@ -202,9 +204,12 @@ impl Findings<'_> {
         let force = self.given.record.force();
         let full = full_scale(force, 0..force.len());
         let has_none = self.search.stages.len() == 1;
+        let stated = self.last().confirmed.prepared.model.muscle().instruments().force;
+        let stated_n = stated.map_or(f64::INFINITY, |force| force.noise());
         has_none
             && (low > RULE.surely * full
-                || high > RULE.maybe * full && self.slow_n() > RULE.slow * self.given.row_n)
+                || high > RULE.maybe * full && self.slow_n() > RULE.slow * self.given.row_n
+                || stated_n > 0.0 && self.slow_n() > RULE.slow * stated_n)
     }
 
     /// Noise that readings share with their neighbours \[N\].
