@@ -3,7 +3,8 @@
 //! The search adds one effect after the other, and the first was chosen while all others were still in the misfit: a formula that bends far enough takes their
 //! place for good. From the best set that was fitted this goes to the best neighbour, one effect more, less or another, until none is better, as stepwise regression with
 //! exchange does (Efroymson 1960; Miller, *Subset Selection in Regression*, 2002). Of 39 tests with three effects (forms suite, seed 71) it found the right set
-//! 17 times, the search alone 5 times; on a fresh seed (73) three more of 120 tests with two and three effects came out right.
+//! 17 times, the search alone 5 times; of 120 tests with two and three effects of a fresh seed (73) the
+//! program with it had 62 right, the one before 59.
 
 use bulge_effects::Effect;
 use bulge_model::Model;
