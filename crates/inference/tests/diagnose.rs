@@ -399,7 +399,11 @@ fn slow_noise_far_beyond_the_data_sheet_is_not_adequate() {
         usual.says,
         far.says
     );
-    assert!(far.missing.is_empty() && far.says.contains("noise as large"), "{}", far.says);
+    assert!(
+        far.missing.is_empty() && far.says.contains("the data sheet of the load cell says 2 N"),
+        "{}",
+        far.says
+    );
 }
 
 #[test]

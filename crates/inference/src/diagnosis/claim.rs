@@ -84,6 +84,44 @@ pub(crate) fn form_error(record: &Record, bent: &Bent) -> FormErrorResult {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bulge_effects::Catalogue;
+
+    #[test]
+    fn a_claim_is_as_sure_as_its_kin_are_likely_among_all_rivals() {
+        let catalogue = Catalogue::builtin();
+        let rival = |name: &str, behind: f64, separation: f64| Rival {
+            effect: Arc::clone(catalogue.find(name).unwrap()),
+            log_evidence: 20.0 - behind,
+            separation,
+            in_class: true,
+            fit: None,
+        };
+        let class = Class {
+            effect: Arc::clone(catalogue.find("coulomb-friction").unwrap()),
+            log_evidence: 20.0,
+            detectability: 6.0,
+            scatter: 1.0,
+            is_further: false,
+            // One of the family, one of the mechanism, one that is the same on these data, and another.
+            rivals: vec![
+                rival("asymmetric-friction", 0.5, 2.0),
+                rival("pressure-friction", 1.0, 2.0),
+                rival("valve-hysteresis", 1.5, 0.5),
+                rival("creep", 2.0, 4.0),
+            ],
+        };
+        let simulated = |named| Confidence { named, class: 1.0, interval: [0.0, 1.0], claims: 100 };
+        let [family, kin, same, other] = [0.5_f64, 1.0, 1.5, 2.0].map(|behind| (-behind).exp());
+        let all = 1.0 + family + kin + same + other;
+        let found = Levels::of(&class, &simulated(1.0), 1);
+        let expected = [1.0 + family + kin + same, 1.0 + family + same, 1.0].map(|part| 0.9 * part / all);
+        for (found, expected) in [found.mechanism, found.family, found.form].into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+        // No surer than what was simulated, and a tenth less for each further name.
+        assert!((Levels::of(&class, &simulated(0.4), 1).family - 0.4).abs() < 1e-12);
+        assert!((Levels::of(&class, &simulated(1.0), 3).mechanism / found.mechanism - 0.81).abs() < 1e-12);
+    }
 
     #[test]
     fn the_deepest_level_that_is_likelier_right_than_wrong_is_stated() {

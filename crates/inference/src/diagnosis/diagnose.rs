@@ -32,9 +32,6 @@ use crate::progress::Progress;
 /// Times that rows without a state are left out.
 const MOST_LEFT_OUT: usize = 8;
 
-/// Times that an accepted effect gives way to a better one, or to none.
-const MOST_CHANGES: usize = 3;
-
 /// What is diagnosed, besides muscle and data.
 #[derive(Debug, Clone)]
 pub struct DiagnoseOptions {
@@ -224,22 +221,12 @@ fn concluded(
     analysis: &Analysis<'_>,
     (given, ground): (&Given<'_>, &Ground),
     model: &Model,
-    mut search: Search,
+    search: Search,
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis, Stop> {
     let progress = &options.progress;
     progress.at(0.6, "rivals");
-    let mut judged = classes(given, model, &search);
-    for _ in 0..MOST_CHANGES {
-        let last = &search.stages[search.stages.len() - 1];
-        let better = judged.iter().enumerate().find_map(|(place, j)| {
-            let dropped = given.dropped(model, last, place, &j.class);
-            dropped.or_else(|| given.swapped(last, place, &j.class))
-        });
-        let Some(better) = better else { break };
-        search.replace_last(better);
-        judged = classes(given, model, &search);
-    }
+    let judged = classes(given, model, &search);
     progress.at(0.75, "the next experiment");
     let next = next_experiment(given, &judged, &Limits::of(&ground.record, options.limits));
     progress.at(0.85, "the ladder");

@@ -323,3 +323,57 @@ fn ranked(tried: &[Tried]) -> Vec<(&Tried, &Confirmed)> {
     list = order.into_iter().map(|place| list[place]).collect();
     list
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::noise::law::{NoiseLaw, NoiseSource};
+    use crate::noise::whitening::Whitening;
+    use bulge_effects::{Catalogue, Moment};
+    use bulge_model::{Record, Wanted};
+    use bulge_muscles::preset;
+    use bulge_numerics::Random;
+
+    /// Two loops of 40 rows at 2 and 3 bar, with noise of 1 N, of which a model without effects is off by `hidden`.
+    pub(crate) fn loops(base: &Model, hidden: impl Fn(&Moment) -> f64) -> Record {
+        let at = |i: u32| {
+            let (up, place) = (i % 40 < 20, if i % 40 < 20 { i % 40 } else { 39 - i % 40 });
+            let direction = if up { 1.0 } else { -1.0 };
+            let pressure = 2e5 + 1e5 * f64::from(i / 80);
+            Moment { direction, ..Moment::at_rest(pressure, 0.05 + 0.01 * f64::from(place)) }
+        };
+        let moments: Vec<Moment> = (0..160).map(at).collect();
+        let record = Record::from_moments(moments, vec![0.0; 160], vec![0..80, 80..160]).unwrap();
+        let exact = base.evaluate(&record, &[], &Wanted::default()).unwrap().force;
+        let mut random = Random::new(11, 0);
+        let rows = exact.iter().zip(record.moments());
+        let force = rows.map(|(force, moment)| force + hidden(moment) + random.normal()).collect();
+        record.with_force(force)
+    }
+
+    #[test]
+    fn lower_minima_are_taken() {
+        let catalogue = Catalogue::builtin();
+        let base = Model::new(&preset("ppam-2-r16").unwrap());
+        let record = loops(&base, |moment| -(10.0 - 2e-5 * moment.pressure) * moment.direction);
+        let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
+        let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
+        let given = Given::plain(&catalogue, &record, &whitening, &law);
+        let [friction, other] =
+            ["coulomb-friction", "pressure-friction"].map(|n| Arc::clone(catalogue.find(n).unwrap()));
+        // The same model at another minimum of 40 more: what a fit with something idle found is taken.
+        let one = vec![Arc::clone(&friction)];
+        let right = given.confirm(&base, &one, None, &[]).unwrap();
+        let mut worse = given.stage(one, right.clone()).unwrap();
+        let idle = given.confirm(&base, &[friction, Arc::clone(&other)], None, &[]).unwrap();
+        assert!(given.lower(&base, &worse).is_none());
+        worse.confirmed.minimum.cost += 40.0;
+        let place = worse.linear.place(other.card().name);
+        let hypothesis =
+            Hypothesis { effects: vec![place.unwrap()], log_evidence: 0.0, gain: 0.0, starts: Vec::new() };
+        assert!(idle.is_idle(&[other]), "friction that falls with the pressure leaves it off");
+        worse.tried = vec![Tried { hypothesis, confirmed: Some(idle), log_evidence: 0.0 }];
+        let found = given.lower(&base, &worse).unwrap();
+        assert!((found.confirmed.cost() - right.cost()).abs() < 1e-6);
+    }
+}

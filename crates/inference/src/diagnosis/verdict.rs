@@ -140,8 +140,14 @@ impl Findings<'_> {
         let all: Vec<String> = last.added.iter().map(|effect| effect.card().name.to_owned()).collect();
         if last.adequate && all.is_empty() {
             if self.is_large() {
+                let stated = match self.stated_n() {
+                    Some(stated) if self.is_beyond_data_sheet() => {
+                        format!("; the data sheet of the load cell says {} N", significant(stated, 2))
+                    }
+                    _ => String::new(),
+                };
                 let says = format!(
-                    "noise as large as the misfit itself would explain it ({} N of it shared by neighbouring readings or by whole sweeps), and so would something \
+                    "noise as large as the misfit itself would explain it ({} N of it shared by neighbouring readings or by whole sweeps{stated}), and so would something \
                      that is missing: the systematic misfit is {size}, and these data don't tell the two apart",
                     significant(self.slow_n(), 2)
                 );
@@ -204,12 +210,21 @@ impl Findings<'_> {
         let force = self.given.record.force();
         let full = full_scale(force, 0..force.len());
         let has_none = self.search.stages.len() == 1;
-        let stated = self.last().confirmed.prepared.model.muscle().instruments().force;
-        let stated_n = stated.map_or(f64::INFINITY, |force| force.noise());
         has_none
             && (low > RULE.surely * full
                 || high > RULE.maybe * full && self.slow_n() > RULE.slow * self.given.row_n
-                || stated_n > 0.0 && self.slow_n() > RULE.slow * stated_n)
+                || self.is_beyond_data_sheet())
+    }
+
+    /// Noise of single readings by the data sheet of the load cell \[N\].
+    fn stated_n(&self) -> Option<f64> {
+        let force = self.last().confirmed.prepared.model.muscle().instruments().force?;
+        Some(force.noise()).filter(|noise| *noise > 0.0)
+    }
+
+    /// Whether what passes for slow noise is far more than the load cell has: something that nobody stated moves.
+    fn is_beyond_data_sheet(&self) -> bool {
+        self.stated_n().is_some_and(|stated| self.slow_n() > RULE.slow * stated)
     }
 
     /// Noise that readings share with their neighbours \[N\].
