@@ -210,10 +210,10 @@ fn on_rows(
     let quieter = quieter.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))?;
     if let Some((law, whitening)) = &quieter {
         let quiet = Given { whitening, law, fits: None, ..given };
-        return concluded(analysis, (&quiet, ground), &model, search, options);
+        return concluded(analysis, (&quiet, ground), &model, &search, options);
     }
     given.exchange(&model, &mut search);
-    concluded(analysis, (&given, ground), &model, search, options)
+    concluded(analysis, (&given, ground), &model, &search, options)
 }
 
 /// Classes, confidence and the ladder of what a search has found.
@@ -221,12 +221,12 @@ fn concluded(
     analysis: &Analysis<'_>,
     (given, ground): (&Given<'_>, &Ground),
     model: &Model,
-    search: Search,
+    search: &Search,
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis, Stop> {
     let progress = &options.progress;
     progress.at(0.6, "rivals");
-    let judged = classes(given, model, &search);
+    let judged = classes(given, model, search);
     progress.at(0.75, "the next experiment");
     let next = next_experiment(given, &judged, &Limits::of(&ground.record, options.limits));
     progress.at(0.85, "the ladder");
@@ -235,7 +235,7 @@ fn concluded(
     let sd_n = row_sd(given.law, ground);
     let found = Findings {
         given,
-        search: &search,
+        search,
         classes: &classes,
         sd_n,
         effective_rows: effective_rows(given, ground, sd_n),
