@@ -1,7 +1,7 @@
 //! What an effect does: the public trait, and the states it reads and changes along a measured history.
 
 use bulge_muscles::{Kind, Muscle, MuscleError, Parameter, Quantity};
-use bulge_numerics::Dual;
+use bulge_numerics::{Dual, Real};
 use std::fmt::Debug;
 
 use crate::card::{Card, ParameterCard};
@@ -115,7 +115,7 @@ impl Setting {
 /// What reaches the muscle: input effects change it before the equilibrium is taken.
 ///
 /// ```text
-/// F = wall B(pressure area/wall, e),    e = contraction + give_force F + give_tension N,    averaged over e + spread z
+/// F = wall B(pressure area/wall, e),    e = contraction + give_force(F) + give_tension(N),    averaged over e + spread z
 /// ```
 /// with B the base law, N the meridional force at mid-length and z a standard normal number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -130,10 +130,62 @@ pub struct Input {
     pub wall: Jet,
     /// Standard deviation of the fibres' lengths over l0; 0.
     pub spread: Jet,
-    /// Contraction hidden from the displacement sensor per force \[1/N\]; 0.
-    pub give_force: Jet,
-    /// Contraction of the muscle per meridional force at mid-length \[1/N\]; 0.
-    pub give_tension: Jet,
+    /// Contraction hidden from the displacement sensor under the force; none.
+    pub give_force: Give,
+    /// Contraction of the muscle under the meridional force at mid-length; none.
+    pub give_tension: Give,
+}
+
+/// Contraction under a load L in newtons.
+///
+/// ```text
+/// give(L) = linear L + joint L (|L|/1 kN)^(power - 1)
+/// ```
+/// A joint under less than [`Give::SEATED`] is as stiff as under it: below it a power less than one would leave it without stiffness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Give {
+    /// Of what gives in proportion to the load \[1/N\].
+    pub linear: Jet,
+    /// Of a joint, per load, under 1 kN \[1/N\].
+    pub joint: Jet,
+    /// Power of the load with which the joint gives; 1.
+    pub power: Jet,
+}
+
+impl Give {
+    /// Load at which a joint's compliance is stated \[N\].
+    pub const REFERENCE: f64 = 1e3;
+    /// Load under which a joint counts as seated \[N\]: what its own weight and a hand-tight screw come to.
+    pub const SEATED: f64 = 1.0;
+
+    /// Nothing gives.
+    #[must_use]
+    pub fn none() -> Self {
+        let [zero, power] = [0.0, 1.0].map(Jet::from);
+        Self { linear: zero, joint: zero, power }
+    }
+
+    /// Whether nothing gives, and no parameter makes it give.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        let still = |x: &Jet| x.value() == 0.0 && x.gradient().iter().all(|d| *d == 0.0);
+        still(&self.linear) && still(&self.joint)
+    }
+
+    /// The contraction under a load \[N\].
+    #[must_use]
+    pub fn under(&self, load: Jet) -> Jet {
+        let seated = (load.squared() + Self::SEATED * Self::SEATED) / (Self::REFERENCE * Self::REFERENCE);
+        load * (self.linear + self.joint * ((self.power - 1.0) * 0.5 * seated.ln()).exp())
+    }
+
+    /// Its derivative by the load \[1/N\].
+    #[must_use]
+    pub fn slope(&self, load: f64) -> f64 {
+        let (squared, bend) = (load * load + Self::SEATED * Self::SEATED, self.power.value() - 1.0);
+        let secant = self.joint.value() * (squared.sqrt() / Self::REFERENCE).powf(bend);
+        self.linear.value() + secant * (1.0 + bend * load * load / squared)
+    }
 }
 
 impl Input {
@@ -147,8 +199,8 @@ impl Input {
             area: one,
             wall: one,
             spread: zero,
-            give_force: zero,
-            give_tension: zero,
+            give_force: Give::none(),
+            give_tension: Give::none(),
         }
     }
 }

@@ -27,6 +27,6 @@ pub mod user;
 pub use card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 pub use catalogue::{Catalogue, CatalogueError};
 pub use describe::{CardDocument, ParameterDocument, SignatureDocument, TwinDocument, describe, overview};
-pub use effect::{Balance, Effect, Input, Jet, LANES, Moment, Place, Reshaped, Setting};
+pub use effect::{Balance, Effect, Give, Input, Jet, LANES, Moment, Place, Reshaped, Setting};
 pub use learnt::{Known, known, learnt};
 pub use mechanism::{Form, Mechanism};

@@ -158,8 +158,8 @@ fn run(
         let mut input = Input::of(pressure, contraction);
         // Values other than 0 and 1, so that sums and products show.
         input.spread = Jet::from(1e-3);
-        input.give_force = Jet::from(1e-7);
-        input.give_tension = Jet::from(2e-7);
+        input.give_force.linear = Jet::from(1e-7);
+        input.give_tension.linear = Jet::from(2e-7);
         input.wall = Jet::from(1.1);
         let balance = balance(moment, pressure, contraction);
         let (mut load, mut reading) = (Jet::from(37.0), balance.force);
@@ -167,7 +167,8 @@ fn run(
         effect.act(moment, setting, theta, &mut memory, Place::Load(&balance, &mut load));
         effect.act(moment, setting, theta, &mut memory, Place::Output(&balance, &mut reading));
         out.extend([input.pressure, input.contraction, input.area, input.wall, input.spread]);
-        out.extend([input.give_force, input.give_tension, load, reading]);
+        let gives = [input.give_force, input.give_tension].map(|give| give.under(balance.force));
+        out.extend([gives[0], gives[1], load, reading]);
     }
     out
 }

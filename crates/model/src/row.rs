@@ -1,7 +1,7 @@
 //! One row of a model: the input effects, the equilibrium behind them, the loads and the load cell.
 
 use bulge_effects::law::LawPoint;
-use bulge_effects::{Balance, Input, Jet, Moment, Place, Stage};
+use bulge_effects::{Balance, Give, Input, Jet, Moment, Place, Stage};
 use bulge_fibre::Start;
 use bulge_numerics::{Dual, Real};
 
@@ -66,7 +66,7 @@ impl Run<'_> {
     /// The equilibrium behind an input, and the contraction at which it is.
     ///
     /// ```text
-    /// e = contraction + give_force F(e) + give_tension N(e)        Newton's method, then one step more that carries the derivatives
+    /// e = contraction + give_force(F(e)) + give_tension(N(e))        Newton's method, then one step more that carries the derivatives
     /// ```
     fn balance(
         &self,
@@ -77,15 +77,18 @@ impl Run<'_> {
     ) -> Result<(Carried, Jet), RowError> {
         let pressure = input.pressure * input.area / input.wall;
         let gives = [input.give_force, input.give_tension];
-        let rigid = gives.iter().all(|g| g.value() == 0.0 && g.gradient().iter().all(|d| *d == 0.0));
         let mut e = input.contraction;
-        if !rigid {
+        if !gives.iter().all(Give::is_none) {
             let mut at = input.contraction.value();
             for _ in 0..MOST_GIVE_STEPS {
                 let found = self.averaged(moment, [pressure, Jet::from(at)], input, pass, slot)?;
-                let gap =
-                    Jet::from(at) - input.contraction - gives[0] * found.force - gives[1] * found.tension;
-                let slope = 1.0 - gives[0].value() * found.slope[0] - gives[1].value() * found.slope[1];
+                let loads = [found.force, found.tension];
+                let mut gap = Jet::from(at) - input.contraction;
+                let mut slope = 1.0;
+                for ((give, load), by_contraction) in gives.iter().zip(loads).zip(found.slope) {
+                    gap = gap - give.under(load);
+                    slope -= give.slope(load.value()) * by_contraction;
+                }
                 // With derivatives: those of the gap at fixed e, over the slope.
                 e = Jet::from(at) - gap / slope;
                 let step = e.value() - at;

@@ -111,8 +111,8 @@ fn run(
             input.area,
             input.wall,
             input.spread,
-            input.give_force,
-            input.give_tension,
+            input.give_force.under(force),
+            input.give_tension.under(force),
             added,
             reading,
         ]

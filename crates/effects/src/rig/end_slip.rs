@@ -3,8 +3,11 @@
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
 use crate::mechanism::{Form, Mechanism};
+use crate::unit::NUMBER;
 
-/// `true contraction = measured + N/(k l0)`, N = F + p A(r).
+/// `true contraction = measured + N/(k l0) (|N|/1 kN)^(n - 1)`, N = F + p A(r).
+///
+/// A bond gives in proportion, n = 1; a clamp that bites stiffens, n < 1; one that begins to slip gives the more, n > 1.
 #[derive(Debug)]
 pub(crate) struct EndSlip;
 
@@ -17,9 +20,10 @@ impl Effect for EndSlip {
             form: Form::Loose,
             title: "Fibres that give in their fittings",
             about: "The fibres slip a little in epoxy or clamp, elastically, pulled by their whole tension: by the force and by the gas that \
-                    acts on the cross-section. Unlike a soft frame it gives also where the muscle doesn't pull.",
-            equation: "true contraction = measured + N/(k l0),   N = F + p A(r) at mid-length",
-            source: "shear of the bond, linear",
+                    acts on the cross-section. Unlike a soft frame it gives also where the muscle doesn't pull. A clamp \
+                    that bites stiffens (a power below one), one that begins to slip gives more and more (above one).",
+            equation: "true contraction = measured + N/(k l0) (|N|/1 kN)^(n - 1),   N = F + p A(r) at mid-length",
+            source: "shear of the bond: linear; Hertz 1882: a contact gives with the power 2/3",
             evidence: Evidence::Derived,
             group: Group::Rig,
             stage: Stage::Input,
@@ -43,17 +47,27 @@ impl Effect for EndSlip {
                 ("um/N", 1e-6),
                 (0.0, 10.0),
                 0.02,
-                "slip of both ends per tension",
+                "slip of both ends per tension at 1 kN",
             )
             .prior(0.0, 0.1)
             .plausible(0.0, 0.4)
             .reciprocal("stiffness", "N/mm", 1e3),
+            ParameterCard::new(
+                "power",
+                NUMBER,
+                (0.4, 3.0),
+                1.0,
+                "power of the tension with which the ends give",
+            )
+            .plausible(0.5, 2.0)
+            .off_at(1.0)
+            .off_if_absent(),
         ]
     }
 
     fn act(&self, _: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
         if let Place::Input(input) = place {
-            input.give_tension += theta[0] / setting.length;
+            (input.give_tension.joint, input.give_tension.power) = (theta[0] / setting.length, theta[1]);
         }
     }
 }
@@ -67,6 +81,11 @@ mod tests {
     #[test]
     fn the_tension_shortens() {
         // 50 kN/mm on 250 mm: 8e-8 per newton.
-        assert!((input(&EndSlip, &[2e-8], |_| ()).give_tension.value() / 8e-8 - 1.0).abs() < 1e-12);
+        let give = input(&EndSlip, &[2e-8, 1.0], |_| ()).give_tension;
+        assert!((give.under(Jet::from(1e3)).value() / 8e-5 - 1.0).abs() < 1e-12);
+        // A clamp that begins to slip: four times the tension, eight times the slip.
+        let give = input(&EndSlip, &[2e-8, 1.5], |_| ()).give_tension;
+        let [low, high] = [250.0, 1e3].map(|tension| give.under(Jet::from(tension)).value());
+        assert!((high / low / 8.0 - 1.0).abs() < 1e-5);
     }
 }
