@@ -21,6 +21,7 @@ pub(crate) mod geometry;
 pub(crate) mod ground;
 pub(crate) mod hints;
 pub(crate) mod hypotheses;
+pub(crate) mod jump;
 pub(crate) mod lack_of_fit;
 pub(crate) mod linearised_model;
 pub(crate) mod misfit;

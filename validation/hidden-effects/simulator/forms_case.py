@@ -24,7 +24,7 @@ LARGEST_UNKNOWN = 0.05
 """Root mean square of an effect outside the catalogue over the largest force."""
 VISIBLE = 0.6
 """Each of several hidden effects keeps this share of its strength when the others are fitted beside it."""
-ATTEMPTS = 60
+ATTEMPTS = 400
 PLAIN_ATTEMPTS = 12
 """So many draws are tried for a case whose data are nearer to the exact formula of its own effect than to that of any other."""
 

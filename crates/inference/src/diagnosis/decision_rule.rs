@@ -16,6 +16,8 @@ pub(crate) struct DecisionRule {
     pub(crate) near_replicates: f64,
     /// Chance with which a line in the spectrum may raise one: it is asked of each model that explains the rest.
     pub(crate) oscillation: f64,
+    /// Chance with which a jump within a sweep may raise one: it is asked of each model that explains the rest, and tails of real noise are heavier than normal ones.
+    pub(crate) jump: f64,
     /// Readings scatter about a model if the mean square of their misfit is that many standard deviations beyond 1, and larger than this ratio: noise laws
     /// from few rows are wrong by as much (suite).
     pub(crate) scatters: [f64; 2],
@@ -127,6 +129,7 @@ pub(crate) const RULE: DecisionRule = DecisionRule {
     smooth_beside_names: 0.01,
     near_replicates: 0.003,
     oscillation: 2e-4,
+    jump: 1e-5,
     scatters: [6.0, 1.5],
     worth: [-2.0, 0.0],
     something_else: -2.0,

@@ -7,6 +7,7 @@ use crate::diagnosis::bending::{Kin, bendings, may_bend};
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::fits::Fits;
 use crate::diagnosis::form_error::{FormDirection, FormError};
+use crate::diagnosis::jump::{Jump, jump};
 use crate::diagnosis::lack_of_fit::lack_of_fit;
 use crate::diagnosis::null::{Chance, Null, Statistics};
 use crate::diagnosis::oscillation::oscillation;
@@ -317,6 +318,11 @@ impl LinearisedModel {
     /// The period \[s\] of an oscillation in what is left; none if there is none.
     pub(crate) fn oscillation(&self, record: &Record) -> Option<f64> {
         oscillation(record, &self.space.outside_of_left_out(&self.white))
+    }
+
+    /// A jump within a sweep in what is left; none if there is none.
+    pub(crate) fn jump(&self, given: &Given<'_>) -> Option<Jump> {
+        jump(given.record, given.whitening, &self.space, &self.space.outside_of_left_out(&self.white))
     }
 
     fn units(&self) -> Vec<Vec<f64>> {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::Tried;
+use crate::diagnosis::jump::Jump;
 use crate::diagnosis::linearised_model::{Given, LinearisedModel};
 use crate::diagnosis::null::Null;
 use crate::diagnosis::something_else::smooth_evidence;
@@ -25,6 +26,8 @@ pub(crate) struct Adequacy {
     pub(crate) repeats: bool,
     /// Period \[s\] of an oscillation that the rest doesn't see. Asked only where the rest holds.
     pub(crate) oscillates: Option<f64>,
+    /// A jump within a sweep that the rest doesn't see. Asked only where the rest holds.
+    pub(crate) jumps: Option<Jump>,
 }
 
 impl Adequacy {
@@ -36,9 +39,9 @@ impl Adequacy {
         self.chance[1] < if self.names { RULE.smooth_beside_names } else { RULE.smooth }
     }
 
-    /// Whether something is left that no smooth function follows: it recurs in other strokes, or oscillates.
+    /// Whether something is left that no smooth function follows: it recurs in other strokes, oscillates, or jumps.
     pub(crate) fn recurs(&self) -> bool {
-        self.repeats || self.oscillates.is_some()
+        self.repeats || self.oscillates.is_some() || self.jumps.is_some()
     }
 
     pub(crate) fn holds(&self) -> bool {
@@ -127,7 +130,8 @@ impl Given<'_> {
         let (null, chance) = linear.chance(self);
         let fit_fails = self.scatters(&confirmed);
         let names = !added.is_empty();
-        let mut adequacy = Adequacy { null, names, chance, fit_fails, repeats: false, oscillates: None };
+        let mut adequacy =
+            Adequacy { null, names, chance, fit_fails, repeats: false, oscillates: None, jumps: None };
         // A test may be surprised by what no smooth misfit explains: that is no structure.
         let is_chance = || {
             !added.is_empty()
@@ -139,6 +143,7 @@ impl Given<'_> {
         adequacy.repeats =
             holds && linear.lack_of_fit(self.record).is_some_and(|chance| chance < RULE.near_replicates);
         adequacy.oscillates = if holds { linear.oscillation(self.record) } else { None };
+        adequacy.jumps = if holds { linear.jump(self) } else { None };
         // What recurs beside effects that explain the rest is no reason to bend or add more of them.
         let adequate = holds && (adequacy.names || !adequacy.recurs());
         Ok(Stage { added, confirmed, linear, adequate, adequacy, tried: Vec::new() })

@@ -12,6 +12,7 @@ use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::Verdict;
+use crate::diagnosis::jump::Jump;
 use crate::diagnosis::misfit::misfit;
 use crate::diagnosis::search::MOST_EFFECTS;
 use crate::diagnosis::stage::Stage;
@@ -193,6 +194,8 @@ impl Findings<'_> {
         }
         let structure = if let Some(period) = last.adequacy.oscillates {
             format!("an oscillation with a period of {} s that", significant(period, 3))
+        } else if let Some(jump) = last.adequacy.jumps {
+            format!("{} that", self.jump(jump))
         } else if last.adequacy.repeats {
             "a misfit that recurs in other strokes, which no smooth function follows and".to_owned()
         } else if misfit(&last.linear, self.given.seed).1[1] <= 0.0 {
@@ -227,6 +230,21 @@ impl Findings<'_> {
         self.stated_n().is_some_and(|stated| self.slow_n() > RULE.slow * stated)
     }
 
+    /// A jump, and where it is.
+    fn jump(&self, jump: Jump) -> String {
+        let record = self.given.record;
+        let moment = &record.moments()[jump.row];
+        let size = significant(jump.newtons.abs(), 2);
+        let (pressure, contraction) = (moment.pressure / 1e5, 100.0 * moment.contraction);
+        let [pressure, contraction] = [pressure, contraction].map(|value| significant(value, 3));
+        let at = if record.has_time() {
+            format!(", after {} s", significant(moment.clock, 4))
+        } else {
+            String::new()
+        };
+        format!("a jump of {size} N within a sweep (at {pressure} bar and {contraction} %{at})")
+    }
+
     /// Noise that readings share with their neighbours \[N\].
     fn slow_n(&self) -> f64 {
         self.given.law.correlated_n.hypot(self.given.law.offset_n)
@@ -249,6 +267,8 @@ impl Findings<'_> {
         let with = if claimed.len() + doubtful.len() == 1 { "it" } else { "them" };
         let but = if let Some(period) = last.adequacy.oscillates {
             format!(", but for an oscillation with a period of {} s", significant(period, 3))
+        } else if let Some(jump) = last.adequacy.jumps {
+            format!(", but for {}", self.jump(jump))
         } else if last.adequacy.repeats {
             ", but for what recurs in other strokes and follows no smooth function".to_owned()
         } else {
