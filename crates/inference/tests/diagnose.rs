@@ -68,7 +68,7 @@ fn the_hidden_effect_is_named_with_its_number() {
     for (effect, values, key, unit) in [
         ("bladder-elasticity", &[1e5][..], "modulus", 1e6),
         ("coulomb-friction", &[6.0][..], "force", 1.0),
-        ("frame-compliance", &[2e-7][..], "compliance", 1e-6),
+        ("frame-compliance", &[2e-7, 1.0][..], "compliance", 1e-6),
     ] {
         let found = diagnosed(&measured(&[(effect, values)], &protocol(2.0, 0.0), 3));
         assert_eq!(found.verdict, Verdict::Missing, "{effect}: {}", found.says);
@@ -389,7 +389,7 @@ fn spikes_and_heavy_tails_are_no_physics() {
 
 #[test]
 fn slow_noise_far_beyond_the_data_sheet_is_not_adequate() {
-    // Readings that share 9 N with their neighbours, where the data sheet of the load cell says 2 N: something moves that nobody stated. 3 N may be as well.
+    // Readings that share 9 N with their neighbours, where the data sheet of the load cell says 2.0 N: something moves that nobody stated. 3 N may be as well.
     let verdict = |correlated_n| diagnosed(&measured(&[], &protocol(2.0, correlated_n), 5));
     let (usual, far) = (verdict(3.0), verdict(9.0));
     assert_eq!(
@@ -400,7 +400,7 @@ fn slow_noise_far_beyond_the_data_sheet_is_not_adequate() {
         far.says
     );
     assert!(
-        far.missing.is_empty() && far.says.contains("the data sheet of the load cell says 2 N"),
+        far.missing.is_empty() && far.says.contains("the data sheet of the load cell says 2.0 N"),
         "{}",
         far.says
     );

@@ -471,11 +471,8 @@ impl Run<'_> {
             let pressure = (input.pressure * input.area / input.wall).value();
             let e = input.contraction.value();
             // The force is not known yet: p pi (3 r0)^2 is more than any muscle has at usable contractions.
-            let most = pressure * std::f64::consts::PI * (3.0 * self.setting.radius).powi(2);
-            let give: f64 = [input.give_force, input.give_tension]
-                .iter()
-                .map(|give| give.under(Jet::from(most)).value())
-                .sum();
+            let most = Jet::from(pressure * std::f64::consts::PI * (3.0 * self.setting.radius).powi(2));
+            let give = (input.give_force.under(most) + input.give_tension.under(most)).value();
             let spread = NORMAL[1].0 * input.spread.value().abs();
             lattice.span(pressure, [e - spread + give.min(0.0), e + spread + give.max(0.0)])
         };

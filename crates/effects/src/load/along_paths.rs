@@ -103,6 +103,8 @@ fn run(
             turn: Jet::from(moment.step) + pressure * (moment.pressure_step * 1e-13),
         };
         let (mut added, mut reading) = (Jet::from(0.0), force);
+        // Of a joint without load a difference tells no derivative.
+        let load = Jet::from(700.0);
         act(Place::Load(&balance, &mut added));
         act(Place::Output(&balance, &mut reading));
         [
@@ -111,8 +113,8 @@ fn run(
             input.area,
             input.wall,
             input.spread,
-            input.give_force.under(force),
-            input.give_tension.under(force),
+            input.give_force.under(load),
+            input.give_tension.under(load),
             added,
             reading,
         ]

@@ -3,15 +3,9 @@
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
 use crate::mechanism::{Form, Mechanism};
-use crate::unit::{NEWTON_PER_BAR, NUMBER};
-use bulge_numerics::Real;
+use crate::unit::NEWTON_PER_BAR;
 
-/// Pressure at which the coefficient is stated \[Pa\]: in the middle of what these muscles are used at.
-const REFERENCE: f64 = 3e5;
-
-/// `dF = -s mu_p p (p/3 bar)^(n - 1)`, s = +1 while shortening, -1 while lengthening.
-///
-/// Hard fibres rub in proportion to what presses them together, n = 1; a soft one flattens, and its contact grows with the power 2/3 (Schallamach 1958, rubber).
+/// `dF = -s mu_p p`, s = +1 while shortening, -1 while lengthening.
 #[derive(Debug)]
 pub(crate) struct PressureFriction;
 
@@ -24,10 +18,9 @@ impl Effect for PressureFriction {
             form: Form::Loose,
             title: "Friction in proportion to the pressure",
             about: "The gas presses the strands of the braid (or the folds of the cloth) onto each other, and they rub when the muscle moves. \
-                    The loop is wider at high pressure, by the same amount at every contraction. Where soft parts rub, the contact \
-                    grows less than the pressure, which a power below one says.",
-            equation: "dF = -s mu_p p (p/3 bar)^(n - 1),   s = +1 while shortening, -1 while lengthening, 0 at rest",
-            source: "half-widths of 1.3 to 1.7 N/bar in S2, tables 3 to 6; Schallamach 1958: rubber rubs with the power 2/3 of the load",
+                    The loop is wider at high pressure, by the same amount at every contraction.",
+            equation: "dF = -s mu_p p,   s = +1 while shortening, -1 while lengthening, 0 at rest",
+            source: "half-widths of 1.3 to 1.7 N/bar in S2, tables 3 to 6",
             evidence: Evidence::Paper,
             group: Group::Load,
             stage: Stage::Load,
@@ -48,31 +41,17 @@ impl Effect for PressureFriction {
     }
 
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
-        let about = "half the distance between the branches, per pressure, at 3 bar";
+        let about = "half the distance between the branches, per pressure";
         vec![
             ParameterCard::new("coefficient", NEWTON_PER_BAR, (0.0, 100.0), 1.5, about)
                 .prior(0.0, 3.0)
                 .plausible(0.0, 30.0),
-            ParameterCard::new(
-                "power",
-                NUMBER,
-                (0.3, 2.0),
-                1.0,
-                "power of the pressure with which the friction grows",
-            )
-            .plausible(0.5, 1.5)
-            .off_at(1.0)
-            .off_if_absent(),
         ]
     }
 
     fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        // Without pressure nothing is pressed together.
-        if let Place::Load(balance, force) = place
-            && balance.pressure.value() > 0.0
-        {
-            let growth = ((theta[1] - 1.0) * (balance.pressure / REFERENCE).ln()).exp();
-            *force = *force - theta[0] * balance.pressure * growth * moment.direction;
+        if let Place::Load(balance, force) = place {
+            *force = *force - theta[0] * balance.pressure * moment.direction;
         }
     }
 }
@@ -86,10 +65,7 @@ mod tests {
     fn branches_are_apart_in_proportion_to_the_pressure() {
         // 1.5 N/bar at 2 bar.
         let [up, down, rest] =
-            [1.0, -1.0, 0.0].map(|s| load(&PressureFriction, &[1.5e-5, 1.0], |moment| moment.direction = s));
+            [1.0, -1.0, 0.0].map(|s| load(&PressureFriction, &[1.5e-5], |moment| moment.direction = s));
         assert!((up + 3.0).abs() < 1e-12 && (down - 3.0).abs() < 1e-12 && rest == 0.0);
-        // At 2 bar with the power 1/2: more by sqrt(3/2).
-        let soft = load(&PressureFriction, &[1.5e-5, 0.5], |moment| moment.direction = 1.0);
-        assert!((soft / up - 1.5_f64.sqrt()).abs() < 1e-12);
     }
 }

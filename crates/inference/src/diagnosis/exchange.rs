@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::diagnosis::bending::may_bend;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::{Hypothesis, effect_log_prior, singles};
@@ -99,7 +100,7 @@ impl Given<'_> {
             }
         }
         self.walk(base, &mut sets);
-        let better = self.better(&sets);
+        let better = self.better(base, &sets);
         let stages = sets.stages;
         search.beside.extend(stages.into_values());
         if let Some((better, explains)) = better {
@@ -181,21 +182,45 @@ impl Given<'_> {
 
     /// The model of the best set that is better than the last of the search and explains the data no less, and whether its formulas explain them.
     ///
-    /// A further effect that hardly leads is no claim later on ([`DecisionRule::seen`](crate::diagnosis::decision_rule::DecisionRule::seen)).
-    fn better(&self, sets: &Sets<'_>) -> Option<(Stage, bool)> {
+    /// What has more effects must be clearly better, and explain by formulas what the last explained by bending them.
+    fn better(&self, base: &Model, sets: &Sets<'_>) -> Option<(Stage, bool)> {
         let last = sets.last();
         let own = names(last.added.iter());
         let value = sets.known.get(&own)?.value;
+        let least = |key: &Vec<String>| match key.len().checked_sub(own.len()) {
+            None => value,
+            Some(further) => value + RULE.swap + RULE.no_bending * further as f64,
+        };
         let is_better = |(key, set): &(&Vec<String>, &Set)| {
-            !key.is_empty() && **key != own && key.len() <= sets.most && set.value > value + RULE.swap
+            !key.is_empty() && **key != own && key.len() <= sets.most && set.value > least(key)
         };
         let mut better: Vec<&Set> = sets.known.iter().filter(is_better).map(|(_, set)| set).collect();
         better.sort_by(|a, b| b.value.total_cmp(&a.value));
+        let bent = last.confirmed.form.log_evidence;
         better.into_iter().find_map(|set| {
+            let is_less_bent = bent <= RULE.bent || set.confirmed.form.log_evidence < RULE.less_bent * bent;
+            let is_further = set.effects.len() > own.len();
+            if is_further && !(is_less_bent && self.each_counts(base, sets, set)) {
+                return None;
+            }
             let stage = self.stage(set.effects.clone(), set.confirmed.clone()).ok()?;
             let explains = (stage.adequate || !last.adequate && stage.something_else() <= 0.0)
                 && stage.by_formulas(sets.base()) >= RULE.by_formulas[1];
-            (stage.adequate || !last.adequate).then_some((stage, explains))
+            let is_no_less = stage.adequate || !last.adequate;
+            (explains || is_no_less && !is_further).then_some((stage, explains))
+        })
+    }
+
+    /// Whether each effect explains more than the last digits of the formulas beside it, which may be a little wrong.
+    fn each_counts(&self, base: &Model, sets: &Sets<'_>, set: &Set) -> bool {
+        with_one_less(&set.effects).all(|effects| {
+            let known = sets.known.get(&names(effects.iter())).map(|others| others.confirmed.clone());
+            let others = known.or_else(|| self.refitted(base, &set.confirmed, &effects).ok());
+            // Without a model that lacks it the effect is needed.
+            let Some(others) = others else { return true };
+            let explained = sets.base().confirmed.bent_cost() - others.bent_cost();
+            let fall = others.bent_cost() - set.confirmed.bent_cost();
+            !may_bend(&others.prepared) || fall >= RULE.digits * explained
         })
     }
 }
