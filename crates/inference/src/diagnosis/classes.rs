@@ -168,6 +168,37 @@ impl Given<'_> {
         Some((Class { effect, log_evidence, detectability, scatter, is_further, rivals }, made))
     }
 
+    /// A stage without an effect that is no longer worth its price beside those which came after it (backward elimination).
+    pub(crate) fn dropped(&self, base: &Model, stage: &Stage, place: usize, class: &Class) -> Option<Stage> {
+        if stage.added.len() == 1 || class.log_evidence > RULE.worth[1] {
+            return None;
+        }
+        let others = stage.without(place);
+        let fitted = self.refitted(base, &stage.confirmed, &others).ok()?;
+        let other = self.stage(others, fitted).ok()?;
+        (other.adequate || !stage.adequate).then_some(other)
+    }
+
+    /// A stage with the best rival instead of an effect, where that is clearly better and explains the data no less.
+    pub(crate) fn swapped(&self, stage: &Stage, place: usize, class: &Class) -> Option<Stage> {
+        let converged = |rival: &&Rival| rival.fit.as_ref().is_some_and(|fit| fit.converged);
+        let better = |a: &&Rival, b: &&Rival| a.log_evidence.total_cmp(&b.log_evidence);
+        let rival = class.rivals.iter().filter(converged).max_by(better)?;
+        if rival.log_evidence <= class.log_evidence + RULE.swap {
+            return None;
+        }
+        let mut added = stage.added.clone();
+        added.remove(place);
+        added.push(Arc::clone(&rival.effect));
+        let fit = rival.fit.as_ref()?;
+        let new = [Arc::clone(&rival.effect)];
+        if fit.is_absurd(&new, self.record) || fit.is_idle(&new) {
+            return None;
+        }
+        let other = self.stage(added, fit.clone()).ok()?;
+        (other.adequate || !stage.adequate).then_some(other)
+    }
+
     /// A model with fewer effects: from where it was `with` all, else from usual numbers; what was best with the effect may not even have an equilibrium
     /// without it.
     pub(crate) fn refitted(
@@ -292,4 +323,66 @@ impl Beside {
 pub(crate) fn separation<'c>(signal: &[f64], candidates: impl Iterator<Item = &'c Candidate>) -> f64 {
     let most = candidates.map(|c| c.explains(signal).gain).fold(0.0, f64::max);
     (dot(signal, signal) - most).max(0.0).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::law::{NoiseLaw, NoiseSource};
+    use crate::noise::whitening::Whitening;
+    use bulge_effects::{Catalogue, Moment};
+    use bulge_model::Record;
+    use bulge_muscles::preset;
+    use bulge_numerics::Random;
+
+    #[test]
+    fn an_effect_that_is_worth_nothing_is_dropped_and_lower_minima_are_taken() {
+        let catalogue = Catalogue::builtin();
+        let base = Model::new(&preset("ppam-2-r16").unwrap());
+        let at = |i: u32| {
+            let (up, place) = (i % 40 < 20, if i % 40 < 20 { i % 40 } else { 39 - i % 40 });
+            let direction = if up { 1.0 } else { -1.0 };
+            Moment {
+                direction,
+                ..Moment::at_rest(2e5 + 1e5 * f64::from(i / 80), 0.05 + 0.01 * f64::from(place))
+            }
+        };
+        let moments: Vec<Moment> = (0..160).map(at).collect();
+        let record = Record::from_moments(moments, vec![0.0; 160], vec![0..80, 80..160]).unwrap();
+        let exact = base.evaluate(&record, &[], &Wanted::default()).unwrap().force;
+        let mut random = Random::new(6, 0);
+        let measured = exact.iter().zip(record.moments());
+        let measured =
+            measured.map(|(f, m)| f - (10.0 - 2e-5 * m.pressure) * m.direction + random.normal()).collect();
+        let record = record.with_force(measured);
+        let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
+        let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
+        let given = Given::plain(&catalogue, &record, &whitening, &law);
+        let [friction, offset] =
+            ["coulomb-friction", "force-offset"].map(|n| Arc::clone(catalogue.find(n).unwrap()));
+        let both = vec![friction, offset];
+        let confirmed = given.confirm(&base, &both, None, &[]).unwrap();
+        let stage = given.stage(both, confirmed).unwrap();
+        let dropped = |place: usize| {
+            let (class, _) = given.class(&base, &stage, place, None).unwrap();
+            given.dropped(&base, &stage, place, &class).map(|stage| stage.added[0].card().name.to_owned())
+        };
+        assert_eq!([dropped(0), dropped(1)], [None, Some("coulomb-friction".to_owned())]);
+        // The same model at another minimum of 40 more: what a fit with something idle found is taken.
+        let one = vec![Arc::clone(&stage.added[0])];
+        let right = given.confirm(&base, &one, None, &[]).unwrap();
+        let mut worse = given.stage(one, right.clone()).unwrap();
+        let other = Arc::clone(catalogue.find("pressure-friction").unwrap());
+        let idle =
+            given.confirm(&base, &[Arc::clone(&worse.added[0]), Arc::clone(&other)], None, &[]).unwrap();
+        assert!(given.lower(&base, &worse).is_none());
+        worse.confirmed.minimum.cost += 40.0;
+        let place = worse.linear.place(other.card().name);
+        let hypothesis =
+            Hypothesis { effects: vec![place.unwrap()], log_evidence: 0.0, gain: 0.0, starts: Vec::new() };
+        assert!(idle.is_idle(&[other]), "friction that falls with the pressure leaves it off");
+        worse.tried = vec![Tried { hypothesis, confirmed: Some(idle), log_evidence: 0.0 }];
+        let found = given.lower(&base, &worse).unwrap();
+        assert!((found.confirmed.cost() - right.cost()).abs() < 1e-6);
+    }
 }

@@ -32,6 +32,9 @@ use crate::progress::Progress;
 /// Times that rows without a state are left out.
 const MOST_LEFT_OUT: usize = 8;
 
+/// Times that an accepted effect gives way to a better one, or to none.
+const MOST_CHANGES: usize = 3;
+
 /// What is diagnosed, besides muscle and data.
 #[derive(Debug, Clone)]
 pub struct DiagnoseOptions {
@@ -210,10 +213,10 @@ fn on_rows(
     let quieter = quieter.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))?;
     if let Some((law, whitening)) = &quieter {
         let quiet = Given { whitening, law, fits: None, ..given };
-        return concluded(analysis, (&quiet, ground), &model, &search, options);
+        return concluded(analysis, (&quiet, ground), &model, search, options);
     }
     given.exchange(&model, &mut search);
-    concluded(analysis, (&given, ground), &model, &search, options)
+    concluded(analysis, (&given, ground), &model, search, options)
 }
 
 /// Classes, confidence and the ladder of what a search has found.
@@ -221,12 +224,22 @@ fn concluded(
     analysis: &Analysis<'_>,
     (given, ground): (&Given<'_>, &Ground),
     model: &Model,
-    search: &Search,
+    mut search: Search,
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis, Stop> {
     let progress = &options.progress;
     progress.at(0.6, "rivals");
-    let judged = classes(given, model, search);
+    let mut judged = classes(given, model, &search);
+    for _ in 0..MOST_CHANGES {
+        let last = &search.stages[search.stages.len() - 1];
+        let better = judged.iter().enumerate().find_map(|(place, j)| {
+            let dropped = given.dropped(model, last, place, &j.class);
+            dropped.or_else(|| given.swapped(last, place, &j.class))
+        });
+        let Some(better) = better else { break };
+        search.replace_last(better);
+        judged = classes(given, model, &search);
+    }
     progress.at(0.75, "the next experiment");
     let next = next_experiment(given, &judged, &Limits::of(&ground.record, options.limits));
     progress.at(0.85, "the ladder");
@@ -235,7 +248,7 @@ fn concluded(
     let sd_n = row_sd(given.law, ground);
     let found = Findings {
         given,
-        search,
+        search: &search,
         classes: &classes,
         sd_n,
         effective_rows: effective_rows(given, ground, sd_n),
