@@ -4,11 +4,10 @@
 //! d^2 after R repeats = d^2 of the data at hand + R d^2 of the protocol,    d the sigmas between the named effect and its nearest rival after refitting
 //! ```
 
-use bulge_effects::{Effect, Parity};
+use bulge_effects::Parity;
 use bulge_model::{Record, Wanted};
 use bulge_muscles::units::significant;
 use serde::Serialize;
-use std::sync::Arc;
 
 use crate::comparison::levels::Levels;
 use crate::diagnosis::classes::Class;
@@ -259,74 +258,111 @@ pub(crate) fn next_experiment(
     let (with, without) = open.models.as_ref()?;
     let named = open.class.effect.card().name.to_owned();
     let own_family = open.class.effect.card().family;
-    let rivals: Vec<(&Arc<dyn Effect>, f64)> = open
+    let rivals: Vec<(String, f64)> = open
         .class
         .rivals
         .iter()
         .filter(|rival| rival.in_class && rival.effect.card().family != own_family)
-        .map(|rival| (&rival.effect, rival.separation))
+        .map(|rival| (rival.effect.card().name.to_owned(), rival.separation))
         .collect();
-    let (nearest, at_hand) = rivals.iter().min_by(|a, b| a.1.total_cmp(&b.1)).copied()?;
-    let separates = vec![named.clone(), nearest.card().name.to_owned()];
-    let names: Vec<String> = rivals.iter().map(|(effect, _)| effect.card().name.to_owned()).collect();
-    let mut best: Option<(f64, &'static str)> = None;
+    let names: Vec<String> = rivals.iter().map(|(name, _)| name.clone()).collect();
     // A law of friction says nothing certain of what it does while all stands still: holds decide nothing about it.
     let is_friction = open.class.effect.card().signature.parity == Parity::Odd;
-    for proposal in proposals(limits).into_iter().filter(|proposal| !(is_friction && proposal.holds())) {
-        let Some(sigma) = least_separation(given, with, without, (&named, &names), &proposal.protocol) else {
-            continue;
-        };
-        if best.is_none_or(|(other, _)| sigma > other) {
-            best = Some((sigma, proposal.says));
-        }
-    }
-    let needed =
-        |sigma: f64| ((RULE.separation.powi(2) - at_hand.powi(2)).max(0.0) / (sigma * sigma)).ceil().max(1.0);
-    match best.filter(|(sigma, _)| *sigma > 0.0 && needed(*sigma) <= MOST_REPEATS as f64) {
-        Some((sigma, says)) => {
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 20")]
-            let repeats = needed(sigma) as usize;
-            let after = (at_hand.powi(2) + repeats as f64 * sigma * sigma).sqrt();
-            let times = if repeats == 1 { "once".to_owned() } else { format!("{repeats} times") };
-            Some(NextExperiment {
-                says: format!(
-                    "measure {says}, {} and between {} and {} % of contraction, {times}: that tells `{named}` from {} ({} sigma)",
-                    limits.pressures_in_words(),
-                    significant(100.0 * limits.contraction[0], 2),
-                    significant(100.0 * limits.contraction[1], 3),
-                    listed(&names),
-                    significant(after, 2)
-                ),
-                separates,
-                sigma: after,
-                repeats,
-            })
-        }
-        None => Some(NextExperiment {
+    let tests = proposals(limits).into_iter().filter(|proposal| !(is_friction && proposal.holds()));
+    let tried = tests.filter_map(|test| {
+        let sigmas = separations(given, with, without, (&named, &names), &test.protocol)?;
+        Told::by(test.says, &rivals, &sigmas)
+    });
+    // Of tests that tell the same the first stands.
+    let best = tried.reduce(|best, other| if other.is_better(&best) { other } else { best });
+    let separate = open.class.effect.card().separate;
+    let nearest = |rivals: &[&(String, f64)]| {
+        rivals.iter().min_by(|a, b| a.1.total_cmp(&b.1)).map(|rival| (rival.0.clone(), rival.1))
+    };
+    let Some(Told { says, rivals: told, least: sigma }) = best else {
+        let (nearest, at_hand) = nearest(&rivals.iter().collect::<Vec<_>>())?;
+        return Some(NextExperiment {
             says: format!(
-                "no test of force within these limits tells `{named}` from `{}`. What does: {}",
-                nearest.card().name,
-                open.class.effect.card().separate
+                "no test of force within these limits tells `{named}` from `{nearest}`. What does: {separate}"
             ),
-            separates,
+            separates: vec![named, nearest],
             sigma: at_hand,
             repeats: 0,
-        }),
+        });
+    };
+    let (nearest, at_hand) = nearest(&told)?;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 20")]
+    let repeats = repeats(at_hand, sigma) as usize;
+    let after = (at_hand.powi(2) + repeats as f64 * sigma * sigma).sqrt();
+    let times = if repeats == 1 { "once".to_owned() } else { format!("{repeats} times") };
+    let told: Vec<String> = told.iter().map(|rival| rival.0.clone()).collect();
+    let left: Vec<String> = names.into_iter().filter(|name| !told.contains(name)).collect();
+    let but = if left.is_empty() {
+        String::new()
+    } else {
+        format!(
+            ", but not from {}, which no test of force within these limits does. What does: {separate}",
+            listed(&left)
+        )
+    };
+    Some(NextExperiment {
+        says: format!(
+            "measure {says}, {} and between {} and {} % of contraction, {times}: that tells `{named}` from {} ({} sigma){but}",
+            limits.pressures_in_words(),
+            significant(100.0 * limits.contraction[0], 2),
+            significant(100.0 * limits.contraction[1], 3),
+            listed(&told),
+            significant(after, 2)
+        ),
+        separates: vec![named, nearest],
+        sigma: after,
+        repeats,
+    })
+}
+
+/// What a proposed test tells from the named effect.
+struct Told<'a> {
+    says: &'static str,
+    /// Rivals, and how far they are in the data at hand.
+    rivals: Vec<&'a (String, f64)>,
+    /// Sigmas between the named effect and the nearest of them in the test, made once.
+    least: f64,
+}
+
+impl<'a> Told<'a> {
+    /// What a test tells that may be repeated, by the sigmas between the named effect and each rival; none if that is nothing.
+    fn by(says: &'static str, rivals: &'a [(String, f64)], sigmas: &[f64]) -> Option<Self> {
+        let is_told = |((_, at_hand), sigma): &(&(String, f64), &f64)| {
+            **sigma > 0.0 && repeats(*at_hand, **sigma) <= MOST_REPEATS as f64
+        };
+        let (rivals, sigmas): (Vec<_>, Vec<_>) = rivals.iter().zip(sigmas).filter(is_told).unzip();
+        let least = sigmas.into_iter().copied().fold(f64::INFINITY, f64::min);
+        least.is_finite().then_some(Self { says, rivals, least })
     }
+
+    /// Whether it tells more rivals, or as many and further.
+    fn is_better(&self, other: &Self) -> bool {
+        self.rivals.len().cmp(&other.rivals.len()).then(self.least.total_cmp(&other.least)).is_gt()
+    }
+}
+
+/// How often a test must be made that tells rivals by `sigma`, which `at_hand` are in the data at hand.
+fn repeats(at_hand: f64, sigma: f64) -> f64 {
+    ((RULE.separation.powi(2) - at_hand.powi(2)).max(0.0) / (sigma * sigma)).ceil().max(1.0)
 }
 
 fn listed(names: &[String]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// Sigmas between an effect and the nearest of its rivals in a planned test; none if the test can't be made with this muscle.
-fn least_separation(
+/// Sigmas between an effect and each of its rivals in a planned test; none if the test can't be made with this muscle.
+fn separations(
     given: &Given<'_>,
     with: &Confirmed,
     without: &Confirmed,
     (named, rivals): (&String, &[String]),
     protocol: &Protocol,
-) -> Option<f64> {
+) -> Option<Vec<f64>> {
     let record = protocol.moments_within(&with.prepared.model, &with.theta).ok()?;
     let model = &without.prepared.model;
     let readings = Wanted { parameters: Vec::new(), readings: true };
@@ -359,11 +395,28 @@ fn least_separation(
     let linear = planned.linearised(&without.prepared, &without.theta).ok()?;
     let signal = planned.signal(with, &linear).ok()?;
     let beside = planned.beside(&linear, &signal, &[]);
-    let is_rival =
-        |effect: &usize| linear.sensitivities.effects[*effect].effect.card().name != named.as_str();
-    let least = (0..linear.sensitivities.effects.len())
-        .filter(is_rival)
-        .map(|effect| beside.separation(&linear, effect))
-        .fold(f64::INFINITY, f64::min);
-    least.is_finite().then_some(least)
+    // What can't act in the test is not told by it.
+    let of = |name: &String| linear.place(name).map_or(0.0, |place| beside.separation(&linear, place));
+    Some(rivals.iter().map(of).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rival_that_no_test_tells_does_not_take_the_others_away() {
+        let rivals = [("near".to_owned(), 0.5), ("same".to_owned(), 0.0), ("far".to_owned(), 2.5)];
+        let by = |says, sigmas: [f64; 3]| Told::by(says, &rivals, &sigmas);
+        // sqrt(20) times 0.8 is beyond 3.29, 0.7 is not.
+        let two = by("two", [2.0, 0.0, 0.8]).unwrap();
+        assert_eq!(two.rivals.iter().map(|rival| rival.0.as_str()).collect::<Vec<_>>(), ["near", "far"]);
+        assert!((two.least - 0.8).abs() < 1e-12);
+        assert!(by("none", [0.7, 0.7, 0.2]).is_none());
+        // More rivals go before a larger distance, and that before the order.
+        let one = by("one", [9.0, 0.7, 0.1]).unwrap();
+        assert!(two.is_better(&one) && !one.is_better(&two));
+        let further = by("further", [2.0, 0.0, 0.9]).unwrap();
+        assert!(further.is_better(&two) && !two.is_better(&by("again", [3.0, 0.0, 0.8]).unwrap()));
+    }
 }
