@@ -3,7 +3,7 @@
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 use crate::effect::{Effect, Jet, Moment, Place, Setting};
 use crate::mechanism::{Form, Mechanism};
-use crate::unit::NUMBER;
+use crate::rig::frame_compliance::power;
 
 /// `true contraction = measured + N/(k l0) (|N|/1 kN)^(n - 1)`, N = F + p A(r).
 ///
@@ -52,16 +52,7 @@ impl Effect for EndSlip {
             .prior(0.0, 0.1)
             .plausible(0.0, 0.4)
             .reciprocal("stiffness", "N/mm", 1e3),
-            ParameterCard::new(
-                "power",
-                NUMBER,
-                (0.4, 3.0),
-                1.0,
-                "power of the tension with which the ends give",
-            )
-            .plausible(0.5, 2.0)
-            .off_at(1.0)
-            .off_if_absent(),
+            power("power of the tension with which the ends give"),
         ]
     }
 

@@ -55,16 +55,7 @@ impl Effect for FrameCompliance {
             .prior(0.0, 0.5)
             .plausible(0.0, 2.0)
             .reciprocal("stiffness", "N/mm", 1e3),
-            ParameterCard::new(
-                "power",
-                NUMBER,
-                (0.4, 3.0),
-                1.0,
-                "power of the force with which the frame gives",
-            )
-            .plausible(0.5, 2.0)
-            .off_at(1.0)
-            .off_if_absent(),
+            power("power of the force with which the frame gives"),
         ]
     }
 
@@ -73,6 +64,14 @@ impl Effect for FrameCompliance {
             (input.give_force.joint, input.give_force.power) = (theta[0] / setting.length, theta[1]);
         }
     }
+}
+
+/// The power with which a joint gives ([`crate::Give`]): 1 in files from before there was one.
+pub(super) fn power(about: &str) -> ParameterCard<'_> {
+    ParameterCard::new("power", NUMBER, (0.4, 3.0), 1.0, about)
+        .plausible(0.5, 2.0)
+        .off_at(1.0)
+        .off_if_absent()
 }
 
 #[cfg(test)]

@@ -84,7 +84,7 @@ fn is_chance(search: &Search) -> bool {
     let [only] = &search.stages[..] else { return false };
     !only.adequate
         && !only.adequacy.fit_fails
-        && !only.adequacy.recurs()
+        && only.adequacy.unsmooth.is_none()
         && !only.linear.smooth.is_empty()
         && smooth_evidence(&only.linear) <= 0.0
 }

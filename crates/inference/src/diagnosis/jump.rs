@@ -46,9 +46,13 @@ pub(crate) fn jump(record: &Record, whitening: &Whitening, space: &Space, left: 
     let mut sizes: Vec<f64> = tried.iter().map(|(_, z)| z.abs()).collect();
     let level = (median(&mut sizes) / MEDIAN_SIZE).max(1.0);
     let (found, z) = tried.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    let single = erfc(z.abs() / (level * std::f64::consts::SQRT_2));
-    let chance = -(sizes.len() as f64 * (-single).ln_1p()).exp_m1();
-    (chance < RULE.jump).then_some(found)
+    (chance(z / level, sizes.len()) < RULE.jump).then_some(found)
+}
+
+/// How often the largest of many normal numbers is as large as z.
+fn chance(z: f64, places: usize) -> f64 {
+    let single = erfc(z.abs() / std::f64::consts::SQRT_2);
+    -(places as f64 * (-single).ln_1p()).exp_m1()
 }
 
 /// Rows at which a jump could be seen, with the end of their sweep.
@@ -138,6 +142,13 @@ mod tests {
             let jump = found(&record, 9.0, seed).unwrap();
             assert!(jump.row.abs_diff(200) <= 1 && (jump.newtons - 9.0).abs() < 4.0, "{jump:?}");
         }
+    }
+
+    #[test]
+    fn the_largest_of_many_is_large_more_often() {
+        // Two-sided beyond 5: 5.733e-7.
+        assert!((chance(-5.0, 1) / 5.733_031e-7 - 1.0).abs() < 1e-6);
+        assert!((chance(5.0, 100) / 5.732_868e-5 - 1.0).abs() < 1e-5);
     }
 
     #[test]

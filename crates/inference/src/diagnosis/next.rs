@@ -279,7 +279,7 @@ pub(crate) fn next_experiment(
     let nearest = |rivals: &[&(String, f64)]| {
         rivals.iter().min_by(|a, b| a.1.total_cmp(&b.1)).map(|rival| (rival.0.clone(), rival.1))
     };
-    let Some(Told { says, rivals: told, least: sigma }) = best else {
+    let Some(best) = best else {
         let (nearest, at_hand) = nearest(&rivals.iter().collect::<Vec<_>>())?;
         return Some(NextExperiment {
             says: format!(
@@ -290,32 +290,29 @@ pub(crate) fn next_experiment(
             repeats: 0,
         });
     };
-    let (nearest, at_hand) = nearest(&told)?;
+    let (nearest, _) = nearest(&best.rivals)?;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 20")]
-    let repeats = repeats(at_hand, sigma) as usize;
-    let after = (at_hand.powi(2) + repeats as f64 * sigma * sigma).sqrt();
+    let repeats = best.repeats as usize;
     let times = if repeats == 1 { "once".to_owned() } else { format!("{repeats} times") };
-    let told: Vec<String> = told.iter().map(|rival| rival.0.clone()).collect();
+    let told: Vec<String> = best.rivals.iter().map(|rival| rival.0.clone()).collect();
     let left: Vec<String> = names.into_iter().filter(|name| !told.contains(name)).collect();
     let but = if left.is_empty() {
         String::new()
     } else {
-        format!(
-            ", but not from {}, which no test of force within these limits does. What does: {separate}",
-            listed(&left)
-        )
+        format!(", but not from {}. What does: {separate}", listed(&left))
     };
     Some(NextExperiment {
         says: format!(
-            "measure {says}, {} and between {} and {} % of contraction, {times}: that tells `{named}` from {} ({} sigma){but}",
+            "measure {}, {} and between {} and {} % of contraction, {times}: that tells `{named}` from {} ({} sigma){but}",
+            best.says,
             limits.pressures_in_words(),
             significant(100.0 * limits.contraction[0], 2),
             significant(100.0 * limits.contraction[1], 3),
             listed(&told),
-            significant(after, 2)
+            significant(best.after, 2)
         ),
         separates: vec![named, nearest],
-        sigma: after,
+        sigma: best.after,
         repeats,
     })
 }
@@ -325,8 +322,10 @@ struct Told<'a> {
     says: &'static str,
     /// Rivals, and how far they are in the data at hand.
     rivals: Vec<&'a (String, f64)>,
-    /// Sigmas between the named effect and the nearest of them in the test, made once.
-    least: f64,
+    /// Times that the test must be made to tell all of them.
+    repeats: f64,
+    /// Sigmas to the nearest of them after that, the data at hand counted.
+    after: f64,
 }
 
 impl<'a> Told<'a> {
@@ -335,14 +334,19 @@ impl<'a> Told<'a> {
         let is_told = |((_, at_hand), sigma): &(&(String, f64), &f64)| {
             **sigma > 0.0 && repeats(*at_hand, **sigma) <= MOST_REPEATS as f64
         };
-        let (rivals, sigmas): (Vec<_>, Vec<_>) = rivals.iter().zip(sigmas).filter(is_told).unzip();
-        let least = sigmas.into_iter().copied().fold(f64::INFINITY, f64::min);
-        least.is_finite().then_some(Self { says, rivals, least })
+        let told: Vec<(&(String, f64), &f64)> = rivals.iter().zip(sigmas).filter(is_told).collect();
+        let repeats = told.iter().map(|(rival, sigma)| repeats(rival.1, **sigma)).reduce(f64::max)?;
+        let after =
+            |(rival, sigma): &(&(String, f64), &f64)| (rival.1.powi(2) + repeats * sigma.powi(2)).sqrt();
+        let after = told.iter().map(after).fold(f64::INFINITY, f64::min);
+        Some(Self { says, rivals: told.into_iter().map(|(rival, _)| rival).collect(), repeats, after })
     }
 
-    /// Whether it tells more rivals, or as many and further.
+    /// Whether it tells more rivals, or as many in fewer repeats, or as fast and further.
     fn is_better(&self, other: &Self) -> bool {
-        self.rivals.len().cmp(&other.rivals.len()).then(self.least.total_cmp(&other.least)).is_gt()
+        let number = self.rivals.len().cmp(&other.rivals.len());
+        let faster = other.repeats.total_cmp(&self.repeats);
+        number.then(faster).then(self.after.total_cmp(&other.after)).is_gt()
     }
 }
 
@@ -408,12 +412,16 @@ mod tests {
     fn a_rival_that_no_test_tells_does_not_take_the_others_away() {
         let rivals = [("near".to_owned(), 0.5), ("same".to_owned(), 0.0), ("far".to_owned(), 2.5)];
         let by = |says, sigmas: [f64; 3]| Told::by(says, &rivals, &sigmas);
-        // sqrt(20) times 0.8 is beyond 3.29, 0.7 is not.
         let two = by("two", [2.0, 0.0, 0.8]).unwrap();
         assert_eq!(two.rivals.iter().map(|rival| rival.0.as_str()).collect::<Vec<_>>(), ["near", "far"]);
-        assert!((two.least - 0.8).abs() < 1e-12);
+        // The far one takes ceil((3.29^2 - 2.5^2)/0.8^2) = 8 times, the near one ceil((3.29^2 - 0.5^2)/2^2) = 3.
+        assert!((two.repeats - 8.0).abs() < 1e-12);
+        assert!((two.after - (2.5_f64.powi(2) + 8.0 * 0.64).sqrt()).abs() < 1e-12);
+        // Twenty times 0.7^2 are less than 3.29^2.
         assert!(by("none", [0.7, 0.7, 0.2]).is_none());
-        // More rivals go before a larger distance, and that before the order.
+        // By a hair: 3.29^2 is 10.8241, so 3.29 tells at once and 3.28 doesn't.
+        assert!((repeats(0.0, 3.29) - 1.0).abs() < 1e-12 && (repeats(0.0, 3.28) - 2.0).abs() < 1e-12);
+        // More rivals go before fewer repeats, and those before a larger distance.
         let one = by("one", [9.0, 0.7, 0.1]).unwrap();
         assert!(two.is_better(&one) && !one.is_better(&two));
         let further = by("further", [2.0, 0.0, 0.9]).unwrap();

@@ -81,14 +81,15 @@ impl Given<'_> {
             let Some((next, stands_out, worth)) = next else {
                 // The screen alone, and no effect that is worth its price: chance.
                 let adequacy = &stage.adequacy;
-                let is_chance = !adequacy.smooth_fails() && !adequacy.fit_fails && !adequacy.recurs();
+                let is_chance =
+                    !adequacy.smooth_fails() && !adequacy.fit_fails && adequacy.unsmooth.is_none();
                 if let Some(stage) = stages.last_mut() {
                     stage.adequate |= is_chance;
                 }
                 break;
             };
-            // Where all that is left recurs or oscillates, an effect that leaves it explains nothing.
-            if stage.adequacy.recurs() && !stage.adequate && next.adequacy.recurs() {
+            // Where all that is left follows no smooth function, an effect that leaves it explains nothing.
+            if stage.adequacy.unsmooth.is_some() && !stage.adequate && next.adequacy.unsmooth.is_some() {
                 break;
             }
             let replaces_bending = || {

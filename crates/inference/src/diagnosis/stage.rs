@@ -22,12 +22,19 @@ pub(crate) struct Adequacy {
     pub(crate) chance: [f64; 2],
     /// Whether the readings scatter about the model by much more than the noise does, in whatever way.
     pub(crate) fit_fails: bool,
-    /// Whether near replicates miss in common what the rest doesn't see. Asked only where the rest holds.
-    pub(crate) repeats: bool,
-    /// Period \[s\] of an oscillation that the rest doesn't see. Asked only where the rest holds.
-    pub(crate) oscillates: Option<f64>,
-    /// A jump within a sweep that the rest doesn't see. Asked only where the rest holds.
-    pub(crate) jumps: Option<Jump>,
+    /// What is left that no smooth function follows. Looked for only where the rest holds.
+    pub(crate) unsmooth: Option<Unsmooth>,
+}
+
+/// What no smooth function follows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Unsmooth {
+    /// A line in the spectrum, by its period \[s\].
+    Oscillation(f64),
+    /// A jump within a sweep.
+    Jump(Jump),
+    /// What near replicates miss in common.
+    Recurs,
 }
 
 impl Adequacy {
@@ -37,11 +44,6 @@ impl Adequacy {
 
     pub(crate) fn smooth_fails(&self) -> bool {
         self.chance[1] < if self.names { RULE.smooth_beside_names } else { RULE.smooth }
-    }
-
-    /// Whether something is left that no smooth function follows: it recurs in other strokes, oscillates, or jumps.
-    pub(crate) fn recurs(&self) -> bool {
-        self.repeats || self.oscillates.is_some() || self.jumps.is_some()
     }
 
     pub(crate) fn holds(&self) -> bool {
@@ -130,8 +132,7 @@ impl Given<'_> {
         let (null, chance) = linear.chance(self);
         let fit_fails = self.scatters(&confirmed);
         let names = !added.is_empty();
-        let mut adequacy =
-            Adequacy { null, names, chance, fit_fails, repeats: false, oscillates: None, jumps: None };
+        let mut adequacy = Adequacy { null, names, chance, fit_fails, unsmooth: None };
         // A test may be surprised by what no smooth misfit explains: that is no structure.
         let is_chance = || {
             !added.is_empty()
@@ -140,13 +141,18 @@ impl Given<'_> {
                 && RULE.something_else + smooth_evidence(&linear) <= 0.0
         };
         let holds = adequacy.holds() || is_chance();
-        adequacy.repeats =
-            holds && linear.lack_of_fit(self.record).is_some_and(|chance| chance < RULE.near_replicates);
-        adequacy.oscillates = if holds { linear.oscillation(self.record) } else { None };
-        adequacy.jumps = if holds { linear.jump(self) } else { None };
-        // What recurs beside effects that explain the rest is no reason to bend or add more of them.
-        let adequate = holds && (adequacy.names || !adequacy.recurs());
+        adequacy.unsmooth = if holds { self.unsmooth(&linear) } else { None };
+        // That beside effects that explain the rest is no reason to bend or add more of them.
+        let adequate = holds && (adequacy.names || adequacy.unsmooth.is_none());
         Ok(Stage { added, confirmed, linear, adequate, adequacy, tried: Vec::new() })
+    }
+
+    /// What a model leaves that no smooth function follows, the most definite first.
+    fn unsmooth(&self, linear: &LinearisedModel) -> Option<Unsmooth> {
+        let oscillation = || linear.oscillation(self.record).map(Unsmooth::Oscillation);
+        let jump = || linear.jump(self).map(Unsmooth::Jump);
+        let chance = || linear.lack_of_fit(self.record).filter(|chance| *chance < RULE.near_replicates);
+        oscillation().or_else(jump).or_else(|| chance().map(|_| Unsmooth::Recurs))
     }
 
     /// Whether readings scatter about a model by much more than their noise.

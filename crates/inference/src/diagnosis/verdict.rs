@@ -15,7 +15,7 @@ use crate::diagnosis::document::Verdict;
 use crate::diagnosis::jump::Jump;
 use crate::diagnosis::misfit::misfit;
 use crate::diagnosis::search::MOST_EFFECTS;
-use crate::diagnosis::stage::Stage;
+use crate::diagnosis::stage::{Stage, Unsmooth};
 use crate::diagnosis::write::Findings;
 use crate::noise::law::NoiseSource;
 
@@ -192,12 +192,8 @@ impl Findings<'_> {
             );
             return Said { verdict: Verdict::Missing, says, claimed };
         }
-        let structure = if let Some(period) = last.adequacy.oscillates {
-            format!("an oscillation with a period of {} s that", significant(period, 3))
-        } else if let Some(jump) = last.adequacy.jumps {
-            format!("{} that", self.jump(jump))
-        } else if last.adequacy.repeats {
-            "a misfit that recurs in other strokes, which no smooth function follows and".to_owned()
+        let structure = if let Some(left) = self.unsmooth() {
+            format!("{left} that")
         } else if misfit(&last.linear, self.given.seed).1[1] <= 0.0 {
             "a misfit that no smooth function follows and".to_owned()
         } else {
@@ -230,6 +226,17 @@ impl Findings<'_> {
         self.stated_n().is_some_and(|stated| self.slow_n() > RULE.slow * stated)
     }
 
+    /// What the last model leaves that no smooth function follows.
+    fn unsmooth(&self) -> Option<String> {
+        Some(match self.last().adequacy.unsmooth? {
+            Unsmooth::Oscillation(period) => {
+                format!("an oscillation with a period of {} s", significant(period, 3))
+            }
+            Unsmooth::Jump(jump) => self.jump(jump),
+            Unsmooth::Recurs => "a rough misfit common to several strokes".to_owned(),
+        })
+    }
+
     /// A jump, and where it is.
     fn jump(&self, jump: Jump) -> String {
         let record = self.given.record;
@@ -252,7 +259,6 @@ impl Findings<'_> {
 
     /// What is said where these effects explain the data.
     fn explained_by(&self, all: Vec<String>) -> Said {
-        let last = self.last();
         if let [only] = &all[..]
             && self.mechanism(only) < RULE.nameless
         {
@@ -265,15 +271,7 @@ impl Findings<'_> {
         }
         let (claimed, doubtful) = self.apart(all);
         let with = if claimed.len() + doubtful.len() == 1 { "it" } else { "them" };
-        let but = if let Some(period) = last.adequacy.oscillates {
-            format!(", but for an oscillation with a period of {} s", significant(period, 3))
-        } else if let Some(jump) = last.adequacy.jumps {
-            format!(", but for {}", self.jump(jump))
-        } else if last.adequacy.repeats {
-            ", but for what recurs in other strokes and follows no smooth function".to_owned()
-        } else {
-            String::new()
-        };
+        let but = self.unsmooth().map_or_else(String::new, |left| format!(", but for {left}"));
         let and = if doubtful.is_empty() {
             String::new()
         } else {

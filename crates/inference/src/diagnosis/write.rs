@@ -70,7 +70,7 @@ pub(crate) fn document(
     let named = verdict.shows_effects();
     let classes = if named { classes } else { &[] };
     let last = found.shown_stage();
-    let adequate = last.adequate && !last.adequacy.recurs() || verdict == Verdict::Adequate;
+    let adequate = last.adequate && last.adequacy.unsmooth.is_none() || verdict == Verdict::Adequate;
     let (misfit_n, misfit_interval_n) = misfit(&last.linear, given.seed);
     let left = located(&last.linear);
     let added = classes.iter().map(|(class, sure)| found.missing(class, *sure));
