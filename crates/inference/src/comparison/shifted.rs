@@ -50,6 +50,8 @@ const INSTEAD: f64 = 0.85;
 const BESIDES: f64 = 0.05;
 /// and that a change along the sweep may reach.
 const ALONG: f64 = 0.1;
+/// Places along a sweep from which on its own change may begin: a jump within it is no shift of all of it.
+const PARTS: usize = 16;
 /// Gain in variances of a reading that is nothing.
 const CHANCE: f64 = 30.0;
 
@@ -209,7 +211,7 @@ fn surface(record: &Record, rows: &[usize], blocks: &[(usize, Range<usize>)]) ->
     Some(Basis::of(&design, rows.len()))
 }
 
-/// What a sweep's own change along it would look like: with the contraction or the pressure, with the direction, and with both.
+/// What a sweep's own change along it would look like: with the contraction or the pressure, with the direction, with both, and from a row on.
 fn along(record: &Record, rows: &[usize], block: &Range<usize>) -> Vec<Vec<f64>> {
     let moments = record.moments();
     let own = |of: &dyn Fn(&Moment) -> f64| {
@@ -221,12 +223,18 @@ fn along(record: &Record, rows: &[usize], block: &Range<usize>) -> Vec<Vec<f64>>
     };
     let of = |axis: fn(&Moment) -> f64| scale(rows[block.clone()].iter().map(|row| axis(&moments[*row])));
     let ([e, half_e], [p, half_p]) = (of(|m| m.contraction), of(|m| m.pressure));
-    vec![
+    let mut columns = vec![
         own(&|m| (m.contraction - e) / half_e),
         own(&|m| (m.pressure - p) / half_p),
         own(&Moment::branch),
         own(&|m| m.branch() * (m.contraction - e) / half_e),
-    ]
+    ];
+    columns.extend((1..PARTS).map(|part| {
+        let mut column = vec![0.0; rows.len()];
+        column[block.start + part * block.len() / PARTS..block.end].fill(1.0);
+        column
+    }));
+    columns
 }
 
 #[cfg(test)]
@@ -350,6 +358,12 @@ mod tests {
                 residuals[row] += own(&record.moments()[row]);
             }
             assert_eq!(shifted(&record, &used, &residuals, 1.0), None, "{name}");
+        }
+        // A jump within a sweep leaves its beginning where it was.
+        for jump in [8, 15, 30, 45, 54] {
+            let mut residuals = misfit(&record, 3);
+            residuals[120 + jump..180].iter_mut().for_each(|value| *value += 20.0);
+            assert_eq!(shifted(&record, &used, &residuals, 1.0), None, "{jump}");
         }
         // Of three sweeps nobody knows which is off; two that are off are none of a kind; and what bends with the pressure is physics.
         let bent = |m: &Moment| 6.0 * (m.pressure / 1e5 - 3.5).powi(2);
