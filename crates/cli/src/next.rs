@@ -11,11 +11,12 @@ use std::path::PathBuf;
 
 use crate::arguments;
 use crate::data::{DataArguments, told};
-use crate::diagnose::paragraph::{paragraph, quoted};
+use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::progress::Bar;
 use crate::diagnose::text::untested;
 use crate::diagnose::untested::reasons;
 use crate::failure::Failure;
+use bulge_report::shell_word;
 
 const PRESSURE: &str = "--pressure";
 const CONTRACTION: &str = "--contraction";
@@ -132,21 +133,21 @@ impl NextCommand {
     }
 
     fn files(&self) -> String {
-        self.data.names().iter().map(|name| quoted(name)).collect::<Vec<_>>().join(" ")
+        self.data.names().iter().map(|name| shell_word(name)).collect::<Vec<_>>().join(" ")
     }
 
     /// The options that the next call takes over.
     fn rest(&self) -> String {
-        let mut rest = format!("--muscle {}", quoted(&self.muscle));
+        let mut rest = format!("--muscle {}", shell_word(&self.muscle));
         if let Some(columns) = &self.data.columns {
-            let _ = write!(rest, " --columns {}", quoted(columns));
+            let _ = write!(rest, " --columns {}", shell_word(columns));
         }
         if let Some(file) = &self.effects {
-            let _ = write!(rest, " --effects {}", quoted(&file.display().to_string()));
+            let _ = write!(rest, " --effects {}", shell_word(&file.display().to_string()));
         }
         if !self.with.is_empty() {
             let with: Vec<&str> = self.with.iter().map(|name| name.trim()).collect();
-            let _ = write!(rest, " --with {}", quoted(&with.join(",")));
+            let _ = write!(rest, " --with {}", shell_word(&with.join(",")));
         }
         rest
     }

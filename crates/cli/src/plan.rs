@@ -7,10 +7,11 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use crate::arguments;
-use crate::diagnose::paragraph::{paragraph, quoted};
+use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::untested::reasons;
 use crate::failure::Failure;
 use crate::text::{significant, table};
+use bulge_report::shell_word;
 
 /// Sigmas at which an effect is seen, and from which two are told apart.
 const SEEN: f64 = 3.3;
@@ -64,16 +65,15 @@ impl PlanCommand {
         for warning in plan.warnings.iter().take(MOST_WARNINGS) {
             paragraph(&mut out, "  ! ", warning);
         }
-        let own = self
-            .effects
-            .as_ref()
-            .map_or_else(String::new, |path| format!(" --effects {}", quoted(&path.display().to_string())));
+        let own = self.effects.as_ref().map_or_else(String::new, |path| {
+            format!(" --effects {}", shell_word(&path.display().to_string()))
+        });
         let hidden = plan.effects.first().map_or("coulomb-friction", |effect| effect.effect.as_str());
         let _ = writeln!(
             out,
             "\n  to try it, hide an effect and look for it:\n    bulge simulate {} --protocol {}{own} --with {hidden} --out trial",
-            quoted(&self.muscle),
-            quoted(&self.protocol.display().to_string())
+            shell_word(&self.muscle),
+            shell_word(&self.protocol.display().to_string())
         );
         out
     }

@@ -47,7 +47,7 @@ impl Choice {
 }
 
 /// Decides, or says all that keeps it from deciding.
-pub(crate) fn assign(header: &Header, map: &ColumnMap) -> Result<Assignment, Vec<MeasurementError>> {
+pub(crate) fn assign(header: &Header, map: &ColumnMap) -> Result<Assignment, MeasurementError> {
     let mut complaints = Vec::new();
     let (mut chosen, ignored) = stated(header, map, &mut complaints);
     let free = |place: &usize, chosen: &[Choice]| {
@@ -90,11 +90,12 @@ pub(crate) fn assign(header: &Header, map: &ColumnMap) -> Result<Assignment, Vec
             Err(complaint) => complaints.push(complaint),
         }
     }
-    if !complaints.is_empty() {
-        return Err(complaints);
-    }
     assignment.uses = uses(header, &chosen);
-    Ok(assignment)
+    if complaints.is_empty() {
+        return Ok(assignment);
+    }
+    let complaint = Box::new(MeasurementError::of(complaints));
+    Err(MeasurementError::NotAssigned { complaint, columns: assignment.uses })
 }
 
 /// The columns that the user names, and those that he wants ignored.

@@ -1,6 +1,7 @@
 //! Why a file or a table is no set of measurements: one sentence each, with the place and the cure.
 
 use crate::cell_error::CellError;
+use crate::reading::ColumnUse;
 use bulge_muscles::units::UnitError;
 use thiserror::Error;
 
@@ -279,6 +280,22 @@ pub enum MeasurementError {
         /// How many are not listed.
         more: usize,
     },
+    /// A list of lines that names none.
+    #[error("lines `{range}`: {why}; write such as `12, 33-40`")]
+    Lines {
+        /// The part of the list.
+        range: String,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// It isn't clear which column is which.
+    #[error("{complaint}")]
+    NotAssigned {
+        /// What is in the way.
+        complaint: Box<MeasurementError>,
+        /// The columns of the file, and what they would be taken for.
+        columns: Vec<ColumnUse>,
+    },
     /// A row with more or fewer fields than the header.
     #[error("{file}:{line}: the row has {found} field{}, the header has {expected}: {}", if *found == 1 { "" } else { "s" }, ragged_cure(*found, *expected))]
     Ragged {
@@ -412,7 +429,17 @@ impl MeasurementError {
             | Self::TimeShuffled { line, .. }
             | Self::Cell { line, .. } => Some(*line),
             Self::Several { complaints, .. } => complaints.first().and_then(Self::line),
+            Self::NotAssigned { complaint, .. } => complaint.line(),
             _ => None,
+        }
+    }
+
+    /// The columns of files whose columns could not be told: a person who sees them can say which is which.
+    #[must_use]
+    pub fn columns(&self) -> &[ColumnUse] {
+        match self {
+            Self::NotAssigned { columns, .. } => columns,
+            _ => &[],
         }
     }
 
@@ -421,9 +448,16 @@ impl MeasurementError {
 
     /// One error of several complaints, of which there is one at least.
     pub(crate) fn of(mut complaints: Vec<Self>) -> Self {
-        let mut all = Vec::new();
+        let (mut all, mut columns) = (Vec::new(), Vec::new());
         let mut more = 0;
         for complaint in complaints.drain(..) {
+            let complaint = match complaint {
+                Self::NotAssigned { complaint, columns: its } => {
+                    columns.extend(its);
+                    *complaint
+                }
+                other => other,
+            };
             match complaint {
                 Self::Several { complaints, more: others } => {
                     all.extend(complaints);
@@ -432,12 +466,11 @@ impl MeasurementError {
                 other => all.push(other),
             }
         }
-        if all.len() == 1 && more == 0 {
-            return all.remove(0);
-        }
         more += all.len().saturating_sub(Self::MOST_LISTED);
         all.truncate(Self::MOST_LISTED);
-        Self::Several { complaints: all, more }
+        let one =
+            if all.len() == 1 && more == 0 { all.remove(0) } else { Self::Several { complaints: all, more } };
+        if columns.is_empty() { one } else { Self::NotAssigned { complaint: Box::new(one), columns } }
     }
 
     /// Whether it says already what is wrong with the column of a quantity.

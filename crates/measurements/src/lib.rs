@@ -21,6 +21,7 @@ mod history;
 mod isobars;
 mod layout;
 mod line;
+mod line_list;
 mod magnitude;
 mod matlab;
 mod motion;

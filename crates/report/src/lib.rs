@@ -15,10 +15,12 @@ mod error;
 mod interval;
 mod learning;
 mod palette;
+mod shell;
 mod sizing;
 
 pub use characteristics::{Curve, characteristics_svg};
 pub use error::PlotError;
 pub use interval::with_interval;
 pub use learning::{LearningError, Learnt, LearntDocument};
+pub use shell::shell_word;
 pub use sizing::{lines_svg, sizing_svg};

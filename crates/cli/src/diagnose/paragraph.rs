@@ -1,4 +1,4 @@
-//! Running text on a terminal: paragraphs of even width, and words of a command line.
+//! Running text on a terminal: paragraphs of even width.
 
 use std::fmt::Write;
 
@@ -27,20 +27,9 @@ pub(crate) fn paragraph(out: &mut String, indent: &str, words: &str) {
     let _ = writeln!(out, "{line}");
 }
 
-/// A word of a command line, in quotes if a shell would take it for more than one.
-pub(crate) fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./,:=+@\\".contains(c);
-    if !word.is_empty() && word.chars().all(plain) { word.to_owned() } else { format!("\"{word}\"") }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn words_of_a_shell_are_quoted() {
-        assert_eq!(["a.csv", "my file", ""].map(quoted), ["a.csv", "\"my file\"", "\"\""]);
-    }
 
     #[test]
     fn running_text_keeps_its_words_and_its_width() {

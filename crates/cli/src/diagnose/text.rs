@@ -7,9 +7,10 @@ use bulge_report::diagnosis::{
 };
 use std::fmt::Write;
 
-use crate::diagnose::paragraph::{paragraph, quoted};
+use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::untested::reasons;
 use crate::text::{significant, with_interval};
+use bulge_report::shell_word;
 
 /// Lines of a kind that are shown; JSON has all.
 const MOST_NUMBERS: usize = 6;
@@ -299,15 +300,18 @@ fn accept(out: &mut String, diagnosis: &Diagnosis, call: &Call) {
     }
     let missing = diagnosis.missing.iter().map(|missing| missing.fitted.as_str());
     let with: Vec<&str> = call.with.iter().map(String::as_str).chain(missing).collect();
-    let data: Vec<String> = call.data.iter().map(|path| quoted(path)).collect();
-    let own = call.effects.as_ref().map_or_else(String::new, |file| format!(" --effects {}", quoted(file)));
-    let columns =
-        call.columns.as_ref().map_or_else(String::new, |columns| format!(" --columns {}", quoted(columns)));
+    let data: Vec<String> = call.data.iter().map(|path| shell_word(path)).collect();
+    let own =
+        call.effects.as_ref().map_or_else(String::new, |file| format!(" --effects {}", shell_word(file)));
+    let columns = call
+        .columns
+        .as_ref()
+        .map_or_else(String::new, |columns| format!(" --columns {}", shell_word(columns)));
     let rest = format!(
         "{}{columns} --muscle {}{own} --with {}",
         data.join(" "),
-        quoted(&call.muscle),
-        quoted(&with.join(","))
+        shell_word(&call.muscle),
+        shell_word(&with.join(","))
     );
     let _ = writeln!(
         out,

@@ -42,6 +42,8 @@ pub struct Options {
     pub catalogue: Catalogue,
     /// A force law as the base instead of the equilibrium: with these coefficients, fitted if so asked.
     pub law: Option<(&'static Law, Vec<f64>, bool)>,
+    /// Rows that are left out by hand.
+    pub excluded: Vec<usize>,
     /// Whether errors on held-out data are computed.
     pub held_out: bool,
     /// Whether the papers' force laws are fitted to the same data.
@@ -52,7 +54,15 @@ impl Options {
     /// The equilibrium with some effects, held-out errors, no rivals.
     #[must_use]
     pub fn new(catalogue: Catalogue, effects: Vec<Arc<dyn Effect>>) -> Self {
-        Self { effects, known: Vec::new(), catalogue, law: None, held_out: true, rivals: false }
+        Self {
+            effects,
+            known: Vec::new(),
+            catalogue,
+            law: None,
+            excluded: Vec::new(),
+            held_out: true,
+            rivals: false,
+        }
     }
 }
 
@@ -93,6 +103,9 @@ pub(crate) struct Analysis<'a> {
     pub(crate) near: Option<(&'a Model, &'a [f64])>,
 }
 
+/// Why rows are left out that a person took out.
+const BY_HAND: &str = "excluded by hand";
+
 /// Until the noise is known: a hundredth of full scale.
 fn unknown_noise(muscle: &Muscle, full_scale: f64) -> Noise {
     Noise::of(muscle, (0.01 * full_scale).max(f64::MIN_POSITIVE))
@@ -107,7 +120,8 @@ impl<'a> Analysis<'a> {
         let data = of_specimens(data, muscle)?;
         let options = Cow::Borrowed(options);
         let record = Arc::new(Record::new(&data, muscle.length().si()));
-        let used = used(&data);
+        let mut used = used(&data);
+        used.leave_out(&data, options.excluded.iter().copied(), BY_HAND.to_owned());
         if !used.mask.contains(&true) {
             let left_out =
                 if data.is_empty() { "the file has none" } else { "all are slack or without pressure" };

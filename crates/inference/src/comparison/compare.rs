@@ -93,6 +93,13 @@ impl<'a> Comparing<'a> {
         rayon::scope(|_| self.compared(&self.analysis.with_effects(effects)?, true))
     }
 
+    /// Why an effect can't be added to this muscle with these data; none if it can.
+    #[must_use]
+    pub fn unsuitable(&self, effect: &Arc<dyn Effect>) -> Option<String> {
+        let with_it = || self.analysis.with_effects(std::slice::from_ref(effect))?.model(1);
+        with_it().err().map(|error: InferenceError| error.to_string())
+    }
+
     /// With the effects of the options, once.
     fn asked(self) -> Result<Comparison, InferenceError> {
         self.compared(&self.analysis, false)

@@ -124,20 +124,8 @@ pub(crate) fn full_scale(force: &[f64], rows: impl Iterator<Item = usize>) -> f6
 /// Line numbers of rows: `12, 33-40`, with the names of the files where there are several. Long lists end with a count.
 pub(crate) fn lines(data: &Data, rows: &[usize]) -> String {
     const MOST: usize = 12;
-    let mut ranges: Vec<(usize, usize, usize)> = Vec::new();
-    for row in rows {
-        let (file, line) = data.line(*row);
-        match ranges.last_mut() {
-            Some((last_file, _, end)) if *last_file == file && *end + 1 == line => *end = line,
-            _ => ranges.push((file, line, line)),
-        }
-    }
-    let several = data.files().len() > 1;
-    let one = |(file, start, end): &(usize, usize, usize)| {
-        let name = if several { format!("{}:", data.files()[*file].name) } else { String::new() };
-        if start == end { format!("{name}{start}") } else { format!("{name}{start}-{end}") }
-    };
-    let mut text = ranges.iter().take(MOST).map(one).collect::<Vec<_>>().join(", ");
+    let ranges = data.line_ranges(rows);
+    let mut text = ranges.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join(", ");
     if ranges.len() > MOST {
         let _ = write!(text, " and {} more", ranges.len() - MOST);
     }
