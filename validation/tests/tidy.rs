@@ -38,6 +38,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "sweep",
         ],
     ),
+    ("workbench", EVERYTHING),
     ("cli", EVERYTHING),
     ("python", EVERYTHING),
     ("validation", EVERYTHING),

@@ -1,7 +1,7 @@
 //! `bulge compare`: model against measurement, and the error as effects are added.
 
-use bulge_effects::{Effect, known};
-use bulge_inference::{Comparison, Fit, Options, compare};
+use bulge_effects::Effect;
+use bulge_inference::{Comparison, Fit, compare};
 use bulge_report::comparison::{html, plots};
 use clap::Args;
 use std::fmt::Write;
@@ -49,10 +49,9 @@ impl CompareCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
-        let known = known(&muscle, &catalogue)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = self.data.read(&muscle)?;
-        let mut options = Options { known, ..Options::new(catalogue, effects) };
+        let mut options = self.data.options(&data, &muscle, catalogue, effects)?;
         options.rivals = self.rivals;
         if let Some(name) = &self.law {
             options = options

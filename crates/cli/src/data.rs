@@ -1,11 +1,15 @@
 //! Measured rows on the command line: the files, which column is which, and how they were read.
 
+use bulge_effects::{Catalogue, Effect, known};
+use bulge_inference::Options;
 use bulge_measurements::{ColumnMap, Data, Reading};
 use bulge_model::read_options;
 use bulge_muscles::Muscle;
+use bulge_report::Call;
 use clap::Args;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::failure::Failure;
 use crate::text::table;
@@ -25,13 +29,46 @@ pub(crate) struct DataArguments {
     /// table `[data.columns]` of the muscle file says the same
     #[arg(long, value_name = "QUANTITY=COLUMN,...")]
     pub(crate) columns: Option<String>,
+    /// Rows to leave out, by their lines: "12,33-40", with several files "a.csv:12,b.csv:33-40"
+    #[arg(long, value_name = "LINES")]
+    pub(crate) exclude: Option<String>,
 }
 
 impl DataArguments {
+    /// What is compared: these effects beside those that the muscle's file states, without the rows that are left out.
+    pub(crate) fn options(
+        &self,
+        data: &Data,
+        muscle: &Muscle,
+        catalogue: Catalogue,
+        effects: Vec<Arc<dyn Effect>>,
+    ) -> Result<Options, Failure> {
+        let known = known(muscle, &catalogue)?;
+        let excluded = self.exclude.as_deref().map(|lines| data.rows_of_lines(lines)).transpose()?;
+        let excluded = excluded.unwrap_or_default();
+        if !data.is_empty() && excluded.len() == data.len() {
+            let what = "these are all rows: leave some to compare with".to_owned();
+            return Err(Failure::Value { option: "--exclude", what });
+        }
+        Ok(Options { known, excluded, ..Options::new(catalogue, effects) })
+    }
+
     /// Reads the files of a muscle's measurements.
     pub(crate) fn read(&self, muscle: &Muscle) -> Result<Data, Failure> {
         let columns = self.columns.as_deref().map(str::parse::<ColumnMap>).transpose()?;
         Ok(Data::read_with(&self.data, &read_options(muscle, columns.as_ref())?)?)
+    }
+
+    /// The command line as far as the next step takes it over, with further files.
+    pub(crate) fn call(&self, muscle: &str, with: &[String], effects: Option<&Path>, more: &[&str]) -> Call {
+        Call {
+            data: self.names().into_iter().chain(more.iter().map(|name| (*name).to_owned())).collect(),
+            columns: self.columns.clone(),
+            exclude: self.exclude.clone(),
+            muscle: muscle.to_owned(),
+            effects: effects.map(|path| path.display().to_string()),
+            with: with.iter().map(|name| name.trim().to_owned()).collect(),
+        }
     }
 
     /// The names of the files, as they were given.

@@ -29,8 +29,8 @@ use crate::sketch::sketch;
 use crate::text::{significant, table};
 
 /// Measurements of the tour, and the muscle as its data sheet describes it.
-const DATA: (&str, &str) = ("braid-loops.csv", include_str!("../data/braid-loops.csv"));
-const MUSCLE: (&str, &str) = ("braid.toml", include_str!("../data/braid.toml"));
+pub(crate) const DATA: (&str, &str) = ("braid-loops.csv", include_str!("../data/braid-loops.csv"));
+pub(crate) const MUSCLE: (&str, &str) = ("braid.toml", include_str!("../data/braid.toml"));
 /// Effects that the tour adds to it.
 const ADDED: [&str; 3] = ["end-taper", "bladder-elasticity", "coulomb-friction"];
 /// Frames of the bulging in the time series.

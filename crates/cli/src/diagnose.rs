@@ -5,8 +5,7 @@ pub(crate) mod progress;
 pub(crate) mod text;
 pub(crate) mod untested;
 
-use bulge_effects::known;
-use bulge_inference::{DiagnoseOptions, Diagnosis, Options, diagnose};
+use bulge_inference::{DiagnoseOptions, Diagnosis, diagnose};
 use bulge_muscles::{Force, Quantity};
 use bulge_report::diagnosis::{html, plots};
 use clap::Args;
@@ -58,8 +57,7 @@ impl DiagnoseCommand {
         let effects = arguments::effects(&catalogue, &self.with)?;
         let among = arguments::among(&catalogue, &self.among)?;
         let data = self.data.read(&muscle)?;
-        let known = known(&muscle, &catalogue)?;
-        let base = Options { known, ..Options::new(catalogue, effects) };
+        let base = self.data.options(&data, &muscle, catalogue, effects)?;
         let bar = Bar::new(self.json);
         let progress = bar.progress();
         let options =
@@ -76,18 +74,12 @@ impl DiagnoseCommand {
         if self.json {
             Ok(document)
         } else {
-            Ok(told(&found.data.reading) + &text::text(&found, &self.call()) + &wrote)
-        }
-    }
-
-    /// The command line as far as the next step takes it over.
-    fn call(&self) -> text::Call {
-        text::Call {
-            data: self.data.names(),
-            columns: self.data.columns.clone(),
-            muscle: self.muscle.clone(),
-            with: self.with.iter().map(|name| name.trim().to_owned()).collect(),
-            effects: self.effects.as_ref().map(|path| path.display().to_string()),
+            Ok(told(&found.data.reading)
+                + &text::text(
+                    &found,
+                    &self.data.call(&self.muscle, &self.with, self.effects.as_deref(), &[]),
+                )
+                + &wrote)
         }
     }
 }

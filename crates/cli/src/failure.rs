@@ -80,6 +80,8 @@ pub(crate) enum Failure {
     NoneFound { answer: String, why: String },
     #[error("{origin}: {source}{kept}")]
     Membrane { origin: String, source: Box<CaseError>, kept: String },
+    #[error(transparent)]
+    Workbench(#[from] bulge_workbench::WorkbenchError),
     #[error("the result cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
     #[error("{failed} of {all} checks failed:\n{table}")]

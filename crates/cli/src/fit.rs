@@ -1,6 +1,5 @@
 //! `bulge fit`: effects fitted to measurements, and the muscle file that holds them.
 
-use bulge_effects::{Catalogue, Effect, known};
 use bulge_inference::{DrawnForms, Options, drawn_forms, fit_effects};
 use bulge_measurements::Data;
 use bulge_muscles::Muscle;
@@ -8,7 +7,6 @@ use bulge_report::Learnt;
 use clap::Args;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use crate::arguments;
 use crate::compare::parameters;
@@ -48,9 +46,10 @@ impl FitCommand {
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = self.data.read(&muscle)?;
-        let learnt = learn(&data, &muscle, effects.clone(), catalogue.clone())?;
+        let options = self.data.options(&data, &muscle, catalogue, effects)?;
+        let learnt = learn(&data, &muscle, &options)?;
         let drawn = match &self.form_error {
-            Some(path) => Some(drawn(&data, &muscle, effects, catalogue, path)?),
+            Some(path) => Some(drawn(&data, &muscle, &options, path)?),
             None => None,
         };
         if let Some(path) = &self.out {
@@ -101,12 +100,10 @@ impl FitCommand {
 fn drawn(
     data: &Data,
     muscle: &Muscle,
-    effects: Vec<Arc<dyn Effect>>,
-    catalogue: Catalogue,
+    options: &Options,
     path: &Path,
 ) -> Result<(DrawnForms, String), Failure> {
-    let known = known(muscle, &catalogue)?;
-    let drawn = drawn_forms(data, muscle, &Options { known, ..Options::new(catalogue, effects) })?;
+    let drawn = drawn_forms(data, muscle, options)?;
     let mut text = format!(
         "\n  RMS error with the formulas {:.3} N, with the forms that the data want {:.3} N\n",
         drawn.rmse_n, drawn.bent_rmse_n
@@ -126,15 +123,8 @@ fn drawn(
 }
 
 /// Fits effects to data.
-pub(crate) fn learn(
-    data: &Data,
-    muscle: &Muscle,
-    effects: Vec<Arc<dyn Effect>>,
-    catalogue: Catalogue,
-) -> Result<Learnt, Failure> {
-    let known = known(muscle, &catalogue)?;
-    let options = Options { known, ..Options::new(catalogue, effects) };
-    Ok(Learnt::of(fit_effects(data, muscle, &options)?)?)
+pub(crate) fn learn(data: &Data, muscle: &Muscle, options: &Options) -> Result<Learnt, Failure> {
+    Ok(Learnt::of(fit_effects(data, muscle, options)?)?)
 }
 
 /// What was learnt, in lines: the error before and after, the numbers, and what to mind.

@@ -18,6 +18,7 @@ mod joint;
 mod membrane;
 mod muscle;
 mod next;
+mod open;
 mod plan;
 mod sense;
 mod shape;
@@ -62,6 +63,8 @@ enum Command {
     Sweep(sweep::SweepCommand),
     /// Look into a table: values, gradients, certified errors
     Table(table::TableCommand),
+    /// The workbench: a page in the browser that compares, live
+    Open(open::OpenCommand),
     /// Model against measurement: where it fails, and how the error falls as effects are added
     Compare(compare::CompareCommand),
     /// From a load over a stroke to muscles, lengths and pressures
@@ -119,6 +122,7 @@ fn main() -> ExitCode {
         Command::Air(command) => command.run(),
         Command::Sense(command) => command.run(),
         Command::Heat(command) => command.run(),
+        Command::Open(command) => command.run(),
         Command::Compare(command) => command.run(),
         Command::Diagnose(command) => command.run(),
         Command::Fit(command) => command.run(),

@@ -1,6 +1,6 @@
 //! `bulge membrane`: a finite-element membrane case, state after state.
 
-use bulge_inference::Fitting;
+use bulge_inference::{Fitting, Options};
 use bulge_measurements::Data;
 use bulge_membrane::case::{CASE_EXAMPLE, Case, CaseError, CaseRun, Row};
 use bulge_membrane::{Effort, Fields, State};
@@ -129,7 +129,7 @@ impl MembraneCommand {
         let catalogue = arguments::catalogue(None)?;
         let effects = arguments::effects(&catalogue, &["limited-unfolding".to_owned()])?;
         let data = Data::from_csv(&forces, &self.out.join("forces.csv").display().to_string())?;
-        let fitted = fit::learn(&data, muscle, effects, catalogue)?;
+        let fitted = fit::learn(&data, muscle, &Options::new(catalogue, effects))?;
         is_the_cloth(case, &fitted)?;
         files::write(path, fitted.model.as_bytes())?;
         Ok(fitted)

@@ -1,7 +1,6 @@
 //! `bulge next`: the next experiment, which best separates the effects that measurements leave open.
 
-use bulge_effects::known;
-use bulge_inference::{DiagnoseOptions, Diagnosis, NextLimits, Options, Verdict, diagnose};
+use bulge_inference::{DiagnoseOptions, Diagnosis, NextLimits, Verdict, diagnose};
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Pressure, Ratio};
 use bulge_report::diagnosis::{NextStep, headlines, others_in_class};
@@ -16,7 +15,6 @@ use crate::diagnose::progress::Bar;
 use crate::diagnose::text::untested;
 use crate::diagnose::untested::reasons;
 use crate::failure::Failure;
-use bulge_report::shell_word;
 
 const PRESSURE: &str = "--pressure";
 const CONTRACTION: &str = "--contraction";
@@ -58,10 +56,9 @@ impl NextCommand {
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = self.data.read(&muscle)?;
-        let known = known(&muscle, &catalogue)?;
+        let base = self.data.options(&data, &muscle, catalogue.clone(), effects)?;
         let bar = Bar::new(self.json);
         let progress = bar.progress();
-        let base = Options { known, ..Options::new(catalogue.clone(), effects) };
         let options = DiagnoseOptions { seed: self.seed, limits, progress, ..DiagnoseOptions::new(base) };
         let found = diagnose(&data, &muscle, &options)?;
         drop(bar);
@@ -119,9 +116,8 @@ impl NextCommand {
         if step.next.is_some_and(|next| next.repeats > 0) {
             let _ = writeln!(
                 out,
-                "\n  and then, with both:\n    bulge diagnose {} NEW.csv {}",
-                self.files(),
-                self.rest()
+                "\n  and then, with both:\n    bulge diagnose {}",
+                self.data.call(&self.muscle, &self.with, self.effects.as_deref(), &["NEW.csv"]).arguments()
             );
         }
         if step.open.is_none() {
@@ -130,26 +126,6 @@ impl NextCommand {
             }
         }
         out
-    }
-
-    fn files(&self) -> String {
-        self.data.names().iter().map(|name| shell_word(name)).collect::<Vec<_>>().join(" ")
-    }
-
-    /// The options that the next call takes over.
-    fn rest(&self) -> String {
-        let mut rest = format!("--muscle {}", shell_word(&self.muscle));
-        if let Some(columns) = &self.data.columns {
-            let _ = write!(rest, " --columns {}", shell_word(columns));
-        }
-        if let Some(file) = &self.effects {
-            let _ = write!(rest, " --effects {}", shell_word(&file.display().to_string()));
-        }
-        if !self.with.is_empty() {
-            let with: Vec<&str> = self.with.iter().map(|name| name.trim()).collect();
-            let _ = write!(rest, " --with {}", shell_word(&with.join(",")));
-        }
-        rest
     }
 }
 

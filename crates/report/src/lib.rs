@@ -22,5 +22,5 @@ pub use characteristics::{Curve, characteristics_svg};
 pub use error::PlotError;
 pub use interval::with_interval;
 pub use learning::{LearningError, Learnt, LearntDocument};
-pub use shell::shell_word;
+pub use shell::{Call, shell_word};
 pub use sizing::{lines_svg, sizing_svg};

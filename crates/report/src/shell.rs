@@ -7,9 +7,57 @@ pub fn shell_word(word: &str) -> String {
     if !word.is_empty() && word.chars().all(plain) { word.to_owned() } else { format!("\"{word}\"") }
 }
 
+/// What a command line says of an analysis: `compare`, `diagnose` and `fit` take the same words.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Call {
+    /// Data files.
+    pub data: Vec<String>,
+    /// Which column is which.
+    pub columns: Option<String>,
+    /// Lines of the rows that are left out.
+    pub exclude: Option<String>,
+    /// Muscle: a file, or the name of a shipped one.
+    pub muscle: String,
+    /// File of the user's own effects.
+    pub effects: Option<String>,
+    /// Effects, in their order.
+    pub with: Vec<String>,
+}
+
+impl Call {
+    /// What stands behind the name of the command.
+    #[must_use]
+    pub fn arguments(&self) -> String {
+        let mut words: Vec<String> = self.data.iter().map(|file| shell_word(file)).collect();
+        let mut option = |name: &str, value: Option<&str>| {
+            words.extend(value.map(|value| format!("{name} {}", shell_word(value))));
+        };
+        option("--columns", self.columns.as_deref());
+        option("--exclude", self.exclude.as_deref());
+        option("--muscle", Some(&self.muscle));
+        option("--effects", self.effects.as_deref());
+        let with = self.with.join(",");
+        option("--with", Some(with.as_str()).filter(|with| !with.is_empty()));
+        words.join(" ")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_call_says_all_that_was_said() {
+        let mut call =
+            Call { data: vec!["a b.csv".into(), "c.csv".into()], muscle: "m.toml".into(), ..Call::default() };
+        assert_eq!(call.arguments(), "\"a b.csv\" c.csv --muscle m.toml");
+        call.columns = Some("force=F [N]".into());
+        call.exclude = Some("3-5".into());
+        call.effects = Some("own.toml".into());
+        call.with = vec!["creep".into(), "hose".into()];
+        let whole = "\"a b.csv\" c.csv --columns \"force=F [N]\" --exclude 3-5 --muscle m.toml --effects own.toml --with creep,hose";
+        assert_eq!(call.arguments(), whole);
+    }
 
     #[test]
     fn words_of_a_shell_are_quoted() {

@@ -10,7 +10,7 @@ use std::fmt::Write;
 use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::untested::reasons;
 use crate::text::{significant, with_interval};
-use bulge_report::shell_word;
+use bulge_report::Call;
 
 /// Lines of a kind that are shown; JSON has all.
 const MOST_NUMBERS: usize = 6;
@@ -22,21 +22,6 @@ const MOST_WARNINGS: usize = 6;
 const MOST_FINDINGS: usize = 6;
 /// What stands before the effects that could not be looked for.
 const UNTESTED: &str = "  could not be looked for ";
-
-/// The command line that led to the diagnosis, as far as the next step takes it over.
-#[derive(Debug)]
-pub(crate) struct Call {
-    /// Data files.
-    pub(crate) data: Vec<String>,
-    /// Which column is which, as given.
-    pub(crate) columns: Option<String>,
-    /// Muscle as given.
-    pub(crate) muscle: String,
-    /// Effects that the base had.
-    pub(crate) with: Vec<String>,
-    /// File of the user's own effects.
-    pub(crate) effects: Option<String>,
-}
 
 /// The diagnosis for people.
 pub(super) fn text(diagnosis: &Diagnosis, call: &Call) -> String {
@@ -298,21 +283,9 @@ fn accept(out: &mut String, diagnosis: &Diagnosis, call: &Call) {
     if diagnosis.missing.is_empty() || diagnosis.verdict != Verdict::Missing {
         return;
     }
-    let missing = diagnosis.missing.iter().map(|missing| missing.fitted.as_str());
-    let with: Vec<&str> = call.with.iter().map(String::as_str).chain(missing).collect();
-    let data: Vec<String> = call.data.iter().map(|path| shell_word(path)).collect();
-    let own =
-        call.effects.as_ref().map_or_else(String::new, |file| format!(" --effects {}", shell_word(file)));
-    let columns = call
-        .columns
-        .as_ref()
-        .map_or_else(String::new, |columns| format!(" --columns {}", shell_word(columns)));
-    let rest = format!(
-        "{}{columns} --muscle {}{own} --with {}",
-        data.join(" "),
-        shell_word(&call.muscle),
-        shell_word(&with.join(","))
-    );
+    let mut next = call.clone();
+    next.with.extend(diagnosis.missing.iter().map(|missing| missing.fitted.clone()));
+    let rest = next.arguments();
     let _ = writeln!(
         out,
         "\n  to accept this step:\n    bulge diagnose {rest}\n    bulge fit {rest} --out learnt.toml"
@@ -352,6 +325,7 @@ mod tests {
         Call {
             data: vec!["my loops.csv".to_owned(), "b.csv".to_owned()],
             columns: None,
+            exclude: None,
             muscle: "braid.toml".to_owned(),
             with: vec!["end-taper".to_owned()],
             effects: Some("own.toml".to_owned()),

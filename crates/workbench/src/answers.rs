@@ -1,0 +1,180 @@
+//! What the page asks, answered by the library: the documents are those of the command line.
+
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use bulge_effects::{CardDocument, Catalogue, Effect, Known, known};
+use bulge_inference::{Comparison, Diagnosis, fit_effects};
+use bulge_muscles::{Muscle, PRESETS, from_toml};
+use bulge_report::Learnt;
+use serde::Serialize;
+use std::sync::{Arc, PoisonError};
+use tokio::sync::oneshot;
+
+use crate::diagnosis::{self, Listener};
+use crate::inputs::{Inputs, catalogue};
+use crate::refusal::{Place, Refusal};
+use crate::rows;
+use crate::server::{Diagnosed, Workbench};
+use crate::surface::{self, State, Surface};
+use crate::worker::{Question, Worker};
+
+/// What is analysed, at one revision.
+struct Asked {
+    revision: u64,
+    inputs: Arc<Inputs>,
+    effects: Vec<Arc<dyn Effect>>,
+}
+
+fn asked(workbench: &Workbench) -> Result<Asked, Refusal> {
+    let session = workbench.session();
+    let inputs = session.inputs()?;
+    let effects = inputs.effects(session.choices())?;
+    Ok(Asked { revision: session.revision(), inputs, effects })
+}
+
+/// Asks a worker and waits.
+async fn ask<T>(
+    worker: &Worker,
+    asked: &Asked,
+    effects: Vec<Arc<dyn Effect>>,
+    question: impl FnOnce(oneshot::Sender<Result<T, Refusal>>) -> Question,
+) -> Result<T, Refusal> {
+    let (answer, waiting) = oneshot::channel();
+    worker.ask(Arc::clone(&asked.inputs), effects, question(answer));
+    let gone = || Refusal::new(Place::Request, "the computation has ended: start `bulge open` again");
+    waiting.await.unwrap_or_else(|_| Err(gone()))
+}
+
+/// The comparison with the chosen effects.
+pub(crate) async fn comparison(workbench: &Workbench, held_out: bool) -> Result<Box<Comparison>, Refusal> {
+    let asked = asked(workbench)?;
+    let worker = if held_out { &workbench.held_out } else { &workbench.quick };
+    ask(worker, &asked, asked.effects.clone(), Question::Comparison).await
+}
+
+/// All rows.
+pub(crate) async fn rows(workbench: &Workbench) -> Result<Response, Refusal> {
+    let asked = asked(workbench)?;
+    let found = ask(&workbench.quick, &asked, asked.effects.clone(), Question::Rows).await?;
+    let bytes = rows::bytes(&asked.inputs, &found, asked.revision).map_err(Refusal::at(Place::Request))?;
+    Ok(([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
+}
+
+/// The catalogue for the page.
+#[derive(Debug, Serialize)]
+pub(crate) struct Effects {
+    schema: &'static str,
+    effects: Vec<Card>,
+}
+
+#[derive(Debug, Serialize)]
+struct Card {
+    #[serde(flatten)]
+    card: CardDocument,
+    /// Why it can't be added to this muscle with these data.
+    unsuitable: Option<String>,
+}
+
+fn cards(catalogue: &Catalogue, unsuitable: Vec<Option<String>>) -> Effects {
+    let cards = catalogue.iter().zip(unsuitable);
+    let card = |(effect, unsuitable): (&Arc<dyn Effect>, _)| Card {
+        card: CardDocument::of(effect.as_ref()),
+        unsuitable,
+    };
+    Effects { schema: "bulge.effects/1", effects: cards.map(card).collect() }
+}
+
+/// All effects, with why some can't be added. Without data nothing keeps any from being looked at.
+pub(crate) async fn effects(workbench: &Workbench) -> Result<Effects, Refusal> {
+    let Ok(asked) = asked(workbench) else {
+        let catalogue = catalogue(workbench.session().choices().own_effects.as_deref())?;
+        let none = catalogue.iter().map(|_| None).collect();
+        return Ok(cards(&catalogue, none));
+    };
+    let all: Vec<Arc<dyn Effect>> = asked.inputs.catalogue.iter().map(Arc::clone).collect();
+    let unsuitable = ask(&workbench.quick, &asked, all, Question::Unsuitable).await;
+    // A muscle that can't be compared at all says so where it is compared.
+    let unsuitable = unsuitable.unwrap_or_else(|_| asked.inputs.catalogue.iter().map(|_| None).collect());
+    Ok(cards(&asked.inputs.catalogue, unsuitable))
+}
+
+/// The user's own effects, if they can be read.
+pub(crate) fn checked_effects(toml: &str) -> Result<Effects, Refusal> {
+    let builtin = Catalogue::builtin().iter().count();
+    let catalogue = catalogue(Some(toml))?;
+    let own = catalogue
+        .iter()
+        .skip(builtin)
+        .map(|effect| Card { card: CardDocument::of(effect.as_ref()), unsuitable: None });
+    Ok(Effects { schema: "bulge.effects/1", effects: own.collect() })
+}
+
+/// The shipped muscles.
+#[derive(Debug, Serialize)]
+pub(crate) struct Muscles {
+    muscles: Vec<Shipped>,
+}
+
+#[derive(Debug, Serialize)]
+struct Shipped {
+    name: &'static str,
+    title: &'static str,
+}
+
+pub(crate) fn muscles() -> Muscles {
+    let shipped = PRESETS.iter().map(|preset| Shipped { name: preset.name, title: preset.about });
+    Muscles { muscles: shipped.collect() }
+}
+
+/// The muscle as it is stated, or as it was learnt where something can be learnt.
+fn muscle(workbench: &Workbench) -> Result<(Muscle, Vec<Known>), Refusal> {
+    let (toml, own) = {
+        let session = workbench.session();
+        (session.choices().muscle.toml.clone(), session.choices().own_effects.clone())
+    };
+    let muscle = from_toml(&toml, "the muscle").map_err(Refusal::at(Place::Muscle))?;
+    let known = known(&muscle, &catalogue(own.as_deref())?).map_err(Refusal::at(Place::Muscle))?;
+    Ok((muscle, known))
+}
+
+/// The bulge.
+pub(crate) fn surface(workbench: &Workbench, state: State) -> Result<Surface, Refusal> {
+    let (muscle, known) = muscle(workbench)?;
+    surface::surface(&muscle, &known, state)
+}
+
+/// The bulge as a VTK file.
+pub(crate) fn vtp(workbench: &Workbench, state: State) -> Result<Vec<u8>, Refusal> {
+    let (muscle, known) = muscle(workbench)?;
+    surface::vtp(&muscle, &known, state)
+}
+
+/// The muscle with what was learnt, as `bulge fit` writes it.
+pub(crate) fn learnt(workbench: &Workbench) -> Result<String, Refusal> {
+    let (inputs, options) = workbench.session().options(false)?;
+    if options.effects.is_empty() {
+        return Err(Refusal::new(Place::Effects, "nothing was learnt yet: switch an effect on"));
+    }
+    let fitting = fit_effects(&inputs.data, &inputs.muscle, &options).map_err(Refusal::at(Place::Effects))?;
+    Ok(Learnt::of(fitting).map_err(Refusal::at(Place::Effects))?.model)
+}
+
+/// Begins a diagnosis.
+pub(crate) fn diagnose(workbench: &Workbench) -> Result<Listener, Refusal> {
+    let (inputs, options) = workbench.session().options(true)?;
+    Ok(diagnosis::begin(inputs, options))
+}
+
+/// A diagnosis as it is saved.
+pub(crate) fn to_keep(found: &Diagnosis) -> Result<Diagnosed, Refusal> {
+    let refused = |error: &dyn std::fmt::Display| Refusal::new(Place::Request, error);
+    let document = serde_json::to_string_pretty(found).map_err(|error| refused(&error))? + "\n";
+    let report = bulge_report::diagnosis::html(found).map_err(|error| refused(&error))?;
+    Ok(Diagnosed { document, report })
+}
+
+/// The last diagnosis.
+pub(crate) fn diagnosed(workbench: &Workbench) -> Result<Diagnosed, Refusal> {
+    let last = workbench.diagnosed.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    last.ok_or_else(|| Refusal::new(Place::Request, "nothing was diagnosed yet: press Diagnose"))
+}

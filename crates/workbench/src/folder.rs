@@ -1,0 +1,157 @@
+//! The folder of a session: what was chosen, and the files that were dropped.
+
+use bulge_muscles::output;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+use crate::choices::Choices;
+use crate::refusal::{Place, Refusal};
+
+/// The file that holds the choices.
+const STATE: &str = "session.json";
+/// The folder of the files that were dropped.
+const DATA: &str = "data";
+/// What the state says of itself.
+const SCHEMA: &str = "bulge.session-file/1";
+/// Steps that undo can go back: each is as large as the muscle's file.
+pub(crate) const MOST_STEPS: usize = 200;
+
+/// What is kept on the disk: a killed process loses nothing.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Kept {
+    schema: String,
+    pub(crate) choices: Choices,
+    pub(crate) past: Vec<Choices>,
+    pub(crate) future: Vec<Choices>,
+    pub(crate) view: Value,
+}
+
+impl Kept {
+    pub(crate) fn new(choices: Choices) -> Self {
+        Self { schema: SCHEMA.to_owned(), choices, past: Vec::new(), future: Vec::new(), view: Value::Null }
+    }
+}
+
+/// Where a session lies; a temporary one goes with this value.
+#[derive(Debug)]
+pub(crate) struct Folder {
+    path: PathBuf,
+    _temporary: Option<TempDir>,
+}
+
+impl Folder {
+    /// A folder that stays, made if it isn't there; a temporary one without a name.
+    pub(crate) fn open(path: Option<&Path>) -> io::Result<Self> {
+        let temporary =
+            if path.is_none() { Some(tempfile::Builder::new().prefix("bulge-").tempdir()?) } else { None };
+        let path = match (path, &temporary) {
+            (None, Some(made)) => made.path().to_path_buf(),
+            (path, _) => std::path::absolute(path.unwrap_or(Path::new(".")))?,
+        };
+        fs::create_dir_all(path.join(DATA))?;
+        Ok(Self { path, _temporary: temporary })
+    }
+
+    /// What an earlier run has left here; none where there was none.
+    pub(crate) fn kept(&self) -> Result<Option<Kept>, Refusal> {
+        let path = self.path.join(STATE);
+        let refuse = |why: String| {
+            let what = format!(
+                "{}: {why}; give another folder with --session, or move this file away",
+                path.display()
+            );
+            Refusal::new(Place::Request, what)
+        };
+        let text = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(refuse(error.to_string())),
+        };
+        let kept: Kept = serde_json::from_str(&text)
+            .map_err(|error| refuse(format!("is no session of the workbench ({error})")))?;
+        if kept.schema == SCHEMA {
+            Ok(Some(kept))
+        } else {
+            Err(refuse(format!("is of another version ({})", kept.schema)))
+        }
+    }
+
+    /// Keeps it, whole or not at all.
+    pub(crate) fn keep(&self, kept: &Kept) -> Result<(), Refusal> {
+        let text = serde_json::to_string(kept).map_err(Refusal::at(Place::Request))?;
+        let path = self.path.join(STATE);
+        output::write(&path, text.as_bytes()).map_err(|error| {
+            Refusal::new(Place::Request, format!("cannot write {}: {error}", path.display()))
+        })
+    }
+
+    /// A name for a file that is being received: beside those that are whole, under a name that none of them has.
+    pub(crate) fn unfinished(&self, number: u64) -> PathBuf {
+        self.path.join(DATA).join(format!("{}{number}", output::UNFINISHED))
+    }
+
+    /// Where a file that was dropped goes. One of the same name and other content stays: undo may want it.
+    pub(crate) fn place(&self, name: &str, received: &Path) -> io::Result<PathBuf> {
+        let folder = self.path.join(DATA);
+        let path = Path::new(name);
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let end = path.extension().map_or_else(String::new, |end| format!(".{}", end.to_string_lossy()));
+        for number in 1_u32.. {
+            let other =
+                if number == 1 { folder.join(name) } else { folder.join(format!("{stem}-{number}{end}")) };
+            if !other.exists() {
+                fs::rename(received, &other)?;
+                return Ok(other);
+            }
+            if is_same(&other, received)? {
+                fs::remove_file(received)?;
+                return Ok(other);
+            }
+        }
+        Err(io::Error::other("all names are taken"))
+    }
+}
+
+/// Whether two files hold the same bytes.
+fn is_same(a: &Path, b: &Path) -> io::Result<bool> {
+    Ok(fs::metadata(a)?.len() == fs::metadata(b)?.len() && fs::read(a)? == fs::read(b)?)
+}
+
+/// The last part of a name, as far as it is one for a file: a page may send anything.
+pub(crate) fn file_name(name: &str) -> Option<String> {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or_default().trim();
+    let sound = !last.is_empty()
+        && !last.starts_with('.')
+        && last.len() <= 200
+        && !last.chars().any(char::is_control);
+    sound.then(|| last.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stay_in_the_folder() {
+        let names = ["a.csv", "../../etc/passwd", "C:\\x\\b.xlsx", "..", ".", "", "a/", "x\0y", ".hidden"];
+        let found = names.map(|name| file_name(name).unwrap_or_default());
+        assert_eq!(found, ["a.csv", "passwd", "b.xlsx", "", "", "", "", "", ""]);
+    }
+
+    #[test]
+    fn a_file_of_the_same_name_stays() {
+        let folder = Folder::open(None).unwrap();
+        let receive = |bytes: &[u8]| {
+            let path = folder.unfinished(7);
+            fs::write(&path, bytes).unwrap();
+            folder.place("a.csv", &path).unwrap()
+        };
+        let [first, second, third] = [receive(b"1"), receive(b"2"), receive(b"1")];
+        assert_eq!((fs::read(&first).unwrap(), fs::read(&second).unwrap()), (b"1".to_vec(), b"2".to_vec()));
+        assert!(first == third && first != second);
+    }
+}

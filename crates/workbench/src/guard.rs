@@ -1,0 +1,98 @@
+//! Who may ask: only the page of this run, from this machine.
+//!
+//! The address holds a random token, so that no other program of this machine and no other site's page knows where to ask. A page that is opened from elsewhere under another
+//! name of this machine (DNS rebinding) has another Host, and one that posts from another site has another Origin.
+
+use axum::http::{HeaderMap, Method, header};
+
+/// Bytes of randomness in a token.
+const TOKEN: usize = 16;
+
+/// What a request must have.
+#[derive(Debug, Clone)]
+pub(crate) struct Guard {
+    token: String,
+    port: u16,
+}
+
+impl Guard {
+    /// With a new token.
+    pub(crate) fn new(port: u16) -> Result<Self, getrandom::Error> {
+        let mut bytes = [0; TOKEN];
+        getrandom::fill(&mut bytes)?;
+        Ok(Self { token: bytes.iter().map(|byte| format!("{byte:02x}")).collect(), port })
+    }
+
+    /// The address to open.
+    pub(crate) fn address(&self) -> String {
+        format!("http://127.0.0.1:{}/{}/", self.port, self.token)
+    }
+
+    /// Whether a host is this machine under a name that the address may have.
+    fn is_here(&self, host: &str) -> bool {
+        ["127.0.0.1", "localhost"].iter().any(|name| host == format!("{name}:{}", self.port))
+    }
+
+    /// What is asked for, without the token; none if the request isn't from the page.
+    pub(crate) fn admit<'a>(&self, method: &Method, path: &'a str, headers: &HeaderMap) -> Option<&'a str> {
+        let text = |name| headers.get(name).map(|value| value.to_str().unwrap_or_default());
+        if !text(header::HOST).is_some_and(|host| self.is_here(host)) {
+            return None;
+        }
+        let is_own = |origin: &str| origin.strip_prefix("http://").is_some_and(|host| self.is_here(host));
+        match text(header::ORIGIN) {
+            Some(origin) if !is_own(origin) => return None,
+            // Browsers say where a request comes from that changes something; other programs say nothing.
+            None if *method != Method::GET && headers.contains_key("sec-fetch-site") => {
+                if text(header::HeaderName::from_static("sec-fetch-site")) != Some("same-origin") {
+                    return None;
+                }
+            }
+            _ => {}
+        }
+        let rest = path.strip_prefix('/')?;
+        let (token, asked) = rest.split_once('/')?;
+        is_equal(token.as_bytes(), self.token.as_bytes()).then_some(asked)
+    }
+}
+
+/// Compares in a time that doesn't tell how much is right.
+fn is_equal(given: &[u8], right: &[u8]) -> bool {
+    given.len() == right.len() && given.iter().zip(right).fold(0, |differ, (a, b)| differ | (a ^ b)) == 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn headers(pairs: &[(&'static str, &str)]) -> HeaderMap {
+        pairs.iter().map(|(name, value)| (name.parse().unwrap(), value.parse().unwrap())).collect()
+    }
+
+    #[test]
+    fn only_the_page_of_this_run_is_admitted() {
+        let guard = Guard::new(4711).unwrap();
+        let path = format!("/{}/api/session", guard.token);
+        let asks = |method: &Method, path: &str, pairs: &[(&'static str, &str)]| {
+            guard.admit(method, path, &headers(pairs)).map(str::to_owned)
+        };
+        let here = ("host", "127.0.0.1:4711");
+        let found = Some("api/session".to_owned());
+        assert_eq!(asks(&Method::GET, &path, &[here]), found);
+        assert_eq!(
+            asks(&Method::PUT, &path, &[("host", "localhost:4711"), ("origin", "http://localhost:4711")]),
+            found
+        );
+        assert_eq!(asks(&Method::PUT, &path, &[here, ("sec-fetch-site", "same-origin")]), found);
+        // Another site, another name of this machine, another port, no host, another token, none.
+        assert_eq!(asks(&Method::POST, &path, &[here, ("origin", "http://evil.example")]), None);
+        assert_eq!(asks(&Method::POST, &path, &[here, ("origin", "null")]), None);
+        assert_eq!(asks(&Method::POST, &path, &[here, ("sec-fetch-site", "cross-site")]), None);
+        assert_eq!(asks(&Method::GET, &path, &[("host", "evil.example:4711")]), None);
+        assert_eq!(asks(&Method::GET, &path, &[("host", "127.0.0.1:4712")]), None);
+        assert_eq!(asks(&Method::GET, &path, &[]), None);
+        assert_eq!(asks(&Method::GET, &format!("/{}/api/session", "0".repeat(32)), &[here]), None);
+        assert_eq!(asks(&Method::GET, "/api/session", &[here]), None);
+        assert_ne!(guard.token, Guard::new(4711).unwrap().token);
+    }
+}

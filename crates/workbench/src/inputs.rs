@@ -1,0 +1,97 @@
+//! What an analysis starts from, read from the choices: rows, muscle, catalogue.
+
+use bulge_effects::{Catalogue, Effect, Known, known};
+use bulge_inference::Options;
+use bulge_measurements::{ColumnMap, Data};
+use bulge_model::read_options;
+use bulge_muscles::{Muscle, from_toml};
+use std::sync::Arc;
+
+use crate::choices::Choices;
+use crate::refusal::{Place, Refusal};
+
+/// The name that messages give the muscle's file.
+const MUSCLE: &str = "the muscle";
+/// The name that messages give the user's own effects.
+const OWN: &str = "your effects";
+
+/// Rows, muscle and catalogue of some choices. Two analyses of the same `Arc` of it differ in their effects alone.
+#[derive(Debug)]
+pub(crate) struct Inputs {
+    pub(crate) data: Arc<Data>,
+    pub(crate) muscle: Muscle,
+    pub(crate) catalogue: Catalogue,
+    known: Vec<Known>,
+    excluded: Vec<usize>,
+}
+
+impl Inputs {
+    /// Reads what the choices name; rows of other choices that were read alike are taken over.
+    pub(crate) fn read(choices: &Choices, rows: Option<Arc<Data>>) -> Result<Self, Refusal> {
+        let catalogue = catalogue(choices.own_effects.as_deref())?;
+        let muscle = from_toml(&choices.muscle.toml, MUSCLE).map_err(Refusal::at(Place::Muscle))?;
+        let known = known(&muscle, &catalogue).map_err(Refusal::at(Place::Muscle))?;
+        let data = match rows {
+            Some(rows) => rows,
+            None => Arc::new(read_rows(choices, &muscle)?),
+        };
+        let excluded: Vec<usize> = choices.excluded.iter().copied().filter(|row| *row < data.len()).collect();
+        Ok(Self { data, muscle, catalogue, known, excluded })
+    }
+
+    /// What is compared, with these effects.
+    pub(crate) fn options(&self, effects: Vec<Arc<dyn Effect>>, held_out: bool) -> Options {
+        let mut options = Options::new(self.catalogue.clone(), effects);
+        options.known.clone_from(&self.known);
+        options.excluded.clone_from(&self.excluded);
+        options.held_out = held_out;
+        options
+    }
+
+    /// The chosen effects, from the catalogue.
+    pub(crate) fn effects(&self, choices: &Choices) -> Result<Vec<Arc<dyn Effect>>, Refusal> {
+        let find = |name: &str| self.catalogue.find(name).map(Arc::clone);
+        let found: Result<Vec<_>, _> = choices.effects.iter().map(|chosen| find(&chosen.name)).collect();
+        found.map_err(Refusal::at(Place::Effects))
+    }
+
+    /// Whether a row was excluded by hand.
+    pub(crate) fn is_excluded(&self, row: usize) -> bool {
+        self.excluded.binary_search(&row).is_ok()
+    }
+}
+
+fn read_rows(choices: &Choices, muscle: &Muscle) -> Result<Data, Refusal> {
+    let map = choices.columns.as_deref().map(str::parse::<ColumnMap>).transpose();
+    let columns = map.map_err(Refusal::at(Place::Columns))?;
+    let options = read_options(muscle, columns.as_ref()).map_err(Refusal::at(Place::Muscle))?;
+    let paths: Vec<_> = choices.data.iter().map(|file| &file.path).collect();
+    Data::read_with(&paths, &options).map_err(|error| {
+        // A table whose columns aren't known can be mended where the columns are shown; anything else is about the file.
+        let place = if error.columns().is_empty() { Place::Data } else { Place::Columns };
+        Refusal {
+            columns: error.columns().to_vec(),
+            ..Refusal::new(place, named(&error.to_string(), choices))
+        }
+    })
+}
+
+/// A message with the names that people know, instead of the places where the files lie.
+fn named(message: &str, choices: &Choices) -> String {
+    let shown = |text: String, file: &crate::choices::DataFile| {
+        text.replace(&*file.path.to_string_lossy(), &file.name)
+    };
+    choices.data.iter().fold(message.to_owned(), shown)
+}
+
+/// The built-in effects with the user's own.
+pub(crate) fn catalogue(own: Option<&str>) -> Result<Catalogue, Refusal> {
+    let mut catalogue = Catalogue::builtin();
+    for effect in own
+        .map_or_else(|| Ok(Vec::new()), |toml| bulge_effects::user::from_toml(toml, OWN))
+        .map_err(Refusal::at(Place::OwnEffects))?
+    {
+        catalogue = catalogue.with(effect).map_err(Refusal::at(Place::OwnEffects))?;
+    }
+    Ok(catalogue)
+}

@@ -1,0 +1,279 @@
+//! A session: the choices, how they came about, and what follows from them.
+
+use bulge_inference::Options;
+use bulge_measurements::Reading;
+use bulge_muscles::{PRESETS, from_toml};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::HashSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::choices::{Change, Choices, ChosenEffect, DataFile, MuscleChange, MuscleFile};
+use crate::command;
+use crate::folder::{Folder, Kept, MOST_STEPS};
+use crate::inputs::{Inputs, catalogue};
+use crate::refusal::{Place, Refusal};
+
+/// Most bytes of what the page keeps of its own.
+const MOST_VIEW: usize = 64 << 10;
+
+/// What the page shows of a session.
+#[derive(Debug, Serialize)]
+pub(crate) struct SessionDocument {
+    schema: &'static str,
+    revision: u64,
+    can_undo: bool,
+    can_redo: bool,
+    data: DataDocument,
+    columns: Option<String>,
+    reading: Reading,
+    muscle: MuscleDocument,
+    effects: Vec<ChosenEffect>,
+    own_effects: Option<String>,
+    excluded: Vec<usize>,
+    /// Why nothing can be computed with these choices.
+    problem: Option<Refusal>,
+    view: Value,
+    command: String,
+    python: String,
+}
+
+#[derive(Debug, Serialize)]
+struct DataDocument {
+    names: Vec<String>,
+    rows: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct MuscleDocument {
+    name: String,
+    toml: String,
+    shipped: Option<String>,
+}
+
+/// A session.
+#[derive(Debug)]
+pub(crate) struct Session {
+    pub(crate) folder: Folder,
+    kept: Kept,
+    revision: u64,
+    inputs: Result<Arc<Inputs>, Refusal>,
+}
+
+impl Session {
+    /// Goes on with what the folder holds, or begins with these choices.
+    pub(crate) fn open(folder: Folder, begin: Choices, is_stated: bool) -> Result<Self, Refusal> {
+        let kept = match folder.kept()? {
+            // What is stated on the command line is a step more of what was there.
+            Some(mut kept) if is_stated => {
+                kept.past.push(std::mem::replace(&mut kept.choices, begin));
+                kept
+            }
+            Some(kept) => kept,
+            None => Kept::new(begin),
+        };
+        let inputs = Inputs::read(&kept.choices, None).map(Arc::new);
+        let session = Self { folder, kept, revision: 1, inputs };
+        session.folder.keep(&session.kept)?;
+        Ok(session)
+    }
+
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    pub(crate) fn choices(&self) -> &Choices {
+        &self.kept.choices
+    }
+
+    /// What an analysis starts from.
+    pub(crate) fn inputs(&self) -> Result<Arc<Inputs>, Refusal> {
+        self.inputs.clone()
+    }
+
+    /// Makes a change, or says why not and changes nothing.
+    pub(crate) fn change(&mut self, change: Change) -> Result<(), Refusal> {
+        let mut next = self.kept.choices.clone();
+        if let Some(columns) = change.columns {
+            next.columns = columns.filter(|text| !text.trim().is_empty());
+            if let Some(text) = &next.columns {
+                text.parse::<bulge_measurements::ColumnMap>().map_err(Refusal::at(Place::Columns))?;
+            }
+        }
+        if let Some(muscle) = change.muscle {
+            next.muscle = other_muscle(muscle)?;
+        }
+        if let Some(own) = change.own_effects {
+            next.own_effects = own.filter(|text| !text.trim().is_empty());
+        }
+        if let Some(effects) = change.effects {
+            next.effects = effects;
+        }
+        check_effects(&next)?;
+        if let Some(excluded) = change.excluded {
+            next.excluded = self.exclude(excluded)?;
+        }
+        if let Some(view) = change.view {
+            if view.to_string().len() > MOST_VIEW {
+                return Err(Refusal::new(
+                    Place::Request,
+                    format!("a view of more than {MOST_VIEW} bytes is not kept"),
+                ));
+            }
+            self.kept.view = view;
+        }
+        self.step(next)
+    }
+
+    /// Takes files of measurements, in the place of those that are there or beside them.
+    pub(crate) fn take(&mut self, name: String, path: PathBuf, beside: bool) -> Result<(), Refusal> {
+        let mut next = self.kept.choices.clone();
+        let file = DataFile { name, path };
+        if beside {
+            next.data.push(file);
+        } else {
+            // What was said of other columns and other rows doesn't hold for these.
+            (next.data, next.columns) = (vec![file], None);
+        }
+        next.excluded = Vec::new();
+        self.step(next)
+    }
+
+    /// Goes back one step.
+    pub(crate) fn undo(&mut self) -> Result<(), Refusal> {
+        let Some(before) = self.kept.past.pop() else { return Ok(()) };
+        let now = self.go_to(before);
+        self.kept.future.push(now);
+        self.folder.keep(&self.kept)
+    }
+
+    /// Goes forward one step.
+    pub(crate) fn redo(&mut self) -> Result<(), Refusal> {
+        let Some(after) = self.kept.future.pop() else { return Ok(()) };
+        let now = self.go_to(after);
+        self.kept.past.push(now);
+        self.folder.keep(&self.kept)
+    }
+
+    /// A new step; what was undone before is gone.
+    fn step(&mut self, next: Choices) -> Result<(), Refusal> {
+        if next != self.kept.choices {
+            let before = self.go_to(next);
+            self.kept.past.push(before);
+            self.kept.future.clear();
+            let surplus = self.kept.past.len().saturating_sub(MOST_STEPS);
+            self.kept.past.drain(..surplus);
+        }
+        self.folder.keep(&self.kept)
+    }
+
+    /// Puts choices in the place of those that are there, which are returned.
+    fn go_to(&mut self, next: Choices) -> Choices {
+        let now = &self.kept.choices;
+        if next.needs_other_inputs(now) {
+            let rows = self.inputs.as_ref().ok().filter(|_| !next.needs_other_data(now));
+            let rows = rows.map(|inputs| Arc::clone(&inputs.data));
+            self.inputs = Inputs::read(&next, rows).map(Arc::new);
+        }
+        self.revision += 1;
+        std::mem::replace(&mut self.kept.choices, next)
+    }
+
+    /// Rows to exclude, sorted; not all of them.
+    fn exclude(&self, mut rows: Vec<usize>) -> Result<Vec<usize>, Refusal> {
+        rows.sort_unstable();
+        rows.dedup();
+        let count = self.inputs.as_ref().map_or(usize::MAX, |inputs| inputs.data.len());
+        if let Some(beyond) = rows.iter().find(|row| **row >= count) {
+            return Err(Refusal::new(
+                Place::Excluded,
+                format!("there is no row {beyond}: the data have {count}"),
+            ));
+        }
+        if rows.len() >= count {
+            return Err(Refusal::new(
+                Place::Excluded,
+                "all rows would be excluded: leave some to compare with",
+            ));
+        }
+        Ok(rows)
+    }
+
+    /// What the page shows.
+    pub(crate) fn document(&self) -> SessionDocument {
+        let Kept { choices, past, future, view, .. } = &self.kept;
+        let problem = self.inputs.as_ref().err();
+        let (reading, rows) = match &self.inputs {
+            Ok(inputs) => (inputs.data.reading().clone(), inputs.data.len()),
+            Err(refusal) => (Reading { columns: refusal.columns.clone(), ..Reading::default() }, 0),
+        };
+        let origin = choices.muscle.origin.clone();
+        SessionDocument {
+            schema: "bulge.session/1",
+            revision: self.revision,
+            can_undo: !past.is_empty(),
+            can_redo: !future.is_empty(),
+            data: DataDocument { names: choices.data.iter().map(|file| file.name.clone()).collect(), rows },
+            columns: choices.columns.clone(),
+            reading,
+            muscle: MuscleDocument {
+                name: from_toml(&choices.muscle.toml, "")
+                    .map_or_else(|_| String::new(), |muscle| muscle.name().to_owned()),
+                toml: choices.muscle.toml.clone(),
+                shipped: origin.filter(|name| PRESETS.iter().any(|preset| preset.name == name)),
+            },
+            effects: choices.effects.clone(),
+            own_effects: choices.own_effects.clone(),
+            excluded: choices.excluded.clone(),
+            problem: problem.cloned(),
+            view: view.clone(),
+            command: command::shell(choices, self.inputs.as_ref().ok()),
+            python: command::python(choices, self.inputs.as_ref().ok()),
+        }
+    }
+
+    /// What is compared with the chosen effects.
+    pub(crate) fn options(&self, held_out: bool) -> Result<(Arc<Inputs>, Options), Refusal> {
+        let inputs = self.inputs()?;
+        let effects = inputs.effects(&self.kept.choices)?;
+        let options = inputs.options(effects, held_out);
+        Ok((inputs, options))
+    }
+}
+
+/// The muscle that a change names.
+fn other_muscle(change: MuscleChange) -> Result<MuscleFile, Refusal> {
+    match change {
+        MuscleChange::Shipped { shipped } => {
+            let found = PRESETS.iter().find(|preset| preset.name == shipped);
+            let found = found.ok_or_else(|| {
+                Refusal::new(
+                    Place::Muscle,
+                    format!("no shipped muscle is called `{shipped}`: choose one of the list"),
+                )
+            })?;
+            Ok(MuscleFile { toml: found.text.to_owned(), origin: Some(shipped) })
+        }
+        MuscleChange::Toml { toml } => {
+            from_toml(&toml, "the muscle").map_err(Refusal::at(Place::Muscle))?;
+            Ok(MuscleFile { toml, origin: None })
+        }
+    }
+}
+
+/// Effects that are in the catalogue, each once.
+fn check_effects(choices: &Choices) -> Result<(), Refusal> {
+    let catalogue = catalogue(choices.own_effects.as_deref())?;
+    let mut seen = HashSet::new();
+    for ChosenEffect { name } in &choices.effects {
+        catalogue.find(name).map_err(Refusal::at(Place::Effects))?;
+        if !seen.insert(name) {
+            return Err(Refusal::new(
+                Place::Effects,
+                format!("`{name}` is there already: each effect acts once"),
+            ));
+        }
+    }
+    Ok(())
+}

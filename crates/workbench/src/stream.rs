@@ -1,0 +1,44 @@
+//! What the page is told while it waits: server-sent events.
+
+use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
+use futures_util::stream::unfold;
+use serde::Serialize;
+use std::convert::Infallible;
+use tokio::sync::watch;
+
+use crate::diagnosis::{Listener, News};
+
+/// An event with a document; what can't be written as one is empty.
+fn event(name: &str, document: &impl Serialize) -> Event {
+    Event::default().event(name).data(serde_json::to_string(document).unwrap_or_default())
+}
+
+/// A diagnosis as it goes on; `heard` sees all that is told.
+pub(crate) fn of_diagnosis(listener: Listener, heard: impl Fn(&News) + Send + 'static) -> Response {
+    let next = |(mut listener, heard): (Listener, _)| async move {
+        let news = listener.news.recv().await?;
+        (&heard as &(dyn Fn(&News) + Send))(&news);
+        let told = match &news {
+            News::Progress(stage) => event("progress", stage),
+            News::Found(found) => event("result", found),
+            News::Failed(refusal) => event("failed", refusal),
+        };
+        Some((Ok::<_, Infallible>(told), (listener, heard)))
+    };
+    Sse::new(unfold((listener, heard), next)).keep_alive(KeepAlive::default()).into_response()
+}
+
+/// The number of changes, whenever it grows.
+pub(crate) fn of_revisions(seen: watch::Receiver<u64>) -> Response {
+    #[derive(Serialize)]
+    struct Revision {
+        revision: u64,
+    }
+    let next = |mut seen: watch::Receiver<u64>| async move {
+        seen.changed().await.ok()?;
+        let revision = *seen.borrow_and_update();
+        Some((Ok::<_, Infallible>(event("session", &Revision { revision })), seen))
+    };
+    Sse::new(unfold(seen, next)).keep_alive(KeepAlive::default()).into_response()
+}

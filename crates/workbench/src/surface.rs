@@ -1,0 +1,82 @@
+//! The bulge of a muscle: points, triangles and fields, as VTK files have them.
+
+use bulge_effects::Known;
+use bulge_fibre::{Approach, Given};
+use bulge_model::{Equilibrium, Extended};
+use bulge_muscles::{Muscle, Pressure, Quantity};
+use bulge_vtk::{Bulge, Style, vtp_bytes};
+use serde::{Deserialize, Serialize};
+
+use crate::refusal::{Place, Refusal};
+
+/// Points of a meridian: smooth on any screen.
+const POINTS: usize = 81;
+
+/// Where a muscle is looked at.
+#[derive(Debug, Clone, Copy, Deserialize)]
+pub(crate) struct State {
+    pressure_pa: f64,
+    contraction: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Field {
+    name: &'static str,
+    values: Vec<f64>,
+}
+
+/// A surface of triangles with fields on its points.
+#[derive(Debug, Serialize)]
+pub(crate) struct Surface {
+    schema: &'static str,
+    points: Vec<f64>,
+    triangles: Vec<usize>,
+    /// Vertices of each fibre from one fitting to the other.
+    fibres: Vec<Vec<usize>>,
+    fields: Vec<Field>,
+    force_n: f64,
+    length_m: f64,
+    radius_m: f64,
+    contraction: f64,
+    pressure_pa: f64,
+    contraction_limit: Option<f64>,
+}
+
+/// The equilibrium of a muscle with what its file states.
+fn equilibrium(muscle: &Muscle, known: &[Known], state: State) -> Result<(Muscle, Equilibrium), Refusal> {
+    let extended = Extended::new(muscle, known).map_err(Refusal::at(Place::Shape))?;
+    let given = Given::Contraction(state.contraction);
+    let pressure = Pressure::from_si(state.pressure_pa);
+    let found = Equilibrium::new(&extended, pressure, given, Approach::Auto, POINTS);
+    Ok((extended.muscle().clone(), found.map_err(Refusal::at(Place::Shape))?))
+}
+
+/// The surface for the page.
+pub(crate) fn surface(muscle: &Muscle, known: &[Known], state: State) -> Result<Surface, Refusal> {
+    let (muscle, found) = equilibrium(muscle, known, state)?;
+    let shape = &found.shape;
+    let mesh = Bulge::of(&muscle, shape, Style::natural(&muscle, shape, None))
+        .mesh()
+        .map_err(Refusal::at(Place::Shape))?;
+    Ok(Surface {
+        schema: "bulge.surface/1",
+        points: mesh.points.concat(),
+        triangles: mesh.quads.iter().flat_map(|[a, b, c, d]| [*a, *b, *c, *a, *c, *d]).collect(),
+        fibres: mesh.fibres,
+        fields: mesh.point_fields.into_iter().map(|(name, values)| Field { name, values }).collect(),
+        force_n: shape.response.force_n,
+        length_m: muscle.length().si() * (1.0 - shape.response.contraction),
+        radius_m: shape.meridian.iter().map(|point| point.r_m).fold(0.0, f64::max),
+        contraction: shape.response.contraction,
+        pressure_pa: state.pressure_pa,
+        contraction_limit: found.contraction_limit,
+    })
+}
+
+/// The same as a VTK file.
+pub(crate) fn vtp(muscle: &Muscle, known: &[Known], state: State) -> Result<Vec<u8>, Refusal> {
+    let (muscle, found) = equilibrium(muscle, known, state)?;
+    let shape = &found.shape;
+    vtp_bytes(&Bulge::of(&muscle, shape, Style::natural(&muscle, shape, None)))
+        .map_err(Refusal::at(Place::Shape))
+}

@@ -1,0 +1,128 @@
+//! The thread that compares: it keeps what it has solved, and answers one question after the other.
+//!
+//! A question that nobody waits for any more is passed over, so that the last one asked is answered first.
+
+use bulge_effects::Effect;
+use bulge_inference::{Comparing, Comparison, Rows};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+use tokio::sync::oneshot;
+
+use crate::inputs::Inputs;
+use crate::refusal::{Place, Refusal};
+
+/// What is asked of a comparison.
+pub(crate) enum Question {
+    /// The ladder of errors and all that goes with it.
+    Comparison(oneshot::Sender<Result<Box<Comparison>, Refusal>>),
+    /// The forces row by row.
+    Rows(oneshot::Sender<Result<Rows, Refusal>>),
+    /// Why each of some effects can't be added.
+    Unsuitable(oneshot::Sender<Result<Vec<Option<String>>, Refusal>>),
+}
+
+impl Question {
+    fn is_given_up(&self) -> bool {
+        match self {
+            Self::Comparison(to) => to.is_closed(),
+            Self::Rows(to) => to.is_closed(),
+            Self::Unsuitable(to) => to.is_closed(),
+        }
+    }
+
+    /// Says why there is no answer.
+    fn refuse(self, refusal: Refusal) {
+        // Whoever has given up meanwhile doesn't hear it.
+        match self {
+            Self::Comparison(to) => drop(to.send(Err(refusal))),
+            Self::Rows(to) => drop(to.send(Err(refusal))),
+            Self::Unsuitable(to) => drop(to.send(Err(refusal))),
+        }
+    }
+
+    fn answer(self, comparing: &Comparing<'_>, effects: &[Arc<dyn Effect>]) {
+        let refused = Refusal::at(Place::Effects);
+        match self {
+            Self::Comparison(to) => {
+                let found = of_all(|| comparing.with(effects).map(Box::new).map_err(&refused));
+                drop(to.send(found));
+            }
+            Self::Rows(to) => drop(to.send(of_all(|| comparing.rows(effects).map_err(&refused)))),
+            Self::Unsuitable(to) => {
+                drop(to.send(of_all(|| {
+                    Ok(effects.iter().map(|effect| comparing.unsuitable(effect)).collect())
+                })));
+            }
+        }
+    }
+}
+
+/// A computation whose bug ends only the answer.
+pub(crate) fn of_all<T>(compute: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
+    catch_unwind(AssertUnwindSafe(compute)).unwrap_or_else(|_| {
+        let what = "this could not be computed because of a mistake in Bulge: please report it, with the data and the muscle";
+        Err(Refusal::new(Place::Request, what))
+    })
+}
+
+/// A question about some inputs with some effects.
+struct Task {
+    inputs: Arc<Inputs>,
+    effects: Vec<Arc<dyn Effect>>,
+    question: Question,
+}
+
+/// A thread that compares.
+pub(crate) struct Worker(Sender<Task>);
+
+impl Worker {
+    /// Starts it; `held_out`: whether it computes errors on held-out data.
+    pub(crate) fn start(held_out: bool) -> Self {
+        let (tasks, waiting) = channel();
+        thread::spawn(move || work(&waiting, held_out));
+        Self(tasks)
+    }
+
+    /// Asks; the answer comes through the channel of the question.
+    pub(crate) fn ask(&self, inputs: Arc<Inputs>, effects: Vec<Arc<dyn Effect>>, question: Question) {
+        // Without its thread the question is dropped, and whoever waits for the answer hears that.
+        drop(self.0.send(Task { inputs, effects, question }));
+    }
+}
+
+fn work(waiting: &Receiver<Task>, held_out: bool) {
+    let mut first = None;
+    while let Some(task) = first.take().or_else(|| waiting.recv().ok()) {
+        if !task.question.is_given_up() {
+            first = work_on(task, waiting, held_out);
+        }
+    }
+}
+
+/// Answers as long as the questions are about the same inputs; returns the first that isn't.
+fn work_on(task: Task, waiting: &Receiver<Task>, held_out: bool) -> Option<Task> {
+    let inputs = Arc::clone(&task.inputs);
+    let options = inputs.options(Vec::new(), held_out);
+    let begun =
+        of_all(|| Comparing::new(&inputs.data, &inputs.muscle, &options).map_err(Refusal::at(Place::Data)));
+    let comparing = match begun {
+        Ok(comparing) => comparing,
+        Err(refusal) => {
+            task.question.refuse(refusal);
+            return None;
+        }
+    };
+    task.question.answer(&comparing, &task.effects);
+    while let Ok(task) = waiting.recv() {
+        if task.question.is_given_up() {
+            continue;
+        }
+        if !Arc::ptr_eq(&task.inputs, &inputs) {
+            return Some(task);
+        }
+        task.question.answer(&comparing, &task.effects);
+    }
+    None
+}
