@@ -15,6 +15,7 @@ pub(crate) mod mismatch;
 pub(crate) mod requirements;
 pub(crate) mod residuals;
 pub(crate) mod rivals;
+pub(crate) mod row_by_row;
 pub(crate) mod rows;
 mod shifted;
 pub(crate) mod specimens;

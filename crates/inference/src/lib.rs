@@ -29,6 +29,7 @@ pub use comparison::document::{
     Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, HeldLoad, HeldLoadPoint, LeftOut, LoopGap,
     Mismatch, NoiseFloor, Part, ResidualMap, Rival, Rung, Stack,
 };
+pub use comparison::row_by_row::Rows;
 pub use comparison::rows::UNPRESSURISED;
 pub use diagnosis::confidence::Confidence;
 pub use diagnosis::diagnose::{DiagnoseOptions, diagnose};

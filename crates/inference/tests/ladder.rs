@@ -399,3 +399,49 @@ fn heavy_tails_move_a_fitted_number_by_no_more_than_they_would_at_the_bound() {
     let [near, far] = [off(9.0), off(15.0)];
     assert!(near > 0.1 && far < 1.2 * near, "{near} and {far}");
 }
+
+/// Row by row the errors are those of the ladder, and rows that don't count have their reason, their line and the force of the model.
+#[test]
+fn rows_are_those_of_the_ladder() {
+    // One disturbed reading, and one without pressure.
+    let friction = |row: usize, direction: f64| -7.0 * direction + alternating(row);
+    let spiked = |row: usize, direction: f64| if row == 50 { 4e3 } else { friction(row, direction) };
+    let read = loops(spiked);
+    let mut csv = String::from("time [s],sweep,pressure [bar],contraction [-],force [N]\n");
+    for (row, contraction) in read.contraction(0.25).into_iter().enumerate() {
+        let bar = if row == 119 { 0.0 } else { read.pressure()[row] / 1e5 };
+        let _ = writeln!(csv, "{row},{},{bar},{contraction},{}", row / 40, read.force()[row]);
+    }
+    let data = Data::from_csv(&csv, "loops.csv").unwrap();
+    let muscle = muscle("[instruments]\nforce = { noise = \"2 N\" }");
+    let catalogue = Catalogue::builtin();
+    let options = Options::new(catalogue.clone(), Vec::new());
+    let comparing = Comparing::new(&data, &muscle, &options).unwrap();
+    let effects = [Arc::clone(catalogue.find("coulomb-friction").unwrap())];
+    let (comparison, rows) = (comparing.with(&effects).unwrap(), comparing.rows(&effects).unwrap());
+    assert_eq!((rows.len(), rows.effects.as_slice()), (120, &["coulomb-friction".to_owned()][..]));
+    let rmse = |residuals: &[f64]| {
+        let counted = || (0..rows.len()).filter(|row| rows.counts[*row]);
+        (counted().map(|row| residuals[row].powi(2)).sum::<f64>() / counted().count() as f64).sqrt()
+    };
+    for (rung, residuals) in comparison.ladder.iter().zip([rows.base_residual_n(), rows.residual_n()]) {
+        let found = rmse(&residuals);
+        assert!((found / rung.rmse_n - 1.0).abs() < 1e-12, "{found} {}", rung.rmse_n);
+    }
+    let apart: Vec<usize> = (0..120).filter(|row| !rows.counts[*row]).collect();
+    assert_eq!(apart, [50, 119]);
+    for row in 0..120 {
+        assert_eq!((rows.line[row] as usize, rows.sweep[row] as usize), (row + 2, row / 40));
+        assert_eq!(rows.reason[row].is_none(), rows.counts[row]);
+    }
+    let reason = |row: usize| rows.reasons[rows.reason[row].unwrap() as usize].as_str();
+    assert!(reason(50).contains("spike") && reason(119).contains("no gauge pressure"), "{:?}", rows.reasons);
+    // The model of a row that doesn't count is the one of the row at the same place that does.
+    let plain = Model::new(&muscle).at_rest(&[], rows.pressure_pa[50], rows.contraction[50]).unwrap().force_n;
+    assert!((rows.base_n[50] / plain - 1.0).abs() < 1e-9, "{} {plain}", rows.base_n[50]);
+    let friction = rows.base_n[50] - rows.model_n[50];
+    let other = rows.base_n[49] - rows.model_n[49];
+    assert!((friction - other).abs() < 0.02 * other.abs() && (other - 7.0).abs() < 1.0, "{friction} {other}");
+    assert!(rows.model_n[119].is_nan() && rows.residual_n()[119].is_nan(), "{}", rows.model_n[119]);
+    assert_eq!(rows.time_s.as_deref().unwrap()[7].to_bits(), 7.0_f64.to_bits());
+}

@@ -9,6 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::comparison::analysis::{Analysis, Climbed, Options};
 use crate::comparison::document::{Comparison, DataSummary, NoiseFloor, Rung};
+use crate::comparison::row_by_row::Rows;
 use crate::comparison::specimens::note;
 use crate::comparison::warnings::without_state;
 use crate::comparison::{isotonic, loops, residuals, rivals, stack};
@@ -58,6 +59,11 @@ impl Step {
     }
 }
 
+/// The last rung of which any row has a state; the base if none has.
+fn last_that_says_something(analysis: &Analysis<'_>, ladder: &[Arc<Step>]) -> usize {
+    ladder.iter().rposition(|step| step.says_something(analysis)).unwrap_or(0)
+}
+
 /// What the data check finds, with the length of the muscle.
 pub(crate) fn quality(data: &Data, muscle: &Muscle) -> Vec<Finding> {
     let known = QualityOptions { l0_m: Some(muscle.length().si()), ..QualityOptions::default() };
@@ -100,6 +106,21 @@ impl<'a> Comparing<'a> {
         with_it().err().map(|error: InferenceError| error.to_string())
     }
 
+    /// Every row of the data, with the force of the base and of the model with these effects.
+    ///
+    /// Rungs that [`Comparing::with`] has climbed aren't climbed again.
+    ///
+    /// # Errors
+    /// As [`compare`].
+    pub fn rows(&self, effects: &[Arc<dyn Effect>]) -> Result<Rows, InferenceError> {
+        rayon::scope(|_| {
+            let analysis = self.analysis.with_effects(effects)?;
+            let ladder = self.ladder(&analysis, true)?;
+            let rung = last_that_says_something(&analysis, &ladder);
+            Rows::of(&analysis, [&ladder[0].climbed, &ladder[rung].climbed], rung)
+        })
+    }
+
     /// With the effects of the options, once.
     fn asked(self) -> Result<Comparison, InferenceError> {
         self.compared(&self.analysis, false)
@@ -140,7 +161,7 @@ impl<'a> Comparing<'a> {
 
     fn compared(&self, analysis: &Analysis<'_>, again: bool) -> Result<Comparison, InferenceError> {
         let mut ladder = self.ladder(analysis, again)?;
-        let place = ladder.iter().rposition(|step| step.says_something(analysis)).unwrap_or(0);
+        let place = last_that_says_something(analysis, &ladder);
         if let Some(Step { climbed, .. }) = Arc::get_mut(&mut ladder[place])
             && climbed.force.is_empty()
         {

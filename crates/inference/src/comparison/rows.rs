@@ -16,6 +16,8 @@ const MOST_IDLE: f64 = 0.8;
 pub(crate) struct Used {
     pub(crate) mask: Vec<bool>,
     pub(crate) left_out: Vec<LeftOut>,
+    /// Of each row that doesn't count, the place of its reason in the list.
+    pub(crate) reason: Vec<Option<u32>>,
     /// How the data were read, with the rows that no equilibrium has.
     pub(crate) reading: Reading,
 }
@@ -30,10 +32,16 @@ impl Used {
         if rows.is_empty() || rows.len() == self.mask.iter().filter(|counts| **counts).count() {
             return;
         }
-        for row in &rows {
+        self.set_aside(data, &rows, why);
+    }
+
+    fn set_aside(&mut self, data: &Data, rows: &[usize], why: String) {
+        let reason = u32::try_from(self.left_out.len()).ok();
+        for row in rows {
             self.mask[*row] = false;
+            self.reason[*row] = reason;
         }
-        self.left_out.push(LeftOut { why, lines: lines(data, &rows), rows: rows.len() });
+        self.left_out.push(LeftOut { why, lines: lines(data, rows), rows: rows.len() });
     }
 
     /// The rows that count.
@@ -46,18 +54,13 @@ impl Used {
         let pressure = data.pressure();
         let rows: Vec<usize> = (0..pressure.len()).filter(|row| pressure[*row] <= 0.0).collect();
         for row in &rows {
-            self.mask[*row] = false;
             let (file, line) = data.line(*row);
             let file = data.files().get(file).map_or("", |file| file.name.as_str());
             let reason = format!("{UNPRESSURISED} {} Pa has no equilibrium", significant(pressure[*row], 3));
             self.reading.add(file, line, reason);
         }
         if !rows.is_empty() {
-            self.left_out.push(LeftOut {
-                why: "no gauge pressure: nothing balances the fibres".to_owned(),
-                lines: lines(data, &rows),
-                rows: rows.len(),
-            });
+            self.set_aside(data, &rows, "no gauge pressure: nothing balances the fibres".to_owned());
         }
     }
 
@@ -85,8 +88,12 @@ impl Used {
 /// on at zero force; rows in which the muscle pushed.
 pub(crate) fn used(data: &Data) -> Used {
     let force = data.force();
-    let mut used =
-        Used { mask: vec![true; force.len()], left_out: Vec::new(), reading: data.reading().clone() };
+    let mut used = Used {
+        mask: vec![true; force.len()],
+        left_out: Vec::new(),
+        reason: vec![None; force.len()],
+        reading: data.reading().clone(),
+    };
     used.leave_out_unpressurised(data);
     let disturbed = data.disturbed();
     let mut is_disturbed = vec![false; force.len()];

@@ -1,0 +1,140 @@
+//! A comparison row by row: what was read, what the base and the last rung say of it, and whether it counts.
+
+use bulge_model::{Wanted, Warm};
+use serde::Serialize;
+
+use crate::comparison::analysis::{Analysis, Climbed};
+use crate::comparison::levels::sweep_of;
+use crate::error::InferenceError;
+
+/// Every row of the data in the order of the files, one entry of each column for each row.
+///
+/// Forces are those of the models also where a row doesn't count, as far as there is a state; else they are NaN (`null` as JSON).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Rows {
+    /// Names of the files.
+    pub files: Vec<String>,
+    /// Names of the sweeps.
+    pub sweeps: Vec<String>,
+    /// Names of the specimens.
+    pub specimens: Vec<String>,
+    /// Why rows don't count.
+    pub reasons: Vec<String>,
+    /// Effects up to the model of `model_n`, in their order: all that were asked for, but for those at the end with which no row has a state.
+    pub effects: Vec<String>,
+    /// Place of the file in `files`.
+    pub file: Vec<u32>,
+    /// Line in the file, or number of the row where the file has no lines, from 1.
+    pub line: Vec<u32>,
+    /// Place of the sweep in `sweeps`.
+    pub sweep: Vec<u32>,
+    /// Place of the specimen in `specimens`.
+    pub specimen: Vec<u32>,
+    /// Whether the row enters errors and fits.
+    pub counts: Vec<bool>,
+    /// Place of the reason in `reasons`, of rows that don't count.
+    pub reason: Vec<Option<u32>>,
+    /// Time as read \[s\], where there is any.
+    pub time_s: Option<Vec<f64>>,
+    /// Gauge pressure as read \[Pa\].
+    pub pressure_pa: Vec<f64>,
+    /// Contraction as read, 1 - l/l0 where the length was read.
+    pub contraction: Vec<f64>,
+    /// +1 shortening, -1 lengthening, 0 at rest; at held length that of the pressure.
+    pub direction: Vec<f64>,
+    /// Measured force \[N\].
+    pub measured_n: Vec<f64>,
+    /// Force of the base \[N\].
+    pub base_n: Vec<f64>,
+    /// Force of the model with the effects \[N\].
+    pub model_n: Vec<f64>,
+}
+
+impl Rows {
+    pub(crate) fn of(
+        analysis: &Analysis<'_>,
+        [base, last]: [&Climbed; 2],
+        rung: usize,
+    ) -> Result<Self, InferenceError> {
+        let (data, record, used) = (&analysis.data, &analysis.record, &analysis.used);
+        let moments = record.moments();
+        let rows = 0..record.len();
+        let lines: Vec<(usize, usize)> = rows.clone().map(|row| data.line(row)).collect();
+        let base_n = force_of_all(analysis, base)?;
+        let model_n = if rung == 0 { base_n.clone() } else { force_of_all(analysis, last)? };
+        let names = analysis.options.effects[..rung].iter().map(|effect| effect.card().name.to_owned());
+        Ok(Self {
+            files: data.files().iter().map(|file| file.name.clone()).collect(),
+            sweeps: data.sweeps().iter().map(|sweep| sweep.name.clone()).collect(),
+            specimens: record.specimens().to_vec(),
+            reasons: used.left_out.iter().map(|left| left.why.clone()).collect(),
+            effects: names.collect(),
+            file: lines.iter().map(|(file, _)| short(*file)).collect(),
+            line: lines.iter().map(|(_, line)| short(*line)).collect(),
+            sweep: rows.map(|row| short(sweep_of(record.sweeps(), row))).collect(),
+            specimen: moments.iter().map(|moment| moment.specimen).collect(),
+            counts: used.mask.clone(),
+            reason: used.reason.clone(),
+            time_s: data.time().map(<[f64]>::to_vec),
+            pressure_pa: moments.iter().map(|moment| moment.pressure).collect(),
+            contraction: moments.iter().map(|moment| moment.contraction).collect(),
+            direction: moments.iter().map(bulge_effects::Moment::branch).collect(),
+            measured_n: record.force().to_vec(),
+            base_n,
+            model_n,
+        })
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.counts.len()
+    }
+
+    /// Whether there are no rows.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.counts.is_empty()
+    }
+
+    /// Measured force less that of the model with the effects \[N\]; NaN where that has no state.
+    #[must_use]
+    pub fn residual_n(&self) -> Vec<f64> {
+        difference(&self.measured_n, &self.model_n)
+    }
+
+    /// Measured force less that of the base \[N\]; NaN where that has no state.
+    #[must_use]
+    pub fn base_residual_n(&self) -> Vec<f64> {
+        difference(&self.measured_n, &self.base_n)
+    }
+}
+
+/// The force of all rows \[N\]: fits leave out those that don't count, and here they are wanted as well.
+fn force_of_all(analysis: &Analysis<'_>, climbed: &Climbed) -> Result<Vec<f64>, InferenceError> {
+    let mut force = if climbed.force.is_empty() {
+        analysis.predicted(&climbed.prepared, &climbed.theta)?.prediction.force
+    } else {
+        climbed.force.clone()
+    };
+    let others: Vec<bool> = analysis.used.mask.iter().map(|counts| !counts).collect();
+    if others.contains(&true) {
+        let only = Warm::of_rows(&others);
+        let model = &climbed.prepared.model;
+        let found = model.evaluate_partly(&analysis.record, &climbed.theta, &Wanted::default(), &only);
+        let found = found.map_err(|error| analysis.about(error))?.prediction.force;
+        for row in (0..force.len()).filter(|row| others[*row]) {
+            force[row] = found[row];
+        }
+    }
+    Ok(force)
+}
+
+fn difference(measured: &[f64], model: &[f64]) -> Vec<f64> {
+    measured.iter().zip(model).map(|(measured, model)| measured - model).collect()
+}
+
+fn short(number: usize) -> u32 {
+    // Files of more rows aren't read: their lines are numbers of this kind.
+    u32::try_from(number).unwrap_or(u32::MAX)
+}
