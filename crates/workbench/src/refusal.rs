@@ -6,7 +6,7 @@ use serde::Serialize;
 /// Where on the page a sentence belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Place {
+pub(crate) enum Place {
     /// The files.
     Data,
     /// What the columns are taken for.
@@ -27,12 +27,12 @@ pub enum Place {
 
 /// Why something was not done.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Refusal {
+pub(crate) struct Refusal {
     /// What, where, and what to write instead.
-    pub error: String,
+    pub(crate) error: String,
     /// Where on the page it belongs.
     #[serde(rename = "where")]
-    pub place: Place,
+    pub(crate) place: Place,
     /// The columns of the files, where these could not be told apart.
     #[serde(skip)]
     pub(crate) columns: Vec<ColumnUse>,

@@ -5,7 +5,7 @@ use bulge_fibre::{Approach, Given};
 use bulge_model::{Equilibrium, Extended};
 use bulge_muscles::{Muscle, Pressure, Quantity};
 use bulge_vtk::{Bulge, Style, vtp_bytes};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::refusal::{Place, Refusal};
 
@@ -13,10 +13,12 @@ use crate::refusal::{Place, Refusal};
 const POINTS: usize = 81;
 
 /// Where a muscle is looked at.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct State {
-    pressure_pa: f64,
-    contraction: f64,
+    /// Gauge pressure \[Pa\].
+    pub(crate) pressure_pa: f64,
+    /// Contraction.
+    pub(crate) contraction: f64,
 }
 
 #[derive(Debug, Serialize)]
