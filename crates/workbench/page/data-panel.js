@@ -1,0 +1,126 @@
+// @ts-check
+// Files in, and what was found in them: remarks of the check, rows that don't count and why.
+
+import { Refusal } from "./api.js";
+import { byId, fill, h, input } from "./dom.js";
+import { counted, sentence } from "./format.js";
+import { showAt } from "./notices.js";
+import { change, on, report, sendFile, state } from "./store.js";
+
+/** Rows that are named one by one. */
+const MOST_ROWS = 40;
+
+/** The file that the server could not read yet. @type {File | null} */
+let refused = null;
+
+function draw() {
+  const session = state.session;
+  if (!session) return;
+  const { reading } = session;
+  const sweeps = /** @type {any} */ (reading).sweeps;
+  byId("data-facts").textContent = [counted(session.data.rows, "row"), typeof sweeps === "number" ? counted(sweeps, "sweep") : ""].filter(Boolean).join(", ");
+  fill(byId("remarks"), ...remarks(reading), aside(reading), excluded(session.excluded.length), session.columns ? mapping(session.columns) : null);
+}
+
+/** @param {import("./types.js").Reading} reading */
+function remarks(reading) {
+  const found = [...(reading.findings ?? []), .../** @type {any} */ (reading).notes ?? [], ...(reading.quality ?? [])];
+  const texts = found.map((item) => [sentence(item), typeof item === "object" && item?.instead ? String(item.instead) : ""]).filter(([text]) => text);
+  return texts.map(([text, instead]) => h("p", { class: "remark" }, text, instead ? h("code", null, ` ${instead}`) : null));
+}
+
+/** Rows that the reading set apart or the check left out, by reason. @param {import("./types.js").Reading} reading */
+function aside(reading) {
+  const left = reading.left_out ?? [];
+  const apart = reading.set_apart ?? [];
+  const apartCount = reading.set_apart_rows ?? apart.length;
+  if (!left.length && !apartCount) return null;
+  const lines = [...apart, ...left].map((/** @type {Record<string, any>} */ row) => {
+    const at = row.line ?? row.row;
+    return `${at === undefined ? "" : `line ${at}: `}${sentence(row)}`;
+  });
+  const head = [left.length ? `${counted(left.length, "row")} left out` : "", apartCount ? `${counted(apartCount, "row")} set apart` : ""].filter(Boolean).join(", ");
+  return h(
+    "details", { class: "remark", id: "left-out" }, h("summary", null, head),
+    h("ul", null, ...lines.slice(0, MOST_ROWS).map((line) => h("li", null, line)), lines.length > MOST_ROWS ? h("li", null, `and ${lines.length - MOST_ROWS} more`) : null),
+  );
+}
+
+/** @param {number} count */
+function excluded(count) {
+  if (!count) return null;
+  return h("p", { class: "remark", id: "excluded" }, `${counted(count, "row")} excluded by hand `, h("button", { type: "button", class: "small", onclick: () => void change(() => ({ excluded: [] })) }, "bring all back"));
+}
+
+/** @param {string} columns */
+function mapping(columns) {
+  return h("p", { class: "remark", id: "mapping" }, "columns as said: ", h("code", null, columns), " ", h("button", { type: "button", class: "small", id: "forget-columns", onclick: () => void change(() => ({ columns: null }), "columns") }, "forget"));
+}
+
+/** @param {File} file @param {string} [columns] */
+async function take(file, columns) {
+  byId("assign").hidden = true;
+  showAt("data", "");
+  showAt("columns", "");
+  try {
+    await sendFile(file, file.name, { add: input("add-file").checked, columns });
+    refused = null;
+  } catch (error) {
+    if (error instanceof Refusal && (error.where === "columns" || error.where === "data")) {
+      showAt("data", `${file.name}: ${error.message}`);
+      // Which column is which may be all that is missing.
+      if (error.where === "columns" || error.message.includes("column")) {
+        refused = file;
+        byId("assign").hidden = false;
+        input("assign-columns").value ||= suggestion(error.message);
+      }
+      return;
+    }
+    report(error, "data");
+  }
+}
+
+/** What the server's own sentence says to write. @param {string} says */
+function suggestion(says) {
+  return [...says.matchAll(/--columns "([^"]+)"/g)].map((found) => found[1]).filter((text) => !text.includes("NAME")).join(", ");
+}
+
+export function startDataPanel() {
+  on("session", (why) => {
+    if (why !== "refused") draw();
+  });
+  input("file").addEventListener("change", () => {
+    const file = input("file").files?.[0];
+    if (file) void take(file);
+    input("file").value = "";
+  });
+  byId("assign").addEventListener("submit", (event) => {
+    event.preventDefault();
+    if (refused) void take(refused, input("assign-columns").value.trim());
+  });
+  byId("assign-cancel").addEventListener("click", () => {
+    refused = null;
+    byId("assign").hidden = true;
+    showAt("data", "");
+  });
+
+  // A file may be dropped anywhere: whoever misses the box would otherwise leave the page.
+  let depth = 0;
+  const isFile = (/** @type {DragEvent} */ event) => event.dataTransfer?.types.includes("Files");
+  addEventListener("dragenter", (event) => {
+    if (isFile(event)) document.body.classList.toggle("dropping", (depth += 1) > 0);
+  });
+  addEventListener("dragleave", (event) => {
+    if (isFile(event)) document.body.classList.toggle("dropping", (depth -= 1) > 0);
+  });
+  addEventListener("dragover", (event) => event.preventDefault());
+  addEventListener("drop", (event) => {
+    event.preventDefault();
+    depth = 0;
+    document.body.classList.remove("dropping");
+    const file = event.dataTransfer?.files[0];
+    if (!file) return;
+    if (file.name.endsWith(".toml")) dispatchEvent(new CustomEvent("muscle-file", { detail: file }));
+    else void take(file);
+  });
+}

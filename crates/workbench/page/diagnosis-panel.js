@@ -1,0 +1,167 @@
+// @ts-check
+// Diagnose: a run with its progress, then the verdict as an offer. A preview switches the plots to a claim until it is kept or discarded.
+
+import { diagnose, isAborted } from "./api.js";
+import { byId, button, fill, h } from "./dom.js";
+import { notice } from "./notices.js";
+import { change, on, report, state, step } from "./store.js";
+import { showTab } from "./tabs.js";
+import { verdict } from "./verdict.js";
+
+/** @typedef {import("./types.js").Diagnosis} Diagnosis */
+/** @typedef {import("./types.js").ChosenEffect} ChosenEffect */
+
+/** @type {Diagnosis | null} */
+let found = null;
+/** The effects that the model had when it was diagnosed. @type {ChosenEffect[]} */
+let askedWith = [];
+let askedFor = "";
+/** @type {AbortController | null} */
+let running = null;
+/** @type {{before: ChosenEffect[], names: string[], revision: number} | null} */
+let preview = null;
+/** @type {{share: number, what: string}} */
+let progress = { share: 0, what: "" };
+
+/** What a diagnosis is about, beside the effects. */
+const subject = () => JSON.stringify([state.session?.data, state.session?.columns, state.session?.muscle.toml, state.session?.excluded]);
+
+async function run() {
+  showTab("diagnosis");
+  running?.abort();
+  running = new AbortController();
+  const mine = running;
+  progress = { share: 0, what: "" };
+  askedWith = state.effects;
+  askedFor = subject();
+  found = null;
+  await endPreview(true);
+  document.body.dataset.diagnosis = "running";
+  draw();
+  try {
+    const result = await diagnose(mine.signal, (now) => {
+      if (mine !== running) return;
+      progress = now;
+      drawProgress();
+    });
+    if (mine !== running) return;
+    found = result;
+    document.body.dataset.diagnosis = "done";
+  } catch (error) {
+    if (mine !== running) return;
+    document.body.dataset.diagnosis = "failed";
+    if (!isAborted(error)) {
+      failure = error instanceof Error ? error.message : "";
+      report(error, "diagnosis");
+    }
+  } finally {
+    if (mine === running) {
+      running = null;
+      draw();
+      failure = "";
+    }
+  }
+}
+
+let failure = "";
+
+function drawProgress() {
+  const bar = /** @type {HTMLProgressElement | null} */ (document.getElementById("diagnosis-progress"));
+  if (!bar) return;
+  bar.value = progress.share;
+  byId("diagnosis-what").textContent = `${Math.round(100 * progress.share)} %${progress.what ? `: ${progress.what}` : ""}`;
+}
+
+function draw() {
+  const panel = byId("diagnosis-panel");
+  button("diagnose").textContent = running ? "Diagnosing" : "Diagnose";
+  button("diagnose").classList.toggle("running", Boolean(running));
+  if (running) {
+    fill(
+      panel, h("p", null, "Looking for what the model lacks."), h("progress", { id: "diagnosis-progress", max: 1, value: 0, "aria-label": "Progress of the diagnosis" }),
+      h("p", { id: "diagnosis-what", role: "status", class: "facts" }), h("button", { type: "button", id: "diagnosis-cancel", class: "small", onclick: cancel }, "Cancel"),
+    );
+    drawProgress();
+    return;
+  }
+  if (!found) {
+    fill(
+      panel, failure ? h("p", { class: "error" }, failure) : null,
+      h("p", { class: "empty" }, "Which physical effect is missing, and how sure that is: press Diagnose. What is found is an offer; nothing is switched on by itself."),
+      h("button", { type: "button", class: "primary", onclick: () => void run() }, "Diagnose"),
+    );
+    return;
+  }
+  const isStale = askedFor !== subject();
+  fill(
+    panel, isStale ? h("p", { class: "remark" }, "Data or muscle have changed since this diagnosis.") : null,
+    preview ? previewBox(preview) : null,
+    ...verdict(found, { has: (name) => state.effects.some((effect) => effect.name === name), accept, tryInstead, showMe }),
+    h("div", { class: "row end" }, h("button", { type: "button", id: "diagnose-again", class: "primary", onclick: () => void run() }, "Go on: diagnose again with what is on"), h("a", { href: "api/diagnosis-report", target: "_blank", rel: "noopener", class: "button small" }, "Report")),
+  );
+}
+
+/** @param {{names: string[]}} of */
+function previewBox(of) {
+  return h(
+    "div", { class: "preview", id: "preview", role: "status" }, h("p", null, "Preview: the plots show the model with ", h("b", null, of.names.join(", ")), "."),
+    h("button", { type: "button", class: "small primary", id: "preview-keep", onclick: () => void endPreview(true) }, "Keep"), " ",
+    h("button", { type: "button", class: "small", id: "preview-discard", onclick: () => void endPreview(false) }, "Discard"),
+  );
+}
+
+function cancel() {
+  const was = running;
+  running = null;
+  was?.abort();
+  document.body.dataset.diagnosis = "cancelled";
+  draw();
+  notice("The diagnosis is cancelled.");
+}
+
+/** @param {ChosenEffect[]} effects @param {string[]} names those that it lacks, behind it */
+const withNames = (effects, names) => [...effects, ...names.filter((name) => !effects.some((effect) => effect.name === name)).map((name) => ({ name }))];
+
+/** @param {string[]} names */
+async function accept(names) {
+  // What was shown as a preview becomes the answer.
+  preview = null;
+  await change((now) => ({ effects: withNames(now.effects, names) }), "effects");
+  draw();
+}
+
+/** @param {string} claim @param {string} rival */
+async function tryInstead(claim, rival) {
+  preview = null;
+  await change((now) => ({ effects: withNames(now.effects.filter((effect) => effect.name !== claim), [rival]) }), "effects");
+  draw();
+}
+
+/** Shows the plots with the model as diagnosed and these effects. @param {string[]} names */
+async function showMe(names) {
+  const before = preview?.before ?? state.effects;
+  const isTaken = await change((now) => {
+    const effects = withNames(askedWith, names);
+    return JSON.stringify(effects) === JSON.stringify(now.effects) ? null : { effects };
+  }, "effects");
+  if (isTaken) preview = { before, names, revision: state.session?.revision ?? 0 };
+  draw();
+}
+
+/** @param {boolean} isKept */
+async function endPreview(isKept) {
+  const was = preview;
+  preview = null;
+  if (was && !isKept) {
+    // Where nothing came after it, the preview leaves no trace in what can be undone.
+    if (state.session?.revision === was.revision && JSON.stringify(was.before) !== JSON.stringify(state.effects)) await step("undo");
+    if (JSON.stringify(was.before) !== JSON.stringify(state.effects)) await change(() => ({ effects: was.before }), "effects");
+  }
+  draw();
+}
+
+export function startDiagnosis() {
+  button("diagnose").addEventListener("click", () => (running ? showTab("diagnosis") : void run()));
+  on("session", draw);
+  draw();
+}

@@ -1,0 +1,112 @@
+// @ts-check
+// The catalogue: what is on, with its numbers; and what could be, by stage, with a switch each.
+
+import { details } from "./effect-card.js";
+import { byId, fill, h, input, keepingFocus } from "./dom.js";
+import { numbersOfEffect } from "./numbers.js";
+import { change, on, state } from "./store.js";
+
+/** @typedef {import("./types.js").Card} Card */
+
+/** Order of the stages along the way from what is set to what is read; others follow. */
+const STAGES = ["input", "shape", "load", "output"];
+
+/** Cards that are open. @type {Set<string>} */
+const open = new Set();
+
+/** @param {string} name */
+export const isOn = (name) => state.effects.some((effect) => effect.name === name);
+
+/** @param {string} name @param {boolean} wanted */
+export function setEffect(name, wanted) {
+  performance.mark("switch:click");
+  for (const control of document.querySelectorAll("[role=switch]")) if (/** @type {HTMLElement} */ (control).dataset.effect === name) control.setAttribute("aria-checked", String(wanted));
+  return change((now) => {
+    const isThere = now.effects.some((effect) => effect.name === name);
+    if (isThere === wanted) return null;
+    return { effects: wanted ? [...now.effects, { name }] : now.effects.filter((effect) => effect.name !== name) };
+  }, "effects");
+}
+
+/** @param {string} name @param {string} title @param {boolean} isUsable */
+function switchOf(name, title, isUsable) {
+  const checked = isOn(name);
+  return h("button", {
+    type: "button", role: "switch", class: "switch", "aria-checked": checked, "aria-label": title, "data-effect": name, disabled: !isUsable && !checked, onclick: () => void setEffect(name, !isOn(name)),
+  }, h("span", { class: "knob" }));
+}
+
+/** @param {Card} card @param {boolean} isActive */
+function item(card, isActive) {
+  const isUsable = !card.unsuitable;
+  const key = `${isActive ? "active" : "list"}:${card.name}`;
+  const isOpen = open.has(key);
+  const name = h(
+    "button",
+    {
+      type: "button", class: "link title", "aria-expanded": isOpen, "data-card": card.name, title: card.about, onclick: () => {
+        if (isOpen) open.delete(key);
+        else open.add(key);
+        draw();
+      },
+    },
+    h("span", { class: "name" }, card.name), h("span", { class: "what" }, card.title),
+  );
+  return h(
+    "li", { class: isUsable ? "effect" : "effect unsuitable", "data-item": card.name },
+    switchOf(card.name, card.title, isUsable), name,
+    card.unsuitable ? h("p", { class: "reason" }, card.unsuitable) : null,
+    isActive ? numbersOfEffect(card.name) : null,
+    isOpen ? details(card) : null,
+  );
+}
+
+/** A stand-in for an effect of which there is no card yet. @param {string} name @returns {Card} */
+const bareCard = (name) => ({ name, title: "", about: "", equation: "", source: "", stage: "", mechanism: "", separate: "", signature: null, twins: [], parameters: [] });
+
+/** @param {Card} card @param {string} sought */
+function matches(card, sought) {
+  if (!sought) return true;
+  const text = [card.name, card.title, card.about, card.equation, card.source, card.stage, card.mechanism].join(" ").toLowerCase();
+  return sought.split(/\s+/).every((word) => text.includes(word));
+}
+
+function drawActive() {
+  const cards = state.effects.map((effect) => state.card(effect.name) ?? bareCard(effect.name));
+  fill(byId("active"), cards.length ? h("h3", null, `On (${cards.length})`) : null, cards.length ? h("ul", { class: "effects" }, ...cards.map((card) => item(card, true))) : h("p", { class: "empty" }, "No effect is on: the model is the muscle as stated."));
+}
+
+function drawCatalogue() {
+  const sought = input("search").value.trim().toLowerCase();
+  const found = state.cards.filter((card) => matches(card, sought));
+  const stages = [...new Set([...STAGES, ...state.cards.map((card) => card.stage)])];
+  const groups = stages.flatMap((stage) => {
+    const its = found.filter((card) => card.stage === stage);
+    if (!its.length) return [];
+    // What can't be added here stands last.
+    const sorted = [...its.filter((card) => !card.unsuitable), ...its.filter((card) => card.unsuitable)];
+    return [h("section", { class: "stage", "data-stage": stage }, h("h3", null, stage, h("span", { class: "facts" }, ` ${its.length}`)), h("ul", { class: "effects" }, ...sorted.map((card) => item(card, false))))];
+  });
+  fill(byId("catalogue"), ...groups, state.cards.length && !found.length ? h("p", { class: "empty" }, `No effect holds “${sought}”.`) : null);
+}
+
+function draw() {
+  // While a slider is held its element must stay.
+  if (!document.querySelector("#active [data-held-by-hand]")) keepingFocus(byId("active"), drawActive);
+  keepingFocus(byId("catalogue"), drawCatalogue);
+}
+
+export function startEffects() {
+  on("session", draw);
+  on("documents", draw);
+  on("held-out", draw);
+  on("cards", draw);
+  on("numbers", draw);
+  input("search").addEventListener("input", drawCatalogue);
+  input("search").addEventListener("keydown", (event) => {
+    if (event.key === "Escape") {
+      input("search").value = "";
+      drawCatalogue();
+    }
+  });
+}

@@ -1,0 +1,120 @@
+// @ts-check
+// The muscle: a shipped one, a file, a form with its numbers, or its text.
+
+import { get } from "./api.js";
+import { byId, fill, h, input, select } from "./dom.js";
+import { showAt } from "./notices.js";
+import { change, on, report, state } from "./store.js";
+import { fieldNamed, numbersOf, replaced } from "./toml.js";
+
+/** The text as it is edited here; it becomes the muscle once the server takes it. */
+let draft = "";
+let drawnFor = "";
+
+/** @param {string} toml @returns {Promise<boolean>} */
+function send(toml) {
+  draft = toml;
+  if (toml === state.session?.muscle.toml) {
+    // Back to what the server has: there is nothing to ask and no complaint left.
+    clearComplaints();
+    drawnFor = "";
+    draw();
+    return Promise.resolve(true);
+  }
+  return change(() => ({ muscle: { toml } }), "muscle");
+}
+
+function draw() {
+  const muscle = state.session?.muscle;
+  if (!muscle) return;
+  const choice = select("shipped");
+  choice.value = muscle.shipped ?? "";
+  const own = choice.querySelector('option[value=""]');
+  if (own) own.textContent = muscle.shipped ? "own file" : muscle.name;
+  if (drawnFor === muscle.toml) return;
+  drawnFor = draft = muscle.toml;
+  input("muscle-toml").value = draft;
+  drawForm();
+}
+
+function drawForm() {
+  const form = byId("muscle-form");
+  let table = "";
+  const rows = numbersOf(draft).flatMap((field) => {
+    const id = `field-${[field.table, field.key].filter(Boolean).join("-").replace(/[^A-Za-z0-9_-]/g, "-")}`;
+    const head = field.table !== table ? [h("h3", null, field.table)] : [];
+    table = field.table;
+    const box = h("input", { id, type: "text", value: field.value, "data-key": field.key, "data-table": field.table, autocomplete: "off", spellcheck: "false" });
+    box.addEventListener("change", () => void edit(field, box.value.trim()));
+    return [...head, h("label", { for: id }, field.key.replaceAll("_", " ")), box];
+  });
+  fill(form, ...rows);
+}
+
+/** @param {import("./toml.js").Field} field @param {string} value */
+async function edit(field, value) {
+  // Where the field stands may have moved since the form was drawn.
+  const now = numbersOf(draft).find((one) => one.key === field.key && one.table === field.table);
+  if (now && value && now.value !== value) await send(replaced(draft, now, value));
+}
+
+/** @param {string} says */
+function showRefusal(says) {
+  const field = fieldNamed(numbersOf(draft), says);
+  for (const old of document.querySelectorAll("#muscle-form .field-error")) old.remove();
+  const box = field && [...document.querySelectorAll("#muscle-form input")].find((one) => one instanceof HTMLInputElement && one.dataset.key === field.key && one.dataset.table === field.table);
+  input("muscle-toml").value = draft;
+  if (!box) return;
+  showAt("muscle", "");
+  box.setAttribute("aria-invalid", "true");
+  const note = h("p", { class: "field-error", id: `${box.id}-error`, role: "alert" }, says);
+  box.setAttribute("aria-describedby", note.id);
+  box.after(note);
+}
+
+function clearComplaints() {
+  showAt("muscle", "");
+  for (const box of document.querySelectorAll("#muscle-form [aria-invalid]")) box.removeAttribute("aria-invalid");
+  for (const old of document.querySelectorAll("#muscle-form .field-error")) old.remove();
+}
+
+/** @param {Blob} file */
+async function takeFile(file) {
+  await send(await file.text());
+}
+
+export async function startMusclePanel() {
+  on("session", (why) => {
+    if (why === "refused") return;
+    clearComplaints();
+    draw();
+  });
+  on("refused", ({ says, where }) => {
+    if (where === "muscle") showRefusal(says);
+  });
+  input("muscle-file").addEventListener("change", () => {
+    const file = input("muscle-file").files?.[0];
+    if (file) void takeFile(file);
+    input("muscle-file").value = "";
+  });
+  addEventListener("muscle-file", (event) => void takeFile(/** @type {CustomEvent<File>} */ (event).detail));
+  byId("muscle-apply").addEventListener("click", () => void send(input("muscle-toml").value));
+  byId("muscle-revert").addEventListener("click", () => {
+    drawnFor = "";
+    showAt("muscle", "");
+    draw();
+  });
+  const choice = select("shipped");
+  choice.addEventListener("change", () => {
+    const shipped = choice.value;
+    if (shipped) void change(() => ({ muscle: { shipped } }), "muscle");
+  });
+  try {
+    /** @type {{muscles: {name: string, title: string}[]}} */
+    const { muscles } = await get("muscles");
+    fill(choice, h("option", { value: "" }, "own file"), h("optgroup", { label: "shipped" }, ...muscles.map(({ name, title }) => h("option", { value: name, title }, `${name}: ${title}`))));
+  } catch (error) {
+    report(error);
+  }
+  draw();
+}
