@@ -27,8 +27,8 @@ from report_check import FLAGS, OVERFLOW, Browser, Checks, Trouble, complaints_o
 WIDE, NARROW = (1440, 900), (400, 800)
 LIMIT = 900
 # Of the browser: the page is on this machine, and the bulge needs WebGL, which SwiftShader draws without a card.
-PAGE_FLAGS = [flag for flag in FLAGS if not flag.startswith(("--host-resolver", "--disable-gpu"))] + [
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+PAGE_FLAGS = [flag for flag in FLAGS if not flag.startswith("--host-resolver")] + [
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1", "--enable-unsafe-swiftshader",
 ]
 HOSTILE = '<img src=x onerror="window.hurt=1">'
 EFFECTS = ["end-taper", "bladder-elasticity", "coulomb-friction"]
@@ -408,7 +408,8 @@ def play(page, checks, arguments, address, folder):
     if arguments.big:
         story.part("many rows", lambda: story.many(arguments.big, arguments.pictures))
     # What the server refuses with a sentence is a complaint of the console too.
-    serious = [text for text in complaints_of(page) if "Failed to load resource" not in text]
+    # Chromium without a card says how slowly it reads pixels back.
+    serious = [text for text in complaints_of(page) if "Failed to load resource" not in text and "GL Driver Message" not in text]
     checks.check("no complaint on the console", serious)
     return story
 
