@@ -55,6 +55,9 @@ export function ranges(sorted, most = 3) {
   return found.length > most ? `${shown} and ${found.length - most} more ranges` : shown;
 }
 
+/** A refusal without the excerpt of the file below it: the page marks the place itself. @param {string} says */
+export const withoutExcerpt = (says) => says.split("\n").filter((line) => !/^\s*\d*\s*\|/.test(line)).map((line) => line.replace(/^\s*= /, "")).join("\n").trim();
+
 /** What a document says, whether it is a sentence or an object around one. @param {any} item @returns {string} */
 export function sentence(item) {
   if (typeof item === "string") return item;

@@ -132,7 +132,7 @@ export class BulgeScene {
     if (this.size && size < 1.4 * this.size && size > this.size / 1.4) return;
     this.size = size;
     // Half of the field of view is 14 degrees; the fittings need some room too.
-    const distance = (1.2 * size) / Math.tan((14 * Math.PI) / 180) / Math.max(1, this.camera.aspect);
+    const distance = (1.32 * size) / Math.tan((14 * Math.PI) / 180) / Math.max(1, this.camera.aspect);
     this.camera.near = distance / 100;
     this.camera.far = distance * 10;
     this.camera.position.set(0.25 * distance, 0.38 * distance, 0.88 * distance);
