@@ -91,7 +91,10 @@ def installed(*names):
 
 
 class Browser:
-    """A session of chromedriver, which ends with the `with` block, or after LIMIT seconds."""
+    """A session of chromedriver, which ends with the `with` block, or after so many seconds."""
+
+    def __init__(self, flags=FLAGS, limit=LIMIT):
+        self.flags, self.limit = flags, limit
 
     def __enter__(self):
         chromium, driver = installed("chromium", "chromium-browser", "google-chrome"), installed("chromedriver")
@@ -101,13 +104,13 @@ class Browser:
             [driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True
         )
         self.is_late = False
-        self.watch = threading.Timer(LIMIT, self.too_late)
+        self.watch = threading.Timer(self.limit, self.too_late)
         self.watch.daemon = True
         self.watch.start()
         self.session = None
         try:
             self.url = f"http://127.0.0.1:{self.port()}"
-            options = {"binary": chromium, "args": [*FLAGS, f"--user-data-dir={self.folder}"]}
+            options = {"binary": chromium, "args": [*self.flags, f"--user-data-dir={self.folder}"]}
             capabilities = {
                 "browserName": "chrome",
                 "goog:chromeOptions": options,
@@ -150,7 +153,7 @@ class Browser:
         for line in self.driver.stdout:
             if "successfully on port" in line:
                 return int(line.rsplit("port", 1)[1].strip().rstrip("."))
-        raise Trouble(f"it took longer than {LIMIT} s" if self.is_late else "chromedriver did not start")
+        raise Trouble(f"it took longer than {self.limit:.0f} s" if self.is_late else "chromedriver did not start")
 
     def send(self, method, path, body=None):
         data = None if body is None else json.dumps(body).encode()
@@ -158,7 +161,7 @@ class Browser:
         # Not through a proxy of the environment: chromedriver is on this machine.
         opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
         try:
-            with opener.open(request, timeout=LIMIT) as answer:
+            with opener.open(request, timeout=self.limit) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
             with error:
@@ -166,7 +169,7 @@ class Browser:
             says = (value.get("message") or "").split("\n")[0]
             raise Trouble(f"the browser refuses {path.rsplit('/', 1)[-1]}: {value.get('error')}: {says}") from None
         except (OSError, http.client.HTTPException) as error:
-            late = f"it took longer than {LIMIT} s" if self.is_late else f"the browser does not answer: {error}"
+            late = f"it took longer than {self.limit:.0f} s" if self.is_late else f"the browser does not answer: {error}"
             raise Trouble(late) from None
 
     def do(self, path, body=None):

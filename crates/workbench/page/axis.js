@@ -55,7 +55,7 @@ export function ticks(axis, most) {
 function even(low, high, most) {
   const rough = (high - low) / Math.max(1, most);
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * ([1, 2, 5, 10].find((s) => s * power >= rough) ?? 10);
+  const step = power * ([1, 2, 5, 10].find((s) => s * power >= 0.75 * rough) ?? 10);
   const found = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1) found.push(Number((i * step).toPrecision(12)));
   return found;

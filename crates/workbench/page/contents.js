@@ -1,7 +1,7 @@
 // @ts-check
 // What each plot shows of the rows: which columns, in which colours, with which lines.
 
-import { inks, signedColour, sweepColour } from "./palette.js";
+import { inks, lineColour, signedColour, sweepColour } from "./palette.js";
 
 /** @typedef {import("./types.js").Rows} Rows */
 /** @typedef {import("./plot.js").Content} Content */
@@ -95,7 +95,7 @@ export function force(rows, against, how) {
   strokes(rows, x.values, isPath).forEach((run, i) => {
     if (!run.length) return;
     lines.push({ name: `base ${i + 1}`, colour: ink.base, width: 1, isFaint: true, rows: run, y: rows.of.base });
-    if (how.hasEffects) lines.push({ name: `model ${i + 1}`, colour: sweepColour(i, colourCount(rows)), width: 1.6, rows: run, y: rows.of.model });
+    if (how.hasEffects) lines.push({ name: `model ${i + 1}`, colour: lineColour(i, colourCount(rows)), width: 1.5, rows: run, y: rows.of.model });
   });
   const extra = [rows.of.model, rows.of.base];
   return { x, y: side(rows, "measured", how.isLog), groups: bySweep(rows), lines, extra };

@@ -23,6 +23,13 @@ export function quantity(value, unit, digits = 3) {
 /** @param {number | null | undefined} value */
 export const newtons = (value) => quantity(value, "N");
 
+/** Both ends of an interval, with as many digits as tell them apart. @param {number} low @param {number} high */
+export function interval(low, high) {
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  const digits = high > low && size > 0 ? Math.min(7, Math.max(3, 2 + Math.ceil(Math.log10(size / (high - low))))) : 3;
+  return `${number(low, digits)} to ${number(high, digits)}`;
+}
+
 /** @param {number} value with its sign */
 export const signed = (value) => (value > 0 ? `+${number(value)}` : number(value));
 
@@ -47,6 +54,9 @@ export function ranges(sorted, most = 3) {
   const shown = found.slice(0, most).join(", ");
   return found.length > most ? `${shown} and ${found.length - most} more ranges` : shown;
 }
+
+/** A refusal without the excerpt of the file below it: the page marks the place itself. @param {string} says */
+export const withoutExcerpt = (says) => says.split("\n").filter((line) => !/^\s*\d*\s*\|/.test(line)).map((line) => line.replace(/^\s*= /, "")).join("\n").trim();
 
 /** What a document says, whether it is a sentence or an object around one. @param {any} item @returns {string} */
 export function sentence(item) {

@@ -49,6 +49,8 @@ function draw() {
       h("span", { class: state.heldOutIsPending ? "rung-held pending" : "rung-held" }, held),
     ));
   }));
+  if (ladder.length === 1) byId("ladder").append(h("li", { class: "empty" }, "Switch an effect on, or press Diagnose: each effect adds a rung."));
+  byId("ladder").scrollTop = byId("ladder").scrollHeight;
   const texts = [...new Set([...comparison.warnings, ...ladder.map((rung) => rung.without_state ?? "")].filter((text) => typeof text === "string" && text))];
   fill(byId("warnings"), ...texts.map((text) => h("li", null, text)));
 }

@@ -3,6 +3,7 @@
 
 import { get } from "./api.js";
 import { byId, fill, h, input, select } from "./dom.js";
+import { withoutExcerpt } from "./format.js";
 import { showAt } from "./notices.js";
 import { change, on, report, state } from "./store.js";
 import { fieldNamed, numbersOf, replaced } from "./toml.js";
@@ -67,7 +68,7 @@ function showRefusal(says) {
   if (!box) return;
   showAt("muscle", "");
   box.setAttribute("aria-invalid", "true");
-  const note = h("p", { class: "field-error", id: `${box.id}-error`, role: "alert" }, says);
+  const note = h("p", { class: "field-error", id: `${box.id}-error`, role: "alert" }, withoutExcerpt(says));
   box.setAttribute("aria-describedby", note.id);
   box.after(note);
 }

@@ -2,6 +2,7 @@
 // Where the server's refusals appear: at the part of the page that they are about. And what happens when something of the page itself fails.
 
 import { byId, fill, h } from "./dom.js";
+import { withoutExcerpt } from "./format.js";
 import { on } from "./store.js";
 
 const PLACES = /** @type {Record<string, string>} */ ({
@@ -11,7 +12,7 @@ const PLACES = /** @type {Record<string, string>} */ ({
 /** @param {string} where @param {string} says an empty text takes it away */
 export function showAt(where, says) {
   const place = byId(PLACES[where] ?? "data-error");
-  place.textContent = says;
+  place.textContent = withoutExcerpt(says);
   place.hidden = !says;
 }
 

@@ -2,7 +2,7 @@
 // The numbers of an effect that is on: value, interval, a slider within bounds, and whether it is fitted or held.
 
 import { h } from "./dom.js";
-import { number, quantity } from "./format.js";
+import { interval, quantity } from "./format.js";
 import { change, changeSoon, state, tell } from "./store.js";
 
 /** @typedef {import("./types.js").Fitted} Fitted */
@@ -63,16 +63,16 @@ function one(effect, name, parameter, fits) {
   const value = held ?? fit?.value ?? parameter?.typical ?? 0;
   const bounds = boundsOf(parameter, fit);
   const shown = h("output", { class: "value", "data-value": value }, quantity(value, unit));
-  const interval = h("span", { class: "interval" }, isHeld ? "held" : intervalOf(fit));
+  const range = h("span", { class: "interval" }, isHeld ? "held" : intervalOf(fit));
   const id = `${effect}-${name}`;
   const row = h(
     "div", { class: fit && !fit.plausible ? "number implausible" : "number", "data-number": id },
-    h("span", { class: "number-name", title: parameter?.about }, name.replaceAll("_", " ")), shown, interval,
+    h("span", { class: "number-name", title: parameter?.about }, name.replaceAll("_", " ")), shown, range,
     h("button", {
       type: "button", class: "small fit-hold", "aria-pressed": isHeld, "data-hold": id, title: isHeld ? "held: click to fit it again" : "fitted: click to hold it at this value",
       onclick: () => void change(holding(effect, name, isHeld ? null : Number(value.toPrecision(6))), "effects"),
     }, isHeld ? "hold" : "fit"),
-    bounds ? slider({ effect, name, value, bounds, unit, isLog: Boolean(parameter?.logarithmic) && bounds[0] > 0, shown, interval }) : null,
+    bounds ? slider({ effect, name, value, bounds, unit, isLog: Boolean(parameter?.logarithmic) && bounds[0] > 0, shown, interval: range }) : null,
   );
   if (fit?.at_bound) row.append(h("span", { class: "tag bad" }, `at its ${fit.at_bound} bound`));
   if (fit && !fit.plausible) row.append(h("span", { class: "tag bad" }, "implausible"));
@@ -84,11 +84,11 @@ function one(effect, name, parameter, fits) {
 function intervalOf(fit) {
   if (!fit) return "";
   if (!fit.determined) return "not determined by these data";
-  return fit.low === null || fit.high === null ? "" : `${number(fit.low, 4)} to ${number(fit.high, 4)}`;
+  return fit.low === null || fit.high === null ? "" : interval(fit.low, fit.high);
 }
 
 /** @param {{effect: string, name: string, value: number, bounds: [number, number], unit: string, isLog: boolean, shown: HTMLElement, interval: HTMLElement}} of */
-function slider({ effect, name, value, bounds: [low, high], unit, isLog, shown, interval }) {
+function slider({ effect, name, value, bounds: [low, high], unit, isLog, shown, interval: range }) {
   const toStep = (/** @type {number} */ v) => Math.round(STEPS * (isLog ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low)));
   const toValue = (/** @type {number} */ s) => Number((isLog ? low * (high / low) ** (s / STEPS) : low + ((high - low) * s) / STEPS).toPrecision(4));
   const box = h("input", { type: "range", min: 0, max: STEPS, step: 1, "aria-label": `${name} of ${effect}${unit && unit !== "1" ? ` in ${unit}` : ""}`, "aria-valuetext": quantity(value, unit), "data-slider": `${effect}-${name}`, title: `${quantity(low, unit)} to ${quantity(high, unit)}; moving it holds the number` });
@@ -98,7 +98,7 @@ function slider({ effect, name, value, bounds: [low, high], unit, isLog, shown, 
     // The panel isn't drawn anew below the hand that moves the slider.
     box.dataset.heldByHand = "true";
     shown.textContent = quantity(next, unit);
-    interval.textContent = "held";
+    range.textContent = "held";
     box.setAttribute("aria-valuetext", quantity(next, unit));
     changeSoon(holding(effect, name, next));
   });

@@ -3,7 +3,7 @@
 
 import { isAborted, post, Refusal } from "./api.js";
 import { afterRest, button, byId, input } from "./dom.js";
-import { counted } from "./format.js";
+import { counted, withoutExcerpt } from "./format.js";
 import { change, on, report, state } from "./store.js";
 
 const TEMPLATE = `[effects.hose-stiffness]
@@ -17,7 +17,7 @@ let asking = new AbortController();
 
 /** @param {string} says @param {"good" | "bad" | ""} kind */
 function say(says, kind) {
-  byId("own-says").textContent = says;
+  byId("own-says").textContent = withoutExcerpt(says);
   byId("own-says").dataset.kind = kind;
 }
 

@@ -46,6 +46,12 @@ export function rampAt(share) {
 /** Colour of sweep `i` of `n`. @param {number} i @param {number} n */
 export const sweepColour = (i, n) => css(rampAt(n > 1 ? i / (n - 1) : 0.3));
 
+/** Colour of the model's line of sweep `i`: that of its points, nearer to the ink, so that it stands out from them. @param {number} i @param {number} n */
+export function lineColour(i, n) {
+  const ink = /** @type {Rgb} */ (ground() === "dark" ? [255, 255, 255] : [0, 0, 0]);
+  return css(between(rampAt(n > 1 ? i / (n - 1) : 0.3), ink, 0.4));
+}
+
 /** Colour of a signed value between -1 and 1. @param {number} value */
 export function signedColour(value) {
   const [low, zero, high] = SIGNED[ground()];

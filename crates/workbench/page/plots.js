@@ -5,7 +5,7 @@ import * as contents from "./contents.js";
 import { byId, fill, h, select } from "./dom.js";
 import { listen } from "./gestures.js";
 import { newtons, number } from "./format.js";
-import { gradient, signedColour } from "./palette.js";
+import { gradient, ground, signedColour } from "./palette.js";
 import { Plot } from "./plot.js";
 import { startSaving } from "./save-plot.js";
 import { describe, hover, selection, selectRows } from "./selection.js";
@@ -90,7 +90,19 @@ function drawAll() {
   drawForce();
   drawMap();
   drawAgainst();
-  if (state.rows) show("sweeps", "", contents.sweeps(state.rows));
+  drawSweeps();
+}
+
+/** What was measured changes with the data and the rows that count, not with the model. */
+let sweepsFor = "";
+
+function drawSweeps() {
+  const { session, rows } = state;
+  if (!session || !rows) return;
+  const key = JSON.stringify([session.data, session.columns, session.excluded, session.muscle.toml, ground()]);
+  if (key === sweepsFor) return;
+  sweepsFor = key;
+  show("sweeps", "", contents.sweeps(rows));
 }
 
 /** The plots with a name that a file may have. */

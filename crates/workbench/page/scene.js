@@ -118,7 +118,7 @@ export class BulgeScene {
       let radius = 0;
       for (let i = 0; i < positions.length; i += 3) if (Math.abs(positions[i] - end) < near) radius = Math.max(radius, Math.hypot(positions[i + 1], positions[i + 2]));
       const length = FITTING * radius;
-      const mesh = new Mesh(new CylinderGeometry(1.04 * radius, 1.04 * radius, length, 48), new MeshStandardMaterial({ color: inks().aside, roughness: 0.35, metalness: 0.5 }));
+      const mesh = new Mesh(new CylinderGeometry(1.04 * radius, 1.04 * radius, length, 48), new MeshStandardMaterial({ color: inks().aside, roughness: 0.45, metalness: 0.15 }));
       mesh.rotation.z = Math.PI / 2;
       mesh.position.x = end + (way * length) / 2;
       this.body.add(mesh);
@@ -131,7 +131,8 @@ export class BulgeScene {
     for (let i = 0; i < positions.length; i += 3) size = Math.max(size, Math.hypot(positions[i], positions[i + 1], positions[i + 2]));
     if (this.size && size < 1.4 * this.size && size > this.size / 1.4) return;
     this.size = size;
-    const distance = (1.22 * size) / Math.tan((14 * Math.PI) / 180) / Math.max(1, this.camera.aspect * 0.72);
+    // Half of the field of view is 14 degrees; the fittings need some room too.
+    const distance = (1.32 * size) / Math.tan((14 * Math.PI) / 180) / Math.max(1, this.camera.aspect);
     this.camera.near = distance / 100;
     this.camera.far = distance * 10;
     this.camera.position.set(0.25 * distance, 0.38 * distance, 0.88 * distance);

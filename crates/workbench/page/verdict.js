@@ -2,7 +2,7 @@
 // A diagnosis as an offer: the sentences and numbers of its document, with what can be done about each claim.
 
 import { h } from "./dom.js";
-import { newtons, number, percent, quantity, sentence } from "./format.js";
+import { interval as intervalOf, newtons, number, percent, quantity, sentence } from "./format.js";
 
 /** @typedef {import("./types.js").Diagnosis} Diagnosis */
 /** @typedef {import("./types.js").Claim} Claim */
@@ -24,7 +24,7 @@ const fittedName = (claim) => claim.fitted ?? claim.effect;
 export function verdict(found, does) {
   const names = found.missing.map(fittedName);
   return [
-    h("div", { class: `verdict ${found.verdict}`, id: "verdict", "data-verdict": found.verdict }, h("h3", null, found.verdict.replaceAll("-", " ")), h("p", { class: "headline" }, found.says)),
+    h("div", { class: `verdict ${found.verdict}`, id: "verdict", "data-verdict": found.verdict }, found.says.startsWith(found.verdict) ? null : h("h3", null, found.verdict.replaceAll("-", " ")), h("p", { class: "headline" }, found.says)),
     names.length > 1 ? h(
       "div", { class: "row" },
       h("button", { type: "button", class: "primary", id: "accept-all", onclick: () => does.accept(names), disabled: names.every(does.has) }, `Accept all ${names.length}`),
@@ -58,7 +58,7 @@ function claimBox(claim, names, does, isClaim) {
     others.length ? h("p", null, h("span", { class: "label" }, "not told apart here: "), others.join(", ")) : null,
     claim.forms?.length ? h("p", null, h("span", { class: "label" }, "other forms of it: "), claim.forms.join(", ")) : null,
     claim.form_error?.share ? h("p", null, h("span", { class: "label" }, "the data bend its formula by "), `${percent(claim.form_error.share)}, ${newtons(claim.form_error.rms_n)} RMS`) : null,
-    ...Object.entries(claim.parameters ?? {}).map(([key, p]) => h("p", null, h("span", { class: "label" }, `${key.replaceAll("_", " ")} `), h("b", null, quantity(p.value, p.unit, 4)), p.low !== null && p.high !== null ? h("span", { class: "interval" }, ` 95 %: ${number(p.low, 4)} to ${number(p.high, 4)}`) : null)),
+    ...Object.entries(claim.parameters ?? {}).map(([key, p]) => h("p", null, h("span", { class: "label" }, `${key.replaceAll("_", " ")} `), h("b", null, quantity(p.value, p.unit, 4)), p.low !== null && p.high !== null ? h("span", { class: "interval" }, ` 95 %: ${intervalOf(p.low, p.high)}`) : null)),
     claim.plausible === false ? h("p", { class: "tag bad" }, "implausible number") : null,
     h(
       "div", { class: "row" },
@@ -75,10 +75,10 @@ function rivals(claim, name, does) {
   if (!near.length) return null;
   return h(
     "details", { class: "rivals" }, h("summary", null, `Rivals: ${near.map((rival) => rival.effect).join(", ")}`),
-    h("table", null, h("thead", null, h("tr", null, h("th", null, "rival"), h("th", { class: "n" }, "apart [σ]"), h("th", { class: "n" }, "evidence behind"), h("th", null))), h("tbody", null, ...near.map((rival) => h(
-      "tr", null, h("td", null, rival.effect), h("td", { class: "n" }, number(rival.separation)), h("td", { class: "n" }, number(rival.behind)),
-      h("td", null, h("button", { type: "button", class: "small", "data-rival": rival.effect, title: `${rival.effect} instead of ${name}`, onclick: () => does.tryInstead(name, rival.effect) }, "try instead")),
-    )))),
+    h("ul", null, ...near.map((rival) => h(
+      "li", null, h("span", { class: "rival" }, rival.effect), h("span", { class: "facts", title: `behind by ${number(rival.behind)} in log evidence` }, `${number(rival.separation)} σ apart`),
+      h("button", { type: "button", class: "small", "data-rival": rival.effect, title: `${rival.effect} instead of ${name}`, onclick: () => does.tryInstead(name, rival.effect) }, "try instead"),
+    ))),
   );
 }
 

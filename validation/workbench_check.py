@@ -1,0 +1,453 @@
+"""Plays the story of the workbench in headless Chromium: a file is dropped, effects are switched on, the error falls, a diagnosis is accepted.
+
+    apt-get install chromium chromium-driver
+    python validation/workbench_check.py --bulge target/release/bulge --tour TOUR [--big BIG.csv] [--pictures FOLDER]
+    python validation/workbench_check.py http://127.0.0.1:PORT/TOKEN/ --tour TOUR ...
+
+TOUR is the folder that `bulge demo --out TOUR` writes (braid-loops.csv and braid.toml are used). With `--bulge` the server is started by the test and killed
+at its end, to see what the page says then. BIG is a file of 10^5 rows with which zooming is timed. Needs nothing beyond the Python standard library.
+The last lines are a table of timings and `N passed, M failed`; the exit status is 1 if anything failed.
+"""
+
+import argparse
+import base64
+import contextlib
+import json
+import shutil
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from report_check import FLAGS, OVERFLOW, Browser, Checks, Trouble, complaints_of
+
+WIDE, NARROW = (1440, 900), (400, 800)
+LIMIT = 900
+# Of the browser: the page is on this machine, and the bulge needs WebGL, which SwiftShader draws without a card.
+PAGE_FLAGS = [flag for flag in FLAGS if not flag.startswith("--host-resolver")] + [
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1", "--enable-unsafe-swiftshader",
+]
+HOSTILE = '<img src=x onerror="window.hurt=1">'
+EFFECTS = ["end-taper", "bladder-elasticity", "coulomb-friction"]
+
+# Contrast of texts with their ground (WCAG 2.1): those that are below AA.
+CONTRAST = """
+const parse = (c) => { const m = c.match(/[\\d.]+/g).map(Number); return m.length > 3 ? m : [...m, 1]; };
+const light = (c) => { const [r, g, b] = c.slice(0, 3).map((v) => { v /= 255; return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; }); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+const found = [];
+for (const element of document.querySelectorAll('body *')) {
+  const own = [...element.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+  if (!own || element.closest('svg, :disabled, [hidden], .visually-hidden, noscript')) continue;
+  if (element.checkVisibility && !element.checkVisibility()) continue;
+  const style = getComputedStyle(element);
+  let ground = [255, 255, 255, 1];
+  for (let p = element; p; p = p.parentElement) { const g = getComputedStyle(p).backgroundColor; if (!g.startsWith('rgb')) continue; const c = parse(g); if (c[3] > 0.99) { ground = c; break; } }
+  const [a, b] = [light(parse(style.color)), light(ground)].sort((x, y) => y - x);
+  const ratio = (a + 0.05) / (b + 0.05);
+  const size = parseFloat(style.fontSize);
+  const least = size >= 24 || (size >= 18.66 && Number(style.fontWeight) >= 700) ? 3 : 4.5;
+  if (ratio < least) found.push(`${element.tagName.toLowerCase()}.${element.className} “${element.textContent.trim().slice(0, 30)}” ${ratio.toFixed(2)}`);
+}
+return [...new Set(found)];
+"""
+
+# Controls without a name that a screen reader could say.
+NAMELESS = """
+return [...document.querySelectorAll('button, a[href], input, select, textarea, [role=switch], [role=tab]')].filter((e) => {
+  if (!e.checkVisibility()) return false;
+  const label = e.labels && e.labels.length ? e.labels[0].textContent : '';
+  return !(e.getAttribute('aria-label') || e.getAttribute('aria-labelledby') || label.trim() || e.textContent.trim() || e.title);
+}).map((e) => e.outerHTML.slice(0, 80));
+"""
+
+# Zooms a plot by one notch of the wheel for each frame, and tells the times between frames.
+ZOOM = """
+const done = arguments[arguments.length - 1];
+const plot = document.querySelector('#plot-force'), box = plot.getBoundingClientRect();
+const times = []; let last = 0, i = 0; performance.clearMeasures('redraw');
+const step = (now) => {
+  if (last) times.push(now - last);
+  last = now;
+  if (i >= 60) { done([times.slice(2), performance.getEntriesByName('redraw').map((m) => m.duration).slice(1), document.querySelector('#plot-force .note').textContent]); return; }
+  plot.dispatchEvent(new WheelEvent('wheel', {deltaY: i < 30 ? -60 : 60, clientX: box.left + box.width / 2, clientY: box.top + box.height / 2, bubbles: true, cancelable: true}));
+  i += 1; requestAnimationFrame(step);
+};
+requestAnimationFrame(step);
+"""
+
+
+class Page(Browser):
+    """The workbench in a browser, driven by what a hand would do."""
+
+    def __init__(self):
+        super().__init__(PAGE_FLAGS, LIMIT)
+
+    def visit(self, address):
+        self.do("/url", {"url": address})
+
+    def later(self, script):
+        """A script that calls back."""
+        return self.do("/execute/async", {"script": script, "args": []})
+
+    def wait(self, condition, what, seconds=60):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if self.run(f"return Boolean({condition})"):
+                return
+            time.sleep(0.05)
+        raise Trouble(f"after {seconds} s still waiting until {what}")
+
+    def is_ready(self, seconds=60):
+        self.wait("document.body.dataset.state === 'ready'", "the page is ready", seconds)
+
+    def settle(self, seconds=120):
+        self.is_ready(seconds)
+        self.wait("document.body.dataset.heldOut === 'done' && document.body.dataset.state === 'ready'", "held-out errors are there", seconds)
+
+    def find(self, selector):
+        found = self.do("/element", {"using": "css selector", "value": selector})
+        return next(iter(found.values()))
+
+    def click(self, selector):
+        self.do(f"/element/{self.find(selector)}/click", {})
+
+    def choose(self, selector, path):
+        self.do(f"/element/{self.find(selector)}/value", {"text": str(path)})
+
+    def text(self, selector):
+        return self.run(f"return (document.querySelector({json.dumps(selector)}) || {{}}).textContent || ''")
+
+    def error(self):
+        return float(self.run("return document.querySelector('#error').dataset.rmse"))
+
+    def drag(self, selector, start, end):
+        """From one to another place of an element, as shares of its size."""
+        x, y, width, height = self.run(f"const b = document.querySelector({json.dumps(selector)}).getBoundingClientRect(); return [b.left, b.top, b.width, b.height]")
+        at = [(round(x + width * a), round(y + height * b)) for a, b in (start, end)]
+        move = lambda place, ms: {"type": "pointerMove", "duration": ms, "x": place[0], "y": place[1], "origin": "viewport"}
+        steps = [move(at[0], 0), {"type": "pointerDown", "button": 0}, move(((at[0][0] + at[1][0]) // 2, at[1][1]), 60), move(at[1], 60), {"type": "pointerUp", "button": 0}]
+        self.do("/actions", {"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": steps}]})
+
+    def shade(self, name):
+        self.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": name}])
+
+    def shot(self, path):
+        picture = self.devtools("Page.captureScreenshot", format="png")
+        Path(path).write_bytes(base64.b64decode(picture["data"]))
+
+
+class Server:
+    """`bulge open`, which the test starts and kills."""
+
+    def __init__(self, program, tour):
+        self.program, self.tour = program, tour
+
+    def __enter__(self):
+        self.process = subprocess.Popen(
+            [self.program, "open", str(self.tour / "braid-loops.csv"), "--muscle", str(self.tour / "braid.toml"), "--no-browser"],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        )
+        for line in self.process.stdout:
+            if "http://127.0.0.1:" in line:
+                self.address = "http://127.0.0.1:" + line.split("http://127.0.0.1:", 1)[1].split()[0].strip("`.,")
+                return self
+        raise Trouble("bulge open printed no address")
+
+    def kill(self):
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.terminate()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self.process.wait(timeout=5)
+            if self.process.poll() is None:
+                self.kill()
+        self.process.stdout.close()
+
+
+class Story:
+    def __init__(self, page, checks, tour, folder):
+        self.page, self.checks, self.tour, self.folder = page, checks, tour, folder
+        self.timings = []
+
+    def expect(self, what, is_so, says=""):
+        self.checks.check(what, [] if is_so else [str(says) or "it is not so"])
+
+    def part(self, what, play):
+        """Plays a part of the story; what breaks off is a failure of this part only."""
+        try:
+            play()
+        except Trouble as trouble:
+            self.checks.check(what, [str(trouble)])
+
+    def measured(self, name, values, limit=None):
+        """A row of the table: limits are told, not enforced, because a shared machine is no bench."""
+        values = sorted(values)
+        if values:
+            self.timings.append((name, statistics.median(values), values[min(len(values) - 1, int(0.95 * len(values)))], len(values), limit))
+
+    def loads(self):
+        page = self.page
+        page.settle()
+        paint = page.run("return performance.getEntriesByType('paint').filter((p) => p.name === 'first-contentful-paint').map((p) => p.startTime)")
+        self.measured("first paint", paint, 300)
+        self.measured("data drawn", page.run("return performance.getEntriesByName('data').map((m) => m.duration)"), 1000)
+        self.expect("the error stands in the headline", page.text("#error").endswith("N"), page.text("#error"))
+        self.expect("the noise floor stands beside it", page.text("#floor").endswith("N"), page.text("#floor"))
+        self.expect("the command that does the same is there", page.text("#command").startswith("bulge compare"), page.text("#command"))
+
+    def start_over(self):
+        """Nothing switched on and nothing excluded, whatever was left by somebody before."""
+        script = """
+        const done = arguments[arguments.length - 1];
+        fetch('api/session', {method: 'PUT', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({effects: [], excluded: [], own_effects: null, view: {}})}).then((a) => done(a.status));
+        """
+        self.page.later(script)
+        self.page.visit(self.page.run("return location.href"))
+        self.page.settle()
+
+    def hostile(self):
+        page = self.page
+        source = (self.tour / "braid-loops.csv").read_text().splitlines()
+        start = next(i for i, line in enumerate(source) if not line.startswith("#"))
+        name = HOSTILE.replace('"', '""')
+        rows = [source[start] + f',"{name}"'] + [line + ",1" for line in source[start + 1:]]
+        file = self.folder / "<b>hostile.csv"
+        file.write_text("\n".join(rows) + "\n")
+        page.choose("#file", file)
+        page.wait("document.querySelector('#data-name').textContent.includes('hostile')", "the file with hostile names is there")
+        page.settle()
+        self.drag_about()
+        self.expect("names of columns and files make no markup", page.run("return !document.querySelector('img') && !document.querySelector('#headline b i') && window.hurt === undefined"))
+
+    def drag_about(self):
+        self.page.drag("#plot-force", (0.3, 0.5), (0.4, 0.55))
+        self.page.click("#reset")
+
+    def drop(self):
+        page = self.page
+        page.choose("#file", self.tour / "braid-loops.csv")
+        page.wait("document.querySelector('#data-name').textContent === 'braid-loops.csv'", "the file is there")
+        page.settle()
+        columns = page.run("return [...document.querySelectorAll('#columns [data-quantity]')].map((r) => r.dataset.quantity)")
+        self.expect("each column was taken for something", {"pressure", "contraction", "force"} <= set(columns), columns)
+
+    def map_column(self):
+        page = self.page
+        page.run("document.querySelector('#columns tr[data-quantity=time] .link').click()")
+        page.run("const s = document.querySelector('#columns .editor select'); s.value = 'ignore'; s.dispatchEvent(new Event('change'))")
+        page.click("#columns .editor button[type=submit]")
+        page.wait("document.querySelector('#mapping')", "the mapping is there")
+        page.settle()
+        said = page.text("#mapping code")
+        self.expect("a column is mapped by a click", "ignore=time" in said, said)
+        page.click("#forget-columns")
+        page.wait("!document.querySelector('#mapping')", "the mapping is forgotten")
+        page.settle()
+
+    def switch(self):
+        page = self.page
+        errors = [page.error()]
+        for name in EFFECTS:
+            page.run(f"document.querySelector('#catalogue [role=switch][data-effect={name}]').click()")
+            page.wait(f"document.querySelectorAll('#ladder .rung').length === {len(errors) + 1}", f"{name} is on")
+            page.is_ready()
+            errors.append(page.error())
+        self.expect("the error falls with each of three effects", all(b < a for a, b in zip(errors, errors[1:])), errors)
+        print("       " + " -> ".join(f"{error:.3g} N" for error in errors))
+        page.settle()
+        self.expect("the held-out error follows", page.text("#held-out").endswith("N"), page.text("#held-out"))
+        shown = page.run("return [...document.querySelectorAll('#active .number .value')].map((v) => v.textContent)")
+        self.expect("the numbers of the effects are shown", len(shown) >= 2, shown)
+
+    def time_switches(self, name, times, limit):
+        page = self.page
+        page.run("performance.clearMeasures('switch')")
+        for i in range(times):
+            before = page.run("return performance.getEntriesByName('switch').length")
+            page.run("document.querySelector('[role=switch][data-effect=coulomb-friction]').click()")
+            page.wait(f"performance.getEntriesByName('switch').length > {before}", "the plots are redrawn")
+            page.is_ready()
+        self.measured(name, page.run("return performance.getEntriesByName('switch').map((m) => m.duration)"), limit)
+        page.settle()
+
+    def look_closely(self):
+        page = self.page
+        page.click("[data-tool=rectangle]")
+        page.drag("#plot-force", (0.3, 0.05), (0.6, 0.85))
+        says = page.text("#selection-says")
+        self.expect("a brush selects rows and names their lines", "rows" in says and "lines" in says, says)
+        rows = page.run("return document.querySelector('#data-facts').textContent")
+        before = page.error()
+        page.click("#exclude")
+        page.wait("document.querySelector('#excluded')", "rows are excluded")
+        page.settle()
+        self.expect("excluded rows stand beside the data", "excluded" in page.text("#excluded"), rows)
+        page.click("#bring-back")
+        page.wait("!document.querySelector('#excluded')", "rows are back")
+        page.settle()
+        self.expect("brought back, the error is the same", abs(page.error() - before) < 1e-6 * before, (before, page.error()))
+        page.click("#clear-selection")
+        page.click("[data-tool=pan]")
+
+    def diagnose(self):
+        page = self.page
+        page.run("document.querySelector('#ladder [data-rung=\"0\"]').click()")
+        page.wait("document.querySelectorAll('#ladder .rung').length === 1", "all effects are off")
+        page.settle()
+        page.click("#diagnose")
+        page.wait("document.querySelector('#diagnosis-progress')", "progress is shown")
+        page.click("#diagnosis-cancel")
+        page.wait("document.body.dataset.diagnosis === 'cancelled'", "it is cancelled")
+        start = time.monotonic()
+        page.click("#diagnose")
+        page.wait("document.body.dataset.diagnosis === 'done'", "the diagnosis is there", 300)
+        self.measured("diagnosis", [1000 * (time.monotonic() - start)])
+        self.expect("the verdict stands there", page.run("return document.querySelector('#verdict').dataset.verdict") == "missing", page.text("#verdict"))
+        base = page.error()
+        page.click("[data-show]")
+        page.wait("document.querySelector('#preview')", "a claim is shown")
+        page.settle()
+        self.expect("a preview moves the plots", page.error() < base, page.error())
+        page.click("#preview-discard")
+        page.wait("!document.querySelector('#preview')", "the preview is gone")
+        page.settle()
+        self.expect("a discarded preview leaves nothing", page.error() == base, page.error())
+        page.click("#accept-all, [data-accept]")
+        page.wait("document.querySelectorAll('#ladder .rung').length > 1", "the claim is accepted")
+        page.settle()
+        self.expect("with what was found the error is near the noise", page.error() < 0.05 * base, page.error())
+
+    def undo(self):
+        page = self.page
+        rungs = page.run("return document.querySelectorAll('#ladder .rung').length")
+        page.click("#undo")
+        page.wait("document.querySelectorAll('#ladder .rung').length === 1", "undo takes the effects off")
+        page.settle()
+        page.click("#redo")
+        page.wait(f"document.querySelectorAll('#ladder .rung').length === {rungs}", "redo brings them back")
+        page.settle()
+        error = page.error()
+        page.visit(page.run("return location.href"))
+        page.settle()
+        self.expect("a reload keeps the state", page.error() == error, (error, page.error()))
+
+    def bad_input(self):
+        page = self.page
+        page.run("const b = document.querySelector('#muscle-form input[data-key=length]'); b.value = '-3 mm'; b.dispatchEvent(new Event('change'))")
+        page.wait("document.querySelector('#muscle-form .field-error')", "the field complains")
+        self.expect("a wrong number is told at its field", "length" in page.text("#muscle-form .field-error"), page.text("#muscle-form .field-error"))
+        page.click("#muscle-raw summary")
+        page.click("#muscle-revert")
+        page.wait("!document.querySelector('#muscle-form .field-error')", "the complaint is gone")
+        page.click("#muscle-raw summary")
+        page.run("document.querySelector('#own').open = true; const b = document.querySelector('#own-toml'); b.value = '[effects.x]\\nforce = \"k *\"'; b.dispatchEvent(new Event('input'))")
+        page.wait("document.querySelector('#own-says').dataset.kind === 'bad'", "a wrong formula is told")
+        page.run("document.querySelector('#own').open = false")
+
+    def pictures(self, folder):
+        page = self.page
+        for kind, (width, height) in (("wide", WIDE), ("narrow", NARROW)):
+            for shade in ("light", "dark"):
+                page.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+                page.shade(shade)
+                time.sleep(0.6)
+                needed, room, wide = page.run(OVERFLOW)
+                self.expect(f"no horizontal overflow at {width} px, {shade}", needed <= room, f"{needed} px in {room} px: {wide}")
+                self.checks.check(f"contrast at {width} px, {shade}", page.run(CONTRAST))
+                if folder:
+                    page.shot(folder / f"workbench-{kind}-{shade}.png")
+        page.shade("light")
+        self.wide()
+
+    def wide(self):
+        self.page.devtools("Emulation.setDeviceMetricsOverride", width=WIDE[0], height=WIDE[1], deviceScaleFactor=1, mobile=False)
+
+    def many(self, big, folder):
+        page = self.page
+        page.choose("#file", big)
+        page.wait(f"document.querySelector('#data-name').textContent === {json.dumps(big.name)}", "the large file is there", 180)
+        page.settle(300)
+        frames, redraws, note = page.later(ZOOM)
+        self.measured("zoom at 1e5 rows, frame to frame", frames, 20)
+        self.measured("zoom at 1e5 rows, script", redraws, 20)
+        self.expect("it is said that points are thinned while moving", "while moving" in note, note)
+        time.sleep(0.5)
+        self.expect("all points are drawn at rest", page.text("#plot-force .note") == "", page.text("#plot-force .note"))
+        if folder:
+            page.shot(folder / "workbench-many.png")
+        self.time_switches("a switch at 1e5 rows", 6, 1000)
+
+    def table(self):
+        print("\n| what | median [ms] | 95 % [ms] | times | to reach [ms] |\n|---|---|---|---|---|")
+        for name, median, most, count, limit in self.timings:
+            print(f"| {name} | {median:.0f} | {most:.0f} | {count} | {limit or ''} |")
+        print()
+
+
+def play(page, checks, arguments, address, folder):
+    story = Story(page, checks, arguments.tour, folder)
+    story.wide()
+    page.shade("light")
+    page.visit(address)
+    story.part("the page loads", story.loads)
+    story.part("it starts over", story.start_over)
+    for what, part in (
+        ("hostile names", story.hostile), ("a file is read", story.drop), ("a column is mapped", story.map_column), ("effects are switched", story.switch),
+        ("rows are brushed", story.look_closely), ("it is diagnosed", story.diagnose), ("undo, redo, reload", story.undo), ("bad input", story.bad_input),
+    ):
+        story.part(what, part)
+    story.part("switches are timed", lambda: story.time_switches("a switch", arguments.switches, 100))
+    checks.check("all controls have names", page.run(NAMELESS))
+    story.part("pictures", lambda: story.pictures(arguments.pictures))
+    if arguments.big:
+        story.part("many rows", lambda: story.many(arguments.big, arguments.pictures))
+    # What the server refuses with a sentence is a complaint of the console too.
+    # Chromium without a card says how slowly it reads pixels back.
+    serious = [text for text in complaints_of(page) if "Failed to load resource" not in text and "GL Driver Message" not in text]
+    checks.check("no complaint on the console", serious)
+    return story
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("address", nargs="?", help="of a workbench that runs")
+    parser.add_argument("--bulge", type=Path, help="program to start the workbench with")
+    parser.add_argument("--tour", type=Path, required=True, help="folder with braid-loops.csv and braid.toml")
+    parser.add_argument("--big", type=Path, help="a CSV of 1e5 rows")
+    parser.add_argument("--pictures", type=Path, help="folder for screenshots")
+    parser.add_argument("--switches", type=int, default=20, help="how often a switch is timed")
+    arguments = parser.parse_args()
+    if bool(arguments.address) == bool(arguments.bulge):
+        parser.error("say either an address or --bulge PROGRAM")
+    if arguments.pictures:
+        arguments.pictures.mkdir(parents=True, exist_ok=True)
+    arguments.tour = arguments.tour.resolve()
+    arguments.big = arguments.big and arguments.big.resolve()
+    checks = Checks()
+    folder = Path(tempfile.mkdtemp(prefix="workbench-check-"))
+    try:
+        with contextlib.ExitStack() as stack:
+            server = stack.enter_context(Server(arguments.bulge, arguments.tour)) if arguments.bulge else None
+            page = stack.enter_context(Page())
+            story = play(page, checks, arguments, server.address if server else arguments.address, folder)
+            if server:
+                server.kill()
+                story.part("the server is killed", lambda: page.wait("document.querySelector('#banner').textContent.includes('has ended')", "the page says so", 20))
+                story.expect("what was drawn stays", page.run("return document.querySelectorAll('#ladder .rung').length > 0"))
+            story.table()
+    except Trouble as trouble:
+        checks.check("the browser can look at it", [str(trouble)])
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    print(f"{checks.passed} passed, {checks.failed} failed")
+    return 1 if checks.failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
