@@ -6,7 +6,6 @@ import { afterRest, byId, fill, h, input, select } from "./dom.js";
 import { newtons, number, quantity } from "./format.js";
 import { showAt } from "./notices.js";
 import { gradient, rampColour } from "./palette.js";
-import { BulgeScene } from "./scene.js";
 import { selection } from "./selection.js";
 import { on, report, state } from "./store.js";
 
@@ -14,7 +13,7 @@ import { on, report, state } from "./store.js";
 
 const WAIT_MS = 50;
 
-/** @type {BulgeScene | null} */
+/** @type {import("./scene.js").BulgeScene | null} */
 let scene = null;
 /** @type {Shape | null} */
 let shape = null;
@@ -93,14 +92,21 @@ function follow(row) {
   askSoon();
 }
 
-export function startBulge() {
+/** three.js is read once the data are drawn: the plots come first. */
+async function loadScene() {
   const element = byId("shape-view");
+  const { BulgeScene } = await import("./scene.js");
   try {
     scene = new BulgeScene(element);
   } catch {
     element.classList.add("none");
     element.textContent = "This browser offers no WebGL, which drawing in space needs. The bulge can be saved as VTK.";
   }
+  askSoon();
+}
+
+export function startBulge() {
+  let isLoading = false;
   for (const id of ["shape-pressure", "shape-contraction"]) {
     input(id).addEventListener("input", () => {
       showValues();
@@ -115,6 +121,9 @@ export function startBulge() {
     setRanges();
     if (selection.hovered !== null) follow(selection.hovered);
     askSoon();
+    if (isLoading) return;
+    isLoading = true;
+    setTimeout(() => void loadScene(), 0);
   });
   on("hover", follow);
   on("theme", draw);

@@ -158,7 +158,7 @@ function cells(rows, scale) {
     data.push([edge(p, CELLS[0], a), edge(p, CELLS[0], a + 1), edge(c, CELLS[1], b), edge(c, CELLS[1], b + 1), sums[i] / counts[i] / scale]);
   }
   return {
-    type: "custom", name: "cells", data, silent: true, clip: true, z: 3, encode: { x: [0, 1], y: [2, 3] },
+    type: "custom", id: "cells", name: "cells", data, silent: true, clip: true, z: 3, encode: { x: [0, 1], y: [2, 3] },
     renderItem: (/** @type {unknown} */ _, /** @type {any} */ api) => {
       const [left, bottom] = api.coord([api.value(0), api.value(2)]);
       const [right, top] = api.coord([api.value(1), api.value(3)]);

@@ -16,7 +16,7 @@ import { init } from "./vendor/echarts.js";
 
 /** More points than this are thinned while the axes move. */
 export const MOST_MOVING = 6000;
-/** More points than this are drawn as small squares, which is faster. */
+/** More points than this are drawn as small squares, which is faster. Fewer are circles, all in one path (the "large" mode of ECharts): a shape for each takes longer. */
 const LARGE = 2500;
 const REST_MS = 180;
 
@@ -187,8 +187,8 @@ export class Plot {
     else {
       for (const group of content.groups) {
         all.push({
-          type: "scatter", name: group.name, data: pairs(content.x.values, content.y.values, group.rows, every), dimensions: ["x", "y"], symbolSize: group.isAside ? size + 1 : size,
-          symbol: group.isAside ? "emptyCircle" : isLarge ? "rect" : "circle", large: isLarge && !group.isAside, largeThreshold: 0, progressive: 0, silent: true, clip: true, z: group.isAside ? 2 : 3,
+          type: "scatter", id: group.name, name: group.name, data: pairs(content.x.values, content.y.values, group.rows, every), dimensions: ["x", "y"], symbolSize: group.isAside ? size + 1 : size,
+          symbol: group.isAside ? "emptyCircle" : isLarge ? "rect" : "circle", large: !group.isAside, largeThreshold: 0, progressive: 0, silent: true, clip: true, z: group.isAside ? 2 : 3,
           itemStyle: { color: group.colour, opacity: group.isAside ? 0.8 : isLarge ? 0.75 : 0.72, borderColor: group.isAside ? group.colour : "transparent" },
         });
       }
@@ -207,8 +207,8 @@ export class Plot {
     const content = /** @type {Content} */ (this.content);
     const isLarge = this.selected.length / every > LARGE;
     return {
-      type: "scatter", name: "selected", data: pairs(content.x.values, content.y.values, this.selected, every), dimensions: ["x", "y"], symbol: isLarge ? "rect" : "circle", symbolSize: isLarge ? size + 0.8 : size + 2,
-      large: isLarge, largeThreshold: 0, progressive: 0, silent: true, clip: true, z: 6, itemStyle: { color: inks().mark, borderColor: inks().halo, borderWidth: isLarge ? 0 : 1 },
+      type: "scatter", id: "selected", name: "selected", data: pairs(content.x.values, content.y.values, this.selected, every), dimensions: ["x", "y"], symbol: isLarge ? "rect" : "circle", symbolSize: isLarge ? size + 0.8 : size + 2,
+      large: true, largeThreshold: 0, progressive: 0, silent: true, clip: true, z: 6, itemStyle: { color: inks().mark, borderColor: inks().halo, borderWidth: isLarge ? 0 : 1 },
     };
   }
 
@@ -270,7 +270,7 @@ function pairs(x, y, rows, every) {
 /** @param {string} name @param {string} colour @param {number} width @param {ArrayLike<number>} data @param {number} z */
 function line(name, colour, width, data, z) {
   return {
-    type: "line", name, data: data instanceof Float64Array ? data : new Float64Array(data), dimensions: ["x", "y"], showSymbol: false, silent: true, clip: true, z, connectNulls: false,
+    type: "line", id: name, name, data: data instanceof Float64Array ? data : new Float64Array(data), dimensions: ["x", "y"], showSymbol: false, silent: true, clip: true, z, connectNulls: false,
     lineStyle: { color: colour, width, join: "round" },
   };
 }
