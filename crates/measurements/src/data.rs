@@ -8,7 +8,7 @@ use crate::source::{Source, SourceFile, fingerprint};
 use crate::stretch::{self, DeadBand, Stretch};
 use crate::sweep::{self, Contradiction, Sweep, SweepKind};
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// How the motion was measured, as measured.
@@ -91,10 +91,20 @@ impl Data {
     /// # Errors
     /// As [`Data::read`].
     pub fn read_with(paths: &[impl AsRef<Path>], options: &ReadOptions) -> Result<Self, MeasurementError> {
+        let named = |path: &dyn AsRef<Path>| (Source::name_of(path.as_ref()), path.as_ref().to_path_buf());
+        let files: Vec<_> = paths.iter().map(|path| named(path)).collect();
+        Self::read_named(&files, options)
+    }
+
+    /// The same of files that people know by other names than the paths at which they lie.
+    ///
+    /// # Errors
+    /// As [`Data::read`]; messages call the files by their names.
+    pub fn read_named(files: &[(String, PathBuf)], options: &ReadOptions) -> Result<Self, MeasurementError> {
         let mut all: Option<Self> = None;
         let mut complaints = Vec::new();
-        for path in paths {
-            match (Source::read(path.as_ref(), options), &mut all) {
+        for (name, path) in files {
+            match (Source::read(name.clone(), path, options), &mut all) {
                 (Ok(source), None) => all = Some(Self::start(source)),
                 (Ok(source), Some(all)) => complaints.extend(all.add(source).err()),
                 (Err(complaint), _) => complaints.push(complaint),

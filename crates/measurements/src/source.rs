@@ -67,9 +67,8 @@ pub(crate) struct Source {
 
 impl Source {
     /// Reads a file of the kind that its first bytes say; text if none does. `book.xlsx#name` is one sheet of a workbook.
-    pub(crate) fn read(path: &Path, options: &ReadOptions) -> Result<Self, MeasurementError> {
+    pub(crate) fn read(name: String, path: &Path, options: &ReadOptions) -> Result<Self, MeasurementError> {
         let is_stdin = path == Path::new(STDIN);
-        let name = if is_stdin { "standard input".to_owned() } else { path.display().to_string() };
         let (path, sheet) = sheet_of(path);
         let bytes = if is_stdin { read_all(&name, std::io::stdin().lock()) } else { read_file(&name, path) }?;
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -84,6 +83,11 @@ impl Source {
         }
         let sha256 = fingerprint(&bytes);
         Ok(Self::new(&name, sha256, parquet_file::read(&name, bytes::Bytes::from(bytes), options)?))
+    }
+
+    /// What messages call the file at a path.
+    pub(crate) fn name_of(path: &Path) -> String {
+        if path == Path::new(STDIN) { "standard input".to_owned() } else { path.display().to_string() }
     }
 
     /// Reads what is in memory: a workbook, MATLAB, else text.

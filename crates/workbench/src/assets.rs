@@ -76,8 +76,10 @@ mod tests {
     #[test]
     fn every_file_of_the_page_is_embedded() {
         let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("page");
-        let of_page = |name: &String| ["html", "js", "css", "svg"].iter().any(|end| name.ends_with(&format!(".{end}")));
-        let there = fs::read_dir(page).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let of_page =
+            |name: &String| ["html", "js", "css", "svg"].iter().any(|end| name.ends_with(&format!(".{end}")));
+        let there =
+            fs::read_dir(page).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
         let there: BTreeSet<String> = there.filter(of_page).collect();
         let embedded = FILES.iter().map(|(name, _)| (*name).to_owned()).filter(|name| !name.contains('/'));
         assert_eq!(there, embedded.collect());

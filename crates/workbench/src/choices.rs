@@ -63,13 +63,12 @@ impl Choices {
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Change {
-    /// `null` takes the statement back.
-    #[serde(default, deserialize_with = "present")]
-    pub(crate) columns: Option<Option<String>>,
+    #[serde(default)]
+    pub(crate) columns: Text,
     pub(crate) muscle: Option<MuscleChange>,
     pub(crate) effects: Option<Vec<ChosenEffect>>,
-    #[serde(default, deserialize_with = "present")]
-    pub(crate) own_effects: Option<Option<String>>,
+    #[serde(default)]
+    pub(crate) own_effects: Text,
     pub(crate) excluded: Option<Vec<usize>>,
     pub(crate) view: Option<serde_json::Value>,
 }
@@ -82,9 +81,30 @@ pub(crate) enum MuscleChange {
     Toml { toml: String },
 }
 
-/// Tells a field that is `null` from one that isn't there.
-fn present<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<Option<String>>, D::Error> {
-    Option::deserialize(deserializer).map(Some)
+/// A text that may be stated: a field that isn't there leaves it, `null` takes it back.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) enum Text {
+    /// As it was.
+    #[default]
+    Left,
+    /// Stated, or taken back.
+    Is(Option<String>),
+}
+
+impl<'de> Deserialize<'de> for Text {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = Option::<String>::deserialize(deserializer)?;
+        Ok(Self::Is(text.filter(|text| !text.trim().is_empty())))
+    }
+}
+
+impl Text {
+    /// Puts it in the place of what was stated.
+    pub(crate) fn put(self, place: &mut Option<String>) {
+        if let Self::Is(text) = self {
+            *place = text;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -94,9 +114,11 @@ mod tests {
     #[test]
     fn null_takes_back_and_absence_leaves() {
         let change: Change = serde_json::from_str(r#"{"columns": null}"#).unwrap();
-        assert!(change.columns == Some(None) && change.own_effects.is_none() && change.effects.is_none());
+        assert!(
+            change.columns == Text::Is(None) && change.own_effects == Text::Left && change.effects.is_none()
+        );
         let change: Change = serde_json::from_str(r#"{"columns": "force=F"}"#).unwrap();
-        assert_eq!(change.columns.flatten().as_deref(), Some("force=F"));
+        assert_eq!(change.columns, Text::Is(Some("force=F".to_owned())));
         assert!(serde_json::from_str::<Change>(r#"{"column": "force=F"}"#).is_err());
         let change: Change = serde_json::from_str(r#"{"muscle": {"shipped": "ppam-1"}}"#).unwrap();
         assert!(matches!(change.muscle, Some(MuscleChange::Shipped { .. })));

@@ -5,9 +5,6 @@
 
 use axum::http::{HeaderMap, Method, header};
 
-/// Bytes of randomness in a token.
-const TOKEN: usize = 16;
-
 /// What a request must have.
 #[derive(Debug, Clone)]
 pub(crate) struct Guard {
@@ -18,9 +15,9 @@ pub(crate) struct Guard {
 impl Guard {
     /// With a new token.
     pub(crate) fn new(port: u16) -> Result<Self, getrandom::Error> {
-        let mut bytes = [0; TOKEN];
+        let mut bytes = [0; size_of::<u128>()];
         getrandom::fill(&mut bytes)?;
-        Ok(Self { token: bytes.iter().map(|byte| format!("{byte:02x}")).collect(), port })
+        Ok(Self { token: format!("{:032x}", u128::from_le_bytes(bytes)), port })
     }
 
     /// The address to open.
@@ -40,14 +37,11 @@ impl Guard {
             return None;
         }
         let is_own = |origin: &str| origin.strip_prefix("http://").is_some_and(|host| self.is_here(host));
+        let site = text(header::HeaderName::from_static("sec-fetch-site"));
         match text(header::ORIGIN) {
             Some(origin) if !is_own(origin) => return None,
             // Browsers say where a request comes from that changes something; other programs say nothing.
-            None if *method != Method::GET && headers.contains_key("sec-fetch-site") => {
-                if text(header::HeaderName::from_static("sec-fetch-site")) != Some("same-origin") {
-                    return None;
-                }
-            }
+            None if *method != Method::GET && site.is_some_and(|site| site != "same-origin") => return None,
             _ => {}
         }
         let rest = path.strip_prefix('/')?;

@@ -65,23 +65,12 @@ fn read_rows(choices: &Choices, muscle: &Muscle) -> Result<Data, Refusal> {
     let map = choices.columns.as_deref().map(str::parse::<ColumnMap>).transpose();
     let columns = map.map_err(Refusal::at(Place::Columns))?;
     let options = read_options(muscle, columns.as_ref()).map_err(Refusal::at(Place::Muscle))?;
-    let paths: Vec<_> = choices.data.iter().map(|file| &file.path).collect();
-    Data::read_with(&paths, &options).map_err(|error| {
+    let files: Vec<_> = choices.data.iter().map(|file| (file.name.clone(), file.path.clone())).collect();
+    Data::read_named(&files, &options).map_err(|error| {
         // A table whose columns aren't known can be mended where the columns are shown; anything else is about the file.
         let place = if error.columns().is_empty() { Place::Data } else { Place::Columns };
-        Refusal {
-            columns: error.columns().to_vec(),
-            ..Refusal::new(place, named(&error.to_string(), choices))
-        }
+        Refusal { columns: error.columns().to_vec(), ..Refusal::new(place, error) }
     })
-}
-
-/// A message with the names that people know, instead of the places where the files lie.
-fn named(message: &str, choices: &Choices) -> String {
-    let shown = |text: String, file: &crate::choices::DataFile| {
-        text.replace(&*file.path.to_string_lossy(), &file.name)
-    };
-    choices.data.iter().fold(message.to_owned(), shown)
 }
 
 /// The built-in effects with the user's own.

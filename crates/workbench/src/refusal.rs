@@ -40,6 +40,7 @@ pub(crate) struct Refusal {
 
 impl Refusal {
     /// A sentence about a place.
+    #[expect(clippy::needless_pass_by_value, reason = "errors and texts alike, at the end of their lives")]
     pub(crate) fn new(place: Place, error: impl ToString) -> Self {
         Self { error: error.to_string(), place, columns: Vec::new() }
     }

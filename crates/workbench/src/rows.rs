@@ -52,6 +52,7 @@ pub(crate) fn bytes(inputs: &Inputs, rows: &Rows, revision: u64) -> Result<Vec<u
 }
 
 /// Every column with its values.
+#[expect(clippy::cast_possible_truncation, reason = "as exact as a plot needs")]
 fn columns(inputs: &Inputs, rows: &Rows) -> Vec<(Column, Vec<f32>)> {
     let data = &inputs.data;
     let history = data.history(bulge_muscles::Quantity::si(inputs.muscle.length()));

@@ -95,18 +95,14 @@ impl Session {
     /// Makes a change, or says why not and changes nothing.
     pub(crate) fn change(&mut self, change: Change) -> Result<(), Refusal> {
         let mut next = self.kept.choices.clone();
-        if let Some(columns) = change.columns {
-            next.columns = columns.filter(|text| !text.trim().is_empty());
-            if let Some(text) = &next.columns {
-                text.parse::<bulge_measurements::ColumnMap>().map_err(Refusal::at(Place::Columns))?;
-            }
+        change.columns.put(&mut next.columns);
+        if let Some(columns) = &next.columns {
+            columns.parse::<bulge_measurements::ColumnMap>().map_err(Refusal::at(Place::Columns))?;
         }
         if let Some(muscle) = change.muscle {
             next.muscle = other_muscle(muscle)?;
         }
-        if let Some(own) = change.own_effects {
-            next.own_effects = own.filter(|text| !text.trim().is_empty());
-        }
+        change.own_effects.put(&mut next.own_effects);
         if let Some(effects) = change.effects {
             next.effects = effects;
         }

@@ -24,14 +24,14 @@ pub(crate) struct State {
 #[derive(Debug, Serialize)]
 struct Field {
     name: &'static str,
-    values: Vec<f64>,
+    values: Vec<f32>,
 }
 
 /// A surface of triangles with fields on its points.
 #[derive(Debug, Serialize)]
 pub(crate) struct Surface {
     schema: &'static str,
-    points: Vec<f64>,
+    points: Vec<f32>,
     triangles: Vec<usize>,
     /// Vertices of each fibre from one fitting to the other.
     fibres: Vec<Vec<usize>>,
@@ -62,10 +62,14 @@ pub(crate) fn surface(muscle: &Muscle, known: &[Known], state: State) -> Result<
         .map_err(Refusal::at(Place::Shape))?;
     Ok(Surface {
         schema: "bulge.surface/1",
-        points: mesh.points.concat(),
+        points: short(&mesh.points.concat()),
         triangles: mesh.quads.iter().flat_map(|[a, b, c, d]| [*a, *b, *c, *a, *c, *d]).collect(),
         fibres: mesh.fibres,
-        fields: mesh.point_fields.into_iter().map(|(name, values)| Field { name, values }).collect(),
+        fields: mesh
+            .point_fields
+            .into_iter()
+            .map(|(name, values)| Field { name, values: short(&values) })
+            .collect(),
         force_n: shape.response.force_n,
         length_m: muscle.length().si() * (1.0 - shape.response.contraction),
         radius_m: shape.meridian.iter().map(|point| point.r_m).fold(0.0, f64::max),
@@ -73,6 +77,12 @@ pub(crate) fn surface(muscle: &Muscle, known: &[Known], state: State) -> Result<
         pressure_pa: state.pressure_pa,
         contraction_limit: found.contraction_limit,
     })
+}
+
+/// As exact as a picture needs.
+#[expect(clippy::cast_possible_truncation, reason = "a picture")]
+fn short(values: &[f64]) -> Vec<f32> {
+    values.iter().map(|value| *value as f32).collect()
 }
 
 /// The same as a VTK file.

@@ -46,6 +46,9 @@ pub struct Comparing<'a> {
     steps: Mutex<HashMap<Vec<String>, Arc<Step>>>,
 }
 
+/// Rungs that are kept at most: each holds the force of every row.
+const MOST_STEPS: usize = 64;
+
 /// A rung with what it predicts.
 struct Step {
     climbed: Climbed,
@@ -145,13 +148,22 @@ impl<'a> Comparing<'a> {
                 let climbed = analysis.climb(place + 1, Some(&ladder[place].climbed))?;
                 let step = Arc::new(Step { rung: analysis.rung(place + 1, &climbed), climbed });
                 if again {
-                    self.lock().insert(names.clone(), Arc::clone(&step));
+                    self.keep(&names, &step);
                 }
                 step
             };
             ladder.push(step);
         }
         Ok(ladder)
+    }
+
+    /// Keeps a rung for the next question. Of those that lead elsewhere some go when there are too many: memory doesn't grow with the number of questions.
+    fn keep(&self, names: &[String], step: &Arc<Step>) {
+        let mut steps = self.lock();
+        if steps.len() >= MOST_STEPS {
+            steps.retain(|other, _| names.starts_with(other));
+        }
+        steps.insert(names.to_vec(), Arc::clone(step));
     }
 
     fn lock(&self) -> MutexGuard<'_, HashMap<Vec<String>, Arc<Step>>> {

@@ -1,0 +1,378 @@
+//! The workbench as a browser meets it: over HTTP, on this machine, against the answers of the library.
+
+#![expect(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't be set up fails")]
+
+use bulge_effects::Catalogue;
+use bulge_inference::{Options, compare};
+use bulge_measurements::Data;
+use bulge_muscles::from_toml;
+use bulge_workbench::{Choices, DataFile, MuscleFile, Start, serve};
+use serde_json::{Value, json};
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, mpsc};
+use std::thread;
+use tempfile::TempDir;
+
+const MUSCLE: &str = include_str!("../../cli/data/braid.toml");
+const DATA: &str = include_str!("../../cli/data/braid-loops.csv");
+
+/// A running workbench.
+struct Page {
+    host: String,
+    token: String,
+}
+
+/// What came back.
+struct Answer {
+    status: u16,
+    head: String,
+    body: Vec<u8>,
+}
+
+impl Answer {
+    fn json(&self) -> Value {
+        serde_json::from_slice(&self.body)
+            .unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&self.body)))
+    }
+
+    /// The place and the sentence of a refusal.
+    fn refusal(&self) -> (String, String) {
+        assert_eq!(self.status, 422, "{}", String::from_utf8_lossy(&self.body));
+        let text = |name: &str| self.json()[name].as_str().unwrap().to_owned();
+        (text("where"), text("error"))
+    }
+}
+
+fn tour(folder: &Path) -> Choices {
+    let path = folder.join("loops.csv");
+    std::fs::write(&path, DATA).unwrap();
+    Choices {
+        data: vec![DataFile { name: "loops.csv".to_owned(), path }],
+        columns: None,
+        muscle: MuscleFile { toml: MUSCLE.to_owned(), origin: Some("braid.toml".to_owned()) },
+        effects: Vec::new(),
+        own_effects: None,
+        excluded: Vec::new(),
+    }
+}
+
+impl Page {
+    fn open(choices: Choices, session: Option<PathBuf>, is_stated: bool) -> Self {
+        let (told, address) = mpsc::channel();
+        thread::spawn(move || {
+            let start = Start { choices, is_stated, port: 0, session };
+            serve(start, |address| told.send(address.to_owned()).unwrap()).unwrap();
+        });
+        let address = address.recv().expect("the server starts");
+        let (host, token) =
+            address.trim_start_matches("http://").trim_end_matches('/').split_once('/').unwrap();
+        Self { host: host.to_owned(), token: token.to_owned() }
+    }
+
+    /// A request as it stands; the whole answer.
+    fn send(&self, head: &str, body: &[u8]) -> Answer {
+        let mut stream = TcpStream::connect(&self.host).unwrap();
+        stream.write_all(head.as_bytes()).unwrap();
+        // A server that refuses before it has read all may close.
+        let _ = stream.write_all(body);
+        let mut answer = Vec::new();
+        let _ = stream.read_to_end(&mut answer);
+        let end = answer.windows(4).position(|window| window == b"\r\n\r\n").expect("a head") + 4;
+        let head = String::from_utf8_lossy(&answer[..end]).into_owned();
+        let status = head.split(' ').nth(1).unwrap().parse().unwrap();
+        let body = if head.contains("transfer-encoding: chunked") {
+            unchunked(&answer[end..])
+        } else {
+            answer[end..].to_vec()
+        };
+        Answer { status, head, body }
+    }
+
+    fn ask(&self, method: &str, call: &str, body: &[u8]) -> Answer {
+        let (host, token, length) = (&self.host, &self.token, body.len());
+        let head = format!(
+            "{method} /{token}/{call} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\nContent-Length: {length}\r\n\r\n"
+        );
+        self.send(&head, body)
+    }
+
+    fn get(&self, call: &str) -> Answer {
+        self.ask("GET", &format!("api/{call}"), b"")
+    }
+
+    fn put(&self, change: &Value) -> Answer {
+        self.ask("PUT", "api/session", change.to_string().as_bytes())
+    }
+
+    fn errors(&self) -> Vec<f64> {
+        let comparison = self.get("comparison?held_out=0").json();
+        comparison["ladder"].as_array().unwrap().iter().map(|rung| rung["rmse_n"].as_f64().unwrap()).collect()
+    }
+}
+
+fn unchunked(mut rest: &[u8]) -> Vec<u8> {
+    let mut body = Vec::new();
+    while let Some(end) = rest.windows(2).position(|window| window == b"\r\n") {
+        let size = usize::from_str_radix(std::str::from_utf8(&rest[..end]).unwrap().trim(), 16).unwrap();
+        body.extend_from_slice(&rest[end + 2..end + 2 + size]);
+        rest = rest.get(end + size + 4..).unwrap_or_default();
+    }
+    body
+}
+
+fn effects(names: &[&str]) -> Value {
+    json!({"effects": names.iter().map(|name| json!({"name": name})).collect::<Vec<_>>()})
+}
+
+fn opened() -> (TempDir, Page) {
+    let folder = tempfile::tempdir().unwrap();
+    let page = Page::open(tour(folder.path()), None, true);
+    (folder, page)
+}
+
+/// One path of code: the page gets the bytes that `bulge compare --json` is made of.
+#[test]
+fn the_documents_are_those_of_the_library() {
+    let (_folder, page) = opened();
+    assert_eq!(page.put(&effects(&["end-taper", "coulomb-friction"])).status, 200);
+    let muscle = from_toml(MUSCLE, "m").unwrap();
+    let data = Data::from_csv(DATA, "loops.csv").unwrap();
+    let catalogue = Catalogue::builtin();
+    let chosen = ["end-taper", "coulomb-friction"].map(|name| Arc::clone(catalogue.find(name).unwrap()));
+    let expected = compare(&data, &muscle, &Options::new(catalogue, chosen.to_vec())).unwrap();
+    let found = page.get("comparison").json();
+    assert_eq!(found, serde_json::to_value(&expected).unwrap());
+    // Without held-out errors all else is the same.
+    let quick = page.get("comparison?held_out=0").json();
+    assert_eq!(quick["ladder"][2]["rmse_n"], found["ladder"][2]["rmse_n"]);
+    assert!(
+        quick["ladder"][2]["held_out_rmse_n"].is_null() && found["ladder"][2]["held_out_rmse_n"].is_number()
+    );
+}
+
+#[test]
+fn the_error_falls_and_comes_back() {
+    let (_folder, page) = opened();
+    page.put(&effects(&["end-taper"]));
+    page.put(&effects(&["end-taper", "bladder-elasticity"]));
+    let session = page.put(&effects(&["end-taper", "bladder-elasticity", "coulomb-friction"])).json();
+    let command =
+        "bulge compare loops.csv --muscle braid.toml --with end-taper,bladder-elasticity,coulomb-friction";
+    assert_eq!(session["command"], command);
+    let errors = page.errors();
+    assert!(errors.len() == 4 && errors.windows(2).all(|pair| pair[1] < 0.8 * pair[0]), "{errors:?}");
+    page.ask("POST", "api/undo", b"");
+    assert_eq!(page.errors(), errors[..3]);
+    page.ask("POST", "api/undo", b"");
+    page.ask("POST", "api/redo", b"");
+    assert_eq!(page.errors(), errors[..3]);
+    // What was learnt is a muscle again.
+    let learnt = String::from_utf8(page.get("learnt.toml").body).unwrap();
+    assert!(
+        from_toml(&learnt, "learnt").is_ok() && learnt.contains("[effects.bladder-elasticity]"),
+        "{learnt}"
+    );
+}
+
+/// A column of 32-bit numbers from the bytes of the rows.
+fn column(bytes: &[u8], name: &str) -> Vec<f32> {
+    let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
+    let header: Value = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
+    let rows = usize::try_from(header["rows"].as_u64().unwrap()).unwrap();
+    let place =
+        header["columns"].as_array().unwrap().iter().position(|column| column["name"] == name).unwrap();
+    assert!(
+        length % 4 == 0 && bytes.len() == 4 + length + 4 * rows * header["columns"].as_array().unwrap().len()
+    );
+    let start = 4 + length + 4 * rows * place;
+    bytes[start..start + 4 * rows]
+        .chunks(4)
+        .map(|four| f32::from_le_bytes(four.try_into().unwrap()))
+        .collect()
+}
+
+#[test]
+fn rows_have_the_error_of_the_ladder_and_can_be_excluded() {
+    let (_folder, page) = opened();
+    page.put(&effects(&["end-taper"]));
+    let rmse = |bytes: &[u8]| {
+        let (measured, model, state) =
+            (column(bytes, "measured"), column(bytes, "model"), column(bytes, "state"));
+        let squares = (0..state.len())
+            .filter(|row| state[*row] > 0.0)
+            .map(|row| f64::from(measured[row] - model[row]).powi(2));
+        let squares: Vec<f64> = squares.collect();
+        ((squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), squares.len())
+    };
+    let before = page.get("rows").body;
+    let (error, all) = rmse(&before);
+    assert!((error / page.errors()[1] - 1.0).abs() < 1e-4 && all == 750, "{error}, {all}");
+    let lines = column(&before, "line");
+    let session = page.put(&json!({"excluded": [10, 11, 12]})).json();
+    let says = format!("--exclude {}-{}", lines[10], lines[12]);
+    assert!(session["command"].as_str().unwrap().contains(&says), "{session}");
+    let after = page.get("rows").body;
+    assert!(rmse(&after).1 == 747 && column(&after, "state")[10..13] == [-1.0; 3]);
+    let left_out = page.get("comparison?held_out=0").json()["data"]["left_out"].to_string();
+    assert!(left_out.contains("excluded by hand"), "{left_out}");
+    let (place, error) = page.put(&json!({"excluded": (0..750).collect::<Vec<_>>()})).refusal();
+    assert!(place == "excluded" && error.contains("all rows"), "{error}");
+}
+
+#[test]
+fn what_is_wrong_is_said_where_it_is_and_changes_nothing() {
+    let (_folder, page) = opened();
+    let before = page.get("session").json();
+    for (change, place, part) in [
+        (effects(&["end-tapper"]), "effects", "did you mean `end-taper`"),
+        (effects(&["creep", "creep"]), "effects", "acts once"),
+        (json!({"muscle": {"toml": "length = 3"}}), "muscle", "length"),
+        (json!({"muscle": {"shipped": "nobody"}}), "muscle", "no shipped muscle"),
+        (json!({"columns": "force"}), "columns", "force"),
+        (json!({"own_effects": "[effects.x]\nforce = \"1 +\""}), "own_effects", "x"),
+        (json!({"colums": ""}), "request", "colums"),
+        (json!({"excluded": [99999]}), "excluded", "99999"),
+    ] {
+        let (found, error) = page.put(&change).refusal();
+        assert!(found == place && error.contains(part), "{change}: {found}, {error}");
+    }
+    assert_eq!(page.get("session").json(), before);
+    let (place, _) = page.get("shape?pressure_pa=1e5&contraction=0.9").refusal();
+    assert_eq!(place, "shape");
+    let unsuitable = |name: &str| {
+        let cards = page.get("effects").json();
+        let card =
+            cards["effects"].as_array().unwrap().iter().find(|card| card["name"] == name).unwrap().clone();
+        card["unsuitable"].as_str().map(str::to_owned)
+    };
+    assert!(unsuitable("fibre-count").unwrap().contains("pleated") && unsuitable("creep").is_none());
+    assert!(unsuitable("thermal-gas").is_none_or(|why| why.contains("temperature")));
+}
+
+#[test]
+fn a_dropped_file_whose_columns_are_strange_is_mapped_by_hand() {
+    let (_folder, page) = opened();
+    let text = "alpha;beta;<img src=x onerror=alert(1)>\n2,0;1,5;501\n2,0;2,5;480\n2,0;3,5;460\n2,0;4,5;440\n2,0;5,5;420\n";
+    let session = page.ask("POST", "api/data?name=..%2F..%2Fmy%20loops.csv", text.as_bytes()).json();
+    assert_eq!(session["data"]["names"], json!(["my loops.csv"]));
+    assert_eq!(session["problem"]["where"], "columns");
+    let named: Vec<&str> = session["reading"]["columns"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|use_| use_["column"].as_str().unwrap())
+        .collect();
+    assert!(named.starts_with(&["alpha", "beta"]) && named[2].contains("img"), "{named:?}");
+    assert_eq!(page.get("comparison").refusal().0, "columns");
+    let columns = "pressure=alpha [bar], displacement=beta [mm], force=#3 [N]";
+    let session = page.put(&json!({"columns": columns})).json();
+    let columns = if session["problem"].is_null() {
+        session
+    } else {
+        page.put(&json!({"columns": "pressure=alpha [bar], displacement=beta [mm], force=<img src=x onerror=alert(1)> [N]"})).json()
+    };
+    assert!(columns["problem"].is_null() && columns["data"]["rows"] == 5, "{columns}");
+    // Back to the tour, with its columns.
+    page.ask("POST", "api/undo", b"");
+    let session = page.ask("POST", "api/undo", b"").json();
+    assert!(session["problem"].is_null() && session["data"]["rows"] == 750, "{session}");
+}
+
+#[test]
+fn a_file_that_is_none_takes_nothing_away() {
+    let (_folder, page) = opened();
+    let bytes: Vec<u8> = (0..4096_u32).map(|i| u8::try_from((i * 7919) % 256).unwrap()).collect();
+    let session = page.ask("POST", "api/data?name=noise.bin", &bytes).json();
+    assert_eq!(session["problem"]["where"], "data");
+    assert!(session["can_undo"] == true);
+    assert_eq!(page.get("comparison").refusal().0, "data");
+    assert!(page.get("effects").json()["effects"].as_array().unwrap().len() > 40);
+    assert!(page.ask("POST", "api/undo", b"").json()["problem"].is_null());
+    assert_eq!(page.ask("POST", "api/data?name=", b"x").refusal().0, "data");
+    // Refused before it is read: nothing of it is sent.
+    let (host, token) = (&page.host, &page.token);
+    let head = format!(
+        "POST /{token}/api/data?name=a.csv HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\nContent-Length: 3000000000\r\n\r\n"
+    );
+    let (place, error) = page.send(&head, b"").refusal();
+    assert!(place == "data" && error.contains("2 GiB"), "{error}");
+}
+
+#[test]
+fn only_the_page_of_this_run_is_answered() {
+    let (_folder, page) = opened();
+    let (host, token) = (&page.host, &page.token);
+    let evil = |lines: &str, token: &str| {
+        let head = format!(
+            "PUT /{token}/api/session HTTP/1.1\r\n{lines}Connection: close\r\nContent-Length: 2\r\n\r\n"
+        );
+        page.send(&head, b"{}").status
+    };
+    let own = format!("Host: {host}\r\n");
+    assert_eq!(evil(&own, token), 200);
+    assert_eq!(evil(&own, &"0".repeat(32)), 403);
+    assert_eq!(evil("Host: evil.example\r\n", token), 403);
+    assert_eq!(evil(&format!("{own}Origin: http://evil.example\r\n"), token), 403);
+    assert_eq!(evil(&format!("{own}Origin: http://{host}\r\n"), token), 200);
+    let index = page.ask("GET", "", b"");
+    assert!(
+        index.status == 200
+            && index.head.contains("content-security-policy")
+            && !index.head.contains("unsafe")
+    );
+    let text = String::from_utf8(index.body).unwrap();
+    assert!(
+        !text.contains("style=\"") && !text.contains("http://") && !text.contains("https://"),
+        "nothing inline, nothing from elsewhere"
+    );
+    assert_eq!(page.ask("GET", "../Cargo.toml", b"").status, 422);
+}
+
+/// A killed process loses nothing: a second one finds all that the first one kept.
+#[test]
+fn a_session_is_found_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let session = folder.path().join("session");
+    let first = Page::open(tour(folder.path()), Some(session.clone()), true);
+    first.put(&effects(&["end-taper"]));
+    first.ask("POST", "api/data?name=more.csv", DATA.replace("2.0000", "2.0001").as_bytes());
+    let left = first.put(&json!({"view": {"theme": "dark"}})).json();
+    let second = Page::open(tour(folder.path()), Some(session.clone()), false);
+    let found = second.get("session").json();
+    for field in ["data", "effects", "muscle", "command", "can_undo", "view"] {
+        assert_eq!(found[field], left[field], "{field}");
+    }
+    // Undo works across the restart; what is stated on the command line is a step more.
+    second.ask("POST", "api/undo", b"");
+    assert_eq!(second.get("session").json()["data"]["names"], json!(["loops.csv"]));
+    let third = Page::open(tour(folder.path()), Some(session.clone()), true).get("session").json();
+    assert!(third["effects"] == json!([]) && third["can_undo"] == true);
+    std::fs::write(session.join("session.json"), "{").unwrap();
+    let start = Start { choices: tour(folder.path()), is_stated: false, port: 0, session: Some(session) };
+    let error = serve(start, |_| ()).unwrap_err().to_string();
+    assert!(error.contains("session.json") && error.contains("--session"), "{error}");
+}
+
+#[test]
+fn a_diagnosis_is_told_by_stages_and_kept() {
+    let (_folder, page) = opened();
+    page.put(&effects(&["end-taper", "bladder-elasticity"]));
+    assert_eq!(page.get("diagnosis.json").status, 422);
+    let told = String::from_utf8(page.ask("POST", "api/diagnose", b"").body).unwrap();
+    assert!(
+        told.matches("event: progress").count() > 5 && told.matches("event: result").count() == 1,
+        "{}",
+        &told[..200]
+    );
+    let result = told.split("event: result\ndata: ").nth(1).unwrap().lines().next().unwrap();
+    let found: Value = serde_json::from_str(result).unwrap();
+    assert!(
+        found["verdict"] == "missing" && found["missing"][0]["effect"] == "coulomb-friction",
+        "{}",
+        found["missing"]
+    );
+    assert_eq!(page.get("diagnosis.json").json(), found);
+    assert!(page.get("diagnosis-report").body.starts_with(b"<!"));
+}
