@@ -2,6 +2,7 @@
 // Files in, and what was found in them: remarks of the check, rows that don't count and why.
 
 import { Refusal } from "./api.js";
+import { closeAssign, openAssign } from "./assign.js";
 import { byId, fill, h, input } from "./dom.js";
 import { counted, sentence } from "./format.js";
 import { showAt } from "./notices.js";
@@ -59,30 +60,25 @@ function mapping(columns) {
 
 /** @param {File} file @param {string} [columns] */
 async function take(file, columns) {
-  byId("assign").hidden = true;
   showAt("data", "");
   showAt("columns", "");
   try {
     await sendFile(file, file.name, { add: input("add-file").checked, columns });
     refused = null;
+    closeAssign();
   } catch (error) {
     if (error instanceof Refusal && (error.where === "columns" || error.where === "data")) {
       showAt("data", `${file.name}: ${error.message}`);
       // Which column is which may be all that is missing.
       if (error.where === "columns" || error.message.includes("column")) {
+        if (refused !== file) closeAssign();
         refused = file;
-        byId("assign").hidden = false;
-        input("assign-columns").value ||= suggestion(error.message);
+        openAssign(error.message);
       }
       return;
     }
     report(error, "data");
   }
-}
-
-/** What the server's own sentence says to write. @param {string} says */
-function suggestion(says) {
-  return [...says.matchAll(/--columns "([^"]+)"/g)].map((found) => found[1]).filter((text) => !text.includes("NAME")).join(", ");
 }
 
 export function startDataPanel() {
@@ -100,7 +96,7 @@ export function startDataPanel() {
   });
   byId("assign-cancel").addEventListener("click", () => {
     refused = null;
-    byId("assign").hidden = true;
+    closeAssign();
     showAt("data", "");
   });
 

@@ -92,7 +92,7 @@ export function report(error, where) {
 }
 
 /** All that the documents depend on. @param {Session} of */
-const content = (of) => JSON.stringify([of.data, of.columns, of.muscle.toml, of.effects, of.own_effects, of.excluded]);
+const content = (of) => JSON.stringify([of.data, /** @type {any} */ (of.reading).sha256, of.columns, of.muscle.toml, of.effects, of.own_effects, of.excluded]);
 
 /** Takes a session as the current one, unless a newer one is there. @param {Session} next @param {boolean} [again] computes the documents even so */
 function take(next, again = false) {
@@ -118,6 +118,7 @@ async function compute(key) {
       if (mine !== runs) return;
       comparison = quick;
       rows = all;
+      delete document.body.dataset.stale;
       performance.mark("documents:here");
       tell("documents");
       performance.mark("documents:drawn");
@@ -130,6 +131,8 @@ async function compute(key) {
   } catch (error) {
     if (mine === runs) {
       computedFor = "";
+      // What is drawn belongs to something older; it is shown as such.
+      if (!isAborted(error)) document.body.dataset.stale = "true";
       report(error);
     }
   }
@@ -244,7 +247,8 @@ export async function load() {
     }
     take(next);
   } catch (error) {
-    report(error);
+    const isElsewhere = error instanceof Refusal && (error.status === 403 || error.status === 404);
+    report(isElsewhere ? new Lost("This address has ended: open the one that bulge open prints now.") : error);
   }
 }
 
