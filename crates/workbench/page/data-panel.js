@@ -3,7 +3,7 @@
 
 import { Refusal } from "./api.js";
 import { closeAssign, openAssign } from "./assign.js";
-import { byId, fill, h, input } from "./dom.js";
+import { byId, fill, h, input, keepingFocus } from "./dom.js";
 import { counted, sentence } from "./format.js";
 import { showAt } from "./notices.js";
 import { change, on, report, sendFile, state } from "./store.js";
@@ -20,7 +20,7 @@ function draw() {
   const { reading } = session;
   const sweeps = /** @type {any} */ (reading).sweeps;
   byId("data-facts").textContent = [counted(session.data.rows, "row"), typeof sweeps === "number" ? counted(sweeps, "sweep") : ""].filter(Boolean).join(", ");
-  fill(byId("remarks"), ...remarks(reading), aside(reading), excluded(session.excluded.length), session.columns ? mapping(session.columns) : null);
+  keepingFocus(byId("remarks"), () => fill(byId("remarks"), ...remarks(reading), aside(reading), excluded(session.excluded.length), session.columns ? mapping(session.columns) : null));
 }
 
 /** @param {import("./types.js").Reading} reading */

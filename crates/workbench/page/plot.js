@@ -12,7 +12,7 @@ import { init } from "./vendor/echarts.js";
 /** @typedef {{name: string, colour: string, rows: ArrayLike<number>, isAside?: boolean}} Group */
 /** @typedef {{name: string, colour: string, width: number, isFaint?: boolean, rows: ArrayLike<number>, y: ArrayLike<number>}} Line */
 /** @typedef {{name: string, unit: string, isLog: boolean, values: ArrayLike<number>}} Side */
-/** @typedef {{x: Side, y: Side, groups: Group[], lines: Line[], zero?: boolean, extra?: ArrayLike<number>[], cells?: any}} Content */
+/** @typedef {{x: Side, y: Side, groups: Group[], lines: Line[], zero?: boolean, extra?: ArrayLike<number>[], extraX?: ArrayLike<number>, cells?: any}} Content */
 
 /** More points than this are thinned while the axes move. */
 export const MOST_MOVING = 6000;
@@ -71,7 +71,7 @@ export class Plot {
   show(content, isNew = false) {
     this.content = content;
     this.home = {
-      x: around([content.x.values], content.x.isLog),
+      x: around([content.x.values, content.extraX ?? []], content.x.isLog),
       y: around([content.y.values, ...(content.extra ?? [])], content.y.isLog),
     };
     if (content.zero && !content.y.isLog) {
