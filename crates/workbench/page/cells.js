@@ -28,7 +28,9 @@ const even = ([low, high], count) => Array.from({ length: count }, (_, i) => [lo
 /** Columns of cells: around each level that was held, or even ones. @param {Float32Array} pressure @returns {[number, number][]} */
 export function columnsOf(pressure) {
   const range = extent(pressure);
-  const sorted = Float32Array.from(pressure).sort();
+  // Some thousand readings show the levels as well as all of them.
+  const every = Math.ceil(pressure.length / 4000);
+  const sorted = pressure.filter((_, i) => i % every === 0).sort();
   const least = GAP * (range[1] - range[0]);
   /** @type {[number, number][]} */
   const levels = [];
@@ -50,15 +52,17 @@ export function columnsOf(pressure) {
 export function cells(rows, scale) {
   const { pressure, contraction, state } = rows.of;
   const columns = columnsOf(pressure);
+  const dividers = columns.slice(1).map(([start], i) => (columns[i][1] + start) / 2);
   const [low, high] = extent(contraction);
   const layers = MOST[1];
   const sums = new Float64Array(columns.length * layers);
   const counts = new Uint32Array(sums.length);
   for (let i = 0; i < rows.count; i += 1) {
     if (state[i] !== 1 || !Number.isFinite(rows.residual[i])) continue;
-    const column = columns.findIndex(([, end]) => pressure[i] <= end);
+    let column = 0;
+    while (column < dividers.length && pressure[i] > dividers[column]) column += 1;
     const layer = Math.min(layers - 1, Math.max(0, Math.floor(((contraction[i] - low) / (high - low)) * layers)));
-    const at = (column < 0 ? columns.length - 1 : column) * layers + layer;
+    const at = column * layers + layer;
     sums[at] += rows.residual[i];
     counts[at] += 1;
   }
