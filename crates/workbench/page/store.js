@@ -23,6 +23,8 @@ let isLost = false;
 let unsaved = {};
 let runs = 0;
 let waiting = 0;
+/** When what was last asked for has been drawn. @type {Promise<unknown>} */
+let drawn = Promise.resolve();
 let computing = new AbortController();
 /** The content of the session that the documents belong to. */
 let computedFor = "";
@@ -113,7 +115,7 @@ async function compute(key) {
   heldOutIsPending = true;
   document.body.dataset.heldOut = "pending";
   try {
-    await counted(async () => {
+    const drawing = counted(async () => {
       const [quick, all] = await Promise.all([get("comparison?held_out=0", signal), getRows(signal)]);
       if (mine !== runs) return;
       comparison = quick;
@@ -123,6 +125,8 @@ async function compute(key) {
       tell("documents");
       performance.mark("documents:drawn");
     });
+    drawn = drawing.catch(() => undefined);
+    await drawing;
     if (mine !== runs) return;
     void loadCards();
     const full = await get("comparison?held_out=1", signal);
@@ -189,14 +193,14 @@ let sliding = false;
 /** @type {(() => void) | null} */
 let slideNext = null;
 
-/** For sliders: at most one change is under way, and of those that follow the last one counts. @param {(session: Session) => Record<string, unknown> | null} make */
+/** For sliders: at most one change is under way until it is drawn, and of those that follow the last one counts. @param {(session: Session) => Record<string, unknown> | null} make */
 export function changeSoon(make) {
   if (sliding) {
     slideNext = () => changeSoon(make);
     return;
   }
   sliding = true;
-  void change(make).finally(() => {
+  void change(make).then(() => drawn).finally(() => {
     sliding = false;
     const next = slideNext;
     slideNext = null;
