@@ -250,6 +250,51 @@ class Story:
         page.wait("!document.querySelector('#mapping')", "the mapping is forgotten")
         page.settle()
 
+    def assign(self):
+        """A file whose headings say nothing: the page asks, and is told by hand."""
+        page = self.page
+        source = [line for line in (self.tour / "braid-loops.csv").read_text().splitlines() if not line.startswith("#")]
+        file = self.folder / "odd.csv"
+        file.write_text("\n".join(["one,two,three,four,five", *source[1:]]) + "\n")
+        page.choose("#file", file)
+        page.wait("!document.querySelector('#data-error').hidden && !document.querySelector('#assign').hidden", "it is asked which column is which")
+        self.expect("a file that can't be read changes nothing", page.text("#data-name") == "braid-loops.csv", page.text("#data-name"))
+        for heading, quantity in (("one", "time"), ("two", "sweep"), ("three", "pressure"), ("four", "contraction"), ("five", "force")):
+            page.run(f"const s = document.querySelector('#assign-headings [data-heading={heading}]'); s.value = '{quantity}'; s.dispatchEvent(new Event('change'))")
+        page.click("#assign-send")
+        page.wait("document.querySelector('#data-name').textContent === 'odd.csv'", "the file is read as said")
+        page.settle()
+        self.expect("columns without a meaning are told by hand", "force=five" in page.text("#mapping code"), page.text("#mapping code"))
+        page.click("#undo")
+        page.wait("document.querySelector('#data-name').textContent === 'braid-loops.csv'", "undo brings the old file back")
+        page.settle()
+
+    def elsewhere(self):
+        """Another tab switches an effect on: this one follows."""
+        page = self.page
+        put = """
+        const done = arguments[arguments.length - 1];
+        fetch('api/session', {method: 'PUT', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({effects: [{name: 'end-taper'}]})}).then((a) => done(a.status));
+        """
+        page.later(put)
+        page.wait("document.querySelectorAll('#ladder .rung').length === 2", "the change of another tab is seen")
+        page.settle()
+        page.click("#undo")
+        page.wait("document.querySelectorAll('#ladder .rung').length === 1", "it is undone here")
+        page.settle()
+        self.expect("a change of another tab is followed", True)
+
+    def hold(self):
+        """A slider holds a number, and the button fits it again."""
+        page = self.page
+        page.run("const s = document.querySelector('[data-slider=bladder-elasticity-modulus]'); s.value = 300; s.dispatchEvent(new Event('input')); s.dispatchEvent(new Event('change'))")
+        page.wait("document.querySelector('[data-hold=bladder-elasticity-modulus]').getAttribute('aria-pressed') === 'true'", "the number is held")
+        page.settle()
+        page.click("[data-hold=bladder-elasticity-modulus]")
+        page.wait("document.querySelector('[data-hold=bladder-elasticity-modulus]').getAttribute('aria-pressed') === 'false'", "the number is fitted again")
+        page.settle()
+        self.expect("a number is held by its slider and fitted again", True)
+
     def switch(self):
         page = self.page
         errors = [page.error()]
@@ -267,13 +312,14 @@ class Story:
 
     def time_switches(self, name, times, limit):
         page = self.page
-        page.run("performance.clearMeasures('switch')")
+        page.run("performance.clearMeasures('switch'); performance.clearMeasures('draw')")
         for i in range(times):
             before = page.run("return performance.getEntriesByName('switch').length")
             page.run("document.querySelector('[role=switch][data-effect=coulomb-friction]').click()")
             page.wait(f"performance.getEntriesByName('switch').length > {before}", "the plots are redrawn")
             page.is_ready()
         self.measured(name, page.run("return performance.getEntriesByName('switch').map((m) => m.duration)"), limit)
+        self.measured(f"{name}: of it drawing", page.run("return performance.getEntriesByName('draw').map((m) => m.duration)"))
         page.settle()
 
     def look_closely(self):
@@ -398,7 +444,8 @@ def play(page, checks, arguments, address, folder):
     story.part("the page loads", story.loads)
     story.part("it starts over", story.start_over)
     for what, part in (
-        ("hostile names", story.hostile), ("a file is read", story.drop), ("a column is mapped", story.map_column), ("effects are switched", story.switch),
+        ("hostile names", story.hostile), ("a file is read", story.drop), ("a column is mapped", story.map_column),
+        ("columns are assigned", story.assign), ("another tab", story.elsewhere), ("effects are switched", story.switch), ("a number is held", story.hold),
         ("rows are brushed", story.look_closely), ("it is diagnosed", story.diagnose), ("undo, redo, reload", story.undo), ("bad input", story.bad_input),
     ):
         story.part(what, part)

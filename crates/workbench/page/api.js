@@ -14,6 +14,8 @@ export class Refusal extends Error {
   }
 }
 
+const ENDED = "bulge open has ended; start it again: this page reconnects.";
+
 /** Nobody answers: `bulge open` has ended. */
 export class Lost extends Error {}
 
@@ -31,7 +33,7 @@ async function ask(path, options) {
     answer = await fetch(`api/${path}`, { cache: "no-store", ...options });
   } catch (error) {
     if (isAborted(error)) throw error;
-    throw new Lost("bulge open does not answer");
+    throw new Lost(ENDED);
   }
   if (answer.ok) return answer;
   const text = await answer.text();
@@ -96,9 +98,9 @@ export async function diagnose(signal, onProgress) {
       part = await reader.read();
     } catch (error) {
       if (isAborted(error)) throw error;
-      throw new Lost("bulge open ended during the diagnosis");
+      throw new Lost(ENDED);
     }
-    if (part.done) throw new Lost("bulge open ended during the diagnosis");
+    if (part.done) throw new Lost(ENDED);
     rest = (rest + part.value).replaceAll("\r\n", "\n");
     for (let end = rest.indexOf("\n\n"); end >= 0; end = rest.indexOf("\n\n")) {
       const event = parseEvent(rest.slice(0, end));

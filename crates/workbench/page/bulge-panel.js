@@ -95,8 +95,8 @@ function follow(row) {
 /** three.js is read once the data are drawn: the plots come first. */
 async function loadScene() {
   const element = byId("shape-view");
-  const { BulgeScene } = await import("./scene.js");
   try {
+    const { BulgeScene } = await import("./scene.js");
     scene = new BulgeScene(element);
   } catch {
     element.classList.add("none");

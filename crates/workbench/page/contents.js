@@ -1,6 +1,7 @@
 // @ts-check
 // What each plot shows of the rows: which columns, in which colours, with which lines.
 
+import { cells } from "./cells.js";
 import { inks, lineColour, signedColour, sweepColour } from "./palette.js";
 
 /** @typedef {import("./types.js").Rows} Rows */
@@ -12,8 +13,6 @@ import { inks, lineColour, signedColour, sweepColour } from "./palette.js";
 const MOST_COLOURS = 24;
 /** Steps of the colours of residuals. */
 const STEPS = 13;
-/** Cells of a residual map along the pressure and the contraction. */
-const CELLS = [28, 22];
 
 /** Units of columns, where they have one. @param {Rows} rows @param {string} name */
 export const unitOf = (rows, name) => rows.columns.find((column) => column.name === name)?.unit ?? (name === "residual" ? "N" : "");
@@ -133,47 +132,9 @@ export function map(rows, inCells, scale) {
   const groups = lists.map((list, i) => ({ name: `residual ${i}`, colour: signedColour((2 * i) / (STEPS - 1) - 1), rows: Uint32Array.from(list) }));
   /** @type {Content} */
   const content = { x: side(rows, "pressure"), y: side(rows, "contraction"), groups: [...groups, ...(inCells ? [] : aside(rows))].filter((group) => group.rows.length), lines: [] };
-  if (inCells) content.cells = cells(rows, scale);
+  if (inCells) {
+    content.cells = cells(rows, scale);
+    content.extraX = content.cells.data.flatMap((/** @type {number[]} */ cell) => cell.slice(0, 2));
+  }
   return content;
-}
-
-/** Mean residual of each cell, as a series that draws rectangles. @param {Rows} rows @param {number} scale */
-function cells(rows, scale) {
-  const { pressure, contraction, state } = rows.of;
-  const [p, c] = [extent(pressure), extent(contraction)];
-  const sums = new Float64Array(CELLS[0] * CELLS[1]);
-  const counts = new Uint32Array(sums.length);
-  const bin = (/** @type {number} */ v, /** @type {[number, number]} */ e, /** @type {number} */ n) => Math.min(n - 1, Math.max(0, Math.floor(((v - e[0]) / (e[1] - e[0])) * n)));
-  for (let i = 0; i < rows.count; i += 1) {
-    if (state[i] !== 1 || !Number.isFinite(rows.residual[i])) continue;
-    const at = bin(pressure[i], p, CELLS[0]) * CELLS[1] + bin(contraction[i], c, CELLS[1]);
-    sums[at] += rows.residual[i];
-    counts[at] += 1;
-  }
-  const data = [];
-  for (let i = 0; i < sums.length; i += 1) {
-    if (!counts[i]) continue;
-    const [a, b] = [Math.floor(i / CELLS[1]), i % CELLS[1]];
-    const edge = (/** @type {[number, number]} */ e, /** @type {number} */ n, /** @type {number} */ k) => e[0] + ((e[1] - e[0]) * k) / n;
-    data.push([edge(p, CELLS[0], a), edge(p, CELLS[0], a + 1), edge(c, CELLS[1], b), edge(c, CELLS[1], b + 1), sums[i] / counts[i] / scale]);
-  }
-  return {
-    type: "custom", id: "cells", name: "cells", data, silent: true, clip: true, z: 3, encode: { x: [0, 1], y: [2, 3] },
-    renderItem: (/** @type {unknown} */ _, /** @type {any} */ api) => {
-      const [left, bottom] = api.coord([api.value(0), api.value(2)]);
-      const [right, top] = api.coord([api.value(1), api.value(3)]);
-      // Half a pixel more on each side leaves no seams.
-      return { type: "rect", shape: { x: left - 0.25, y: top - 0.25, width: right - left + 0.5, height: bottom - top + 0.5 }, style: { fill: signedColour(api.value(4)) } };
-    },
-  };
-}
-
-/** @param {Float32Array} values @returns {[number, number]} */
-function extent(values) {
-  let [low, high] = [Infinity, -Infinity];
-  for (const value of values) {
-    if (value < low) low = value;
-    if (value > high) high = value;
-  }
-  return high > low ? [low, high] : [low - 0.5, low + 0.5];
 }

@@ -2,7 +2,8 @@
 // Files in, and what was found in them: remarks of the check, rows that don't count and why.
 
 import { Refusal } from "./api.js";
-import { byId, fill, h, input } from "./dom.js";
+import { closeAssign, openAssign } from "./assign.js";
+import { byId, fill, h, input, keepingFocus } from "./dom.js";
 import { counted, sentence } from "./format.js";
 import { showAt } from "./notices.js";
 import { change, on, report, sendFile, state } from "./store.js";
@@ -19,7 +20,7 @@ function draw() {
   const { reading } = session;
   const sweeps = /** @type {any} */ (reading).sweeps;
   byId("data-facts").textContent = [counted(session.data.rows, "row"), typeof sweeps === "number" ? counted(sweeps, "sweep") : ""].filter(Boolean).join(", ");
-  fill(byId("remarks"), ...remarks(reading), aside(reading), excluded(session.excluded.length), session.columns ? mapping(session.columns) : null);
+  keepingFocus(byId("remarks"), () => fill(byId("remarks"), ...remarks(reading), aside(reading), excluded(session.excluded.length), session.columns ? mapping(session.columns) : null));
 }
 
 /** @param {import("./types.js").Reading} reading */
@@ -59,30 +60,25 @@ function mapping(columns) {
 
 /** @param {File} file @param {string} [columns] */
 async function take(file, columns) {
-  byId("assign").hidden = true;
   showAt("data", "");
   showAt("columns", "");
   try {
     await sendFile(file, file.name, { add: input("add-file").checked, columns });
     refused = null;
+    closeAssign();
   } catch (error) {
     if (error instanceof Refusal && (error.where === "columns" || error.where === "data")) {
       showAt("data", `${file.name}: ${error.message}`);
       // Which column is which may be all that is missing.
       if (error.where === "columns" || error.message.includes("column")) {
+        if (refused !== file) closeAssign();
         refused = file;
-        byId("assign").hidden = false;
-        input("assign-columns").value ||= suggestion(error.message);
+        openAssign(error.message);
       }
       return;
     }
     report(error, "data");
   }
-}
-
-/** What the server's own sentence says to write. @param {string} says */
-function suggestion(says) {
-  return [...says.matchAll(/--columns "([^"]+)"/g)].map((found) => found[1]).filter((text) => !text.includes("NAME")).join(", ");
 }
 
 export function startDataPanel() {
@@ -100,7 +96,7 @@ export function startDataPanel() {
   });
   byId("assign-cancel").addEventListener("click", () => {
     refused = null;
-    byId("assign").hidden = true;
+    closeAssign();
     showAt("data", "");
   });
 

@@ -2,7 +2,7 @@
 // Diagnose: a run with its progress, then the verdict as an offer. A preview switches the plots to a claim until it is kept or discarded.
 
 import { diagnose, isAborted } from "./api.js";
-import { byId, button, fill, h } from "./dom.js";
+import { byId, button, fill, h, keepingFocus } from "./dom.js";
 import { notice } from "./notices.js";
 import { change, on, report, state, step } from "./store.js";
 import { showTab } from "./tabs.js";
@@ -73,6 +73,10 @@ function drawProgress() {
 }
 
 function draw() {
+  keepingFocus(byId("diagnosis-panel"), fillPanel);
+}
+
+function fillPanel() {
   const panel = byId("diagnosis-panel");
   button("diagnose").textContent = running ? "Diagnosing" : "Diagnose";
   button("diagnose").classList.toggle("running", Boolean(running));

@@ -90,10 +90,12 @@ function mark(element) {
   return found.length ? `${element.tagName}${found.map((one) => `[${one.name}="${CSS.escape(one.value)}"]`).join("")}` : null;
 }
 
-/** Draws a part of the page anew; whoever was at one of its controls with the keyboard stays there. @param {Element} part @param {() => void} draw */
+/** Draws a part of the page anew; whoever was at one of its controls with the keyboard stays there, and what was unfolded stays open. @param {Element} part @param {() => void} draw */
 export function keepingFocus(part, draw) {
   const at = document.activeElement;
   const selector = at && part.contains(at) ? mark(at) : null;
+  const unfolded = [...part.querySelectorAll("details[open]")].map(mark);
   draw();
+  for (const one of unfolded) if (one) part.querySelector(one)?.setAttribute("open", "");
   if (selector) /** @type {HTMLElement | null} */ (part.querySelector(selector))?.focus({ preventScroll: true });
 }

@@ -1,5 +1,5 @@
 // @ts-check
-// Hand and keyboard on a plot: wheel zooms, drag pans or brushes, a double click goes back, arrows and + - do the same.
+// Hand and keyboard on a plot: wheel zooms, drag pans or brushes, a double click goes back; arrows and + - do the same, [ and ] go from row to row, Enter selects.
 
 import { part } from "./axis.js";
 
@@ -73,6 +73,15 @@ export function listen(plot, does) {
   area.addEventListener("pointerleave", () => does.hovered(null, 0, 0));
   area.addEventListener("dblclick", () => plot.reset());
 
+  /** The keyboard's pointer: the next row of the file. @param {number} by */
+  const stepTo = (by) => {
+    const count = plot.content?.x.values.length ?? 0;
+    if (!count) return;
+    const row = ((plot.hovered ?? (by > 0 ? -1 : 0)) + by + count) % count;
+    const to = plot.projection();
+    does.hovered(row, to.x(row), to.y(row));
+  };
+
   area.addEventListener("keydown", (event) => {
     if (!plot.content) return;
     const { left, top, width, height } = plot.box;
@@ -82,6 +91,15 @@ export function listen(plot, does) {
       ArrowLeft: () => pan(plot, step * width, 0), ArrowRight: () => pan(plot, -step * width, 0), ArrowUp: () => pan(plot, 0, step * height), ArrowDown: () => pan(plot, 0, -step * height),
       "+": () => zoom(plot, 0.8, ...middle), "=": () => zoom(plot, 0.8, ...middle), "-": () => zoom(plot, 1.25, ...middle), 0: () => plot.reset(),
     });
+    const by = /** @type {Record<string, number>} */ ({ "]": 1, "[": -1 })[event.key];
+    if (by) {
+      stepTo(by);
+      return;
+    }
+    if (event.key === "Enter" && plot.hovered !== null) {
+      does.brushed([plot.hovered], "add");
+      return;
+    }
     const move = moves[event.key];
     if (!move || event.ctrlKey || event.metaKey) return;
     event.preventDefault();

@@ -50,7 +50,7 @@ export function startNotices() {
   on("session", (why) => {
     if (why !== "refused") for (const where of Object.keys(PLACES)) showAt(where, "");
   });
-  on("lost", () => banner("bulge open has ended; start it again: this page reconnects.", "lost"));
+  on("lost", (says) => banner(says, "lost"));
   on("found", () => {
     byId("banner").hidden = true;
     notice("Connected again.");

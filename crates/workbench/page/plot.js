@@ -12,13 +12,15 @@ import { init } from "./vendor/echarts.js";
 /** @typedef {{name: string, colour: string, rows: ArrayLike<number>, isAside?: boolean}} Group */
 /** @typedef {{name: string, colour: string, width: number, isFaint?: boolean, rows: ArrayLike<number>, y: ArrayLike<number>}} Line */
 /** @typedef {{name: string, unit: string, isLog: boolean, values: ArrayLike<number>}} Side */
-/** @typedef {{x: Side, y: Side, groups: Group[], lines: Line[], zero?: boolean, extra?: ArrayLike<number>[], cells?: any}} Content */
+/** @typedef {{x: Side, y: Side, groups: Group[], lines: Line[], zero?: boolean, extra?: ArrayLike<number>[], extraX?: ArrayLike<number>, cells?: any}} Content */
 
 /** More points than this are thinned while the axes move. */
 export const MOST_MOVING = 6000;
 /** More points than this are drawn as small squares, which is faster. Fewer are circles, all in one path (the "large" mode of ECharts): a shape for each takes longer. */
 const LARGE = 2500;
 const REST_MS = 180;
+/** Contents that follow each other faster than this are those of a slider. */
+const RAPID_MS = 700;
 
 export class Plot {
   /** @param {HTMLElement} element @param {{small?: boolean}} [how] */
@@ -47,6 +49,7 @@ export class Plot {
     /** @type {number | null} */
     this.hovered = null;
     this.restTimer = 0;
+    this.shownAt = -Infinity;
     this.frame = 0;
     new ResizeObserver(() => this.resize()).observe(element);
   }
@@ -71,7 +74,7 @@ export class Plot {
   show(content, isNew = false) {
     this.content = content;
     this.home = {
-      x: around([content.x.values], content.x.isLog),
+      x: around([content.x.values, content.extraX ?? []], content.x.isLog),
       y: around([content.y.values, ...(content.extra ?? [])], content.y.isLog),
     };
     if (content.zero && !content.y.isLog) {
@@ -79,8 +82,18 @@ export class Plot {
       this.home.y = { ...this.home.y, low: Math.min(low, -0.05 * high), high: Math.max(high, -0.05 * low) };
     }
     if (isNew || !this.isZoomed) this.reset(false);
-    this.isThin = false;
+    // While a slider is dragged one content follows the other: points are thinned until it is let go.
+    const now = performance.now();
+    this.isThin = now - this.shownAt < RAPID_MS && this.isMany();
+    this.shownAt = now;
     this.draw();
+    if (this.isThin) this.restAfter(RAPID_MS);
+  }
+
+  /** @param {number} ms */
+  restAfter(ms) {
+    clearTimeout(this.restTimer);
+    this.restTimer = window.setTimeout(() => this.rest(), ms);
   }
 
   /** @param {boolean} [andDraw] */
@@ -104,8 +117,7 @@ export class Plot {
     this.view = view;
     this.isZoomed = isZoomed;
     if (!this.frame) this.frame = requestAnimationFrame(() => this.redraw());
-    clearTimeout(this.restTimer);
-    this.restTimer = window.setTimeout(() => this.rest(), REST_MS);
+    this.restAfter(REST_MS);
   }
 
   redraw() {

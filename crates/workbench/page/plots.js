@@ -63,7 +63,7 @@ function drawMap() {
   const rows = state.rows;
   if (!rows) return;
   scale = contents.residualScale(rows);
-  show("map", "", contents.map(rows, inCells(), scale));
+  show("map", String(inCells()), contents.map(rows, inCells(), scale));
   byId("cells").setAttribute("aria-pressed", String(inCells()));
   const floor = state.comparison?.noise_floor?.sd_n;
   byId("map-scale").style.backgroundImage = gradient((share) => signedColour(2 * share - 1));

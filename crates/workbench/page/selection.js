@@ -2,7 +2,7 @@
 // The rows that are brushed, and the one below the pointer: one selection for all plots.
 
 import { button, byId } from "./dom.js";
-import { counted, newtons, quantity, ranges, signed } from "./format.js";
+import { counted, newtons, number, quantity, ranges, signed } from "./format.js";
 import { change, on, state, tell } from "./store.js";
 
 /** @type {number[]} */
@@ -44,7 +44,9 @@ export function describe(row) {
   const parts = [`line ${of.line[row]}${file ? ` of ${file}` : ""}`];
   if (rows.sweeps.length > 1) parts.push(`sweep ${rows.sweeps[of.sweep[row]] ?? of.sweep[row] + 1}`);
   parts.push(quantity(of.pressure[row], "bar"), quantity(of.contraction[row], "%"), newtons(of.measured[row]));
-  if (Number.isFinite(rows.residual[row])) parts.push(`residual ${signed(rows.residual[row])} N`);
+  const floor = state.comparison?.noise_floor?.sd_n;
+  const sigmas = floor ? ` (${number(rows.residual[row] / floor, 2)} σ)` : "";
+  if (Number.isFinite(rows.residual[row])) parts.push(`residual ${signed(rows.residual[row])} N${sigmas}`);
   else parts.push("the model has no state here");
   if (of.state[row] === 0) parts.push("left out");
   if (of.state[row] === -1) parts.push("excluded by hand");

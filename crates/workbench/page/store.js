@@ -23,6 +23,8 @@ let isLost = false;
 let unsaved = {};
 let runs = 0;
 let waiting = 0;
+/** When what was last asked for has been drawn. @type {Promise<unknown>} */
+let drawn = Promise.resolve();
 let computing = new AbortController();
 /** The content of the session that the documents belong to. */
 let computedFor = "";
@@ -92,7 +94,7 @@ export function report(error, where) {
 }
 
 /** All that the documents depend on. @param {Session} of */
-const content = (of) => JSON.stringify([of.data, of.columns, of.muscle.toml, of.effects, of.own_effects, of.excluded]);
+const content = (of) => JSON.stringify([of.data, /** @type {any} */ (of.reading).sha256, of.columns, of.muscle.toml, of.effects, of.own_effects, of.excluded]);
 
 /** Takes a session as the current one, unless a newer one is there. @param {Session} next @param {boolean} [again] computes the documents even so */
 function take(next, again = false) {
@@ -113,15 +115,18 @@ async function compute(key) {
   heldOutIsPending = true;
   document.body.dataset.heldOut = "pending";
   try {
-    await counted(async () => {
+    const drawing = counted(async () => {
       const [quick, all] = await Promise.all([get("comparison?held_out=0", signal), getRows(signal)]);
       if (mine !== runs) return;
       comparison = quick;
       rows = all;
+      delete document.body.dataset.stale;
       performance.mark("documents:here");
       tell("documents");
       performance.mark("documents:drawn");
     });
+    drawn = drawing.catch(() => undefined);
+    await drawing;
     if (mine !== runs) return;
     void loadCards();
     const full = await get("comparison?held_out=1", signal);
@@ -130,6 +135,8 @@ async function compute(key) {
   } catch (error) {
     if (mine === runs) {
       computedFor = "";
+      // What is drawn belongs to something older; it is shown as such.
+      if (!isAborted(error)) document.body.dataset.stale = "true";
       report(error);
     }
   }
@@ -186,14 +193,14 @@ let sliding = false;
 /** @type {(() => void) | null} */
 let slideNext = null;
 
-/** For sliders: at most one change is under way, and of those that follow the last one counts. @param {(session: Session) => Record<string, unknown> | null} make */
+/** For sliders: at most one change is under way until it is drawn, and of those that follow the last one counts. @param {(session: Session) => Record<string, unknown> | null} make */
 export function changeSoon(make) {
   if (sliding) {
     slideNext = () => changeSoon(make);
     return;
   }
   sliding = true;
-  void change(make).finally(() => {
+  void change(make).then(() => drawn).finally(() => {
     sliding = false;
     const next = slideNext;
     slideNext = null;
@@ -244,7 +251,8 @@ export async function load() {
     }
     take(next);
   } catch (error) {
-    report(error);
+    const isElsewhere = error instanceof Refusal && (error.status === 403 || error.status === 404);
+    report(isElsewhere ? new Lost("This address has ended: open the one that bulge open prints now.") : error);
   }
 }
 

@@ -1,5 +1,5 @@
 // @ts-check
-// Marks from which a test reads how long things took: `data` (start to drawn), `switch` (click to redrawn plots), `redraw` (one frame of a zoom).
+// Marks from which a test reads how long things took: `data` (start to drawn), `switch` (click to redrawn plots), `draw` (documents here to redrawn plots: the page's own part of it), `redraw` (one frame of a zoom).
 
 import { on } from "./store.js";
 
@@ -9,6 +9,7 @@ export function startTimings() {
     // After all listeners have drawn and the browser has shown it.
     requestAnimationFrame(() => {
       performance.mark("plots:drawn");
+      performance.measure("draw", "documents:here", "plots:drawn");
       if (isFirst) performance.measure("data", { start: 0, end: "plots:drawn" });
       isFirst = false;
       if (performance.getEntriesByName("switch:click").length) {

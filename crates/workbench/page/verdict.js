@@ -74,7 +74,7 @@ function rivals(claim, name, does) {
   const near = [...(claim.rivals ?? [])].sort((a, b) => (a.separation ?? Infinity) - (b.separation ?? Infinity)).slice(0, MOST_RIVALS);
   if (!near.length) return null;
   return h(
-    "details", { class: "rivals" }, h("summary", null, `Rivals: ${near.map((rival) => rival.effect).join(", ")}`),
+    "details", { class: "rivals", "data-rivals": name }, h("summary", null, `Rivals: ${near.map((rival) => rival.effect).join(", ")}`),
     h("ul", null, ...near.map((rival) => h(
       "li", null, h("span", { class: "rival" }, rival.effect), h("span", { class: "facts", title: `behind by ${number(rival.behind)} in log evidence` }, `${number(rival.separation)} σ apart`),
       h("button", { type: "button", class: "small", "data-rival": rival.effect, title: `${rival.effect} instead of ${name}`, onclick: () => does.tryInstead(name, rival.effect) }, "try instead"),
