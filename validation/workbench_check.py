@@ -257,15 +257,19 @@ class Story:
         file = self.folder / "odd.csv"
         file.write_text("\n".join(["one,two,three,four,five", *source[1:]]) + "\n")
         page.choose("#file", file)
-        page.wait("!document.querySelector('#data-error').hidden && !document.querySelector('#assign').hidden", "it is asked which column is which")
-        self.expect("a file that can't be read changes nothing", page.text("#data-name") == "braid-loops.csv", page.text("#data-name"))
+        page.wait("!document.querySelector('#columns-error').hidden && document.querySelector('#columns tr[data-column=five]')", "it is asked which column is which")
+        self.expect("what was drawn stays, and is shown to be older", page.run("return document.body.dataset.stale") == "true")
         for heading, quantity in (("one", "time"), ("two", "sweep"), ("three", "pressure"), ("four", "contraction"), ("five", "force")):
-            page.run(f"const s = document.querySelector('#assign-headings [data-heading={heading}]'); s.value = '{quantity}'; s.dispatchEvent(new Event('change'))")
-        page.click("#assign-send")
-        page.wait("document.querySelector('#data-name').textContent === 'odd.csv'", "the file is read as said")
+            page.run(f"document.querySelector('#columns tr[data-column={heading}] .link').click()")
+            page.run(f"const s = document.querySelector('#columns .editor select'); s.value = '{quantity}'; s.dispatchEvent(new Event('change'))")
+            page.click("#columns .editor button[type=submit]")
+            page.wait(f"document.querySelector('#mapping code')?.textContent.includes('{quantity}={heading}') && document.body.dataset.state !== 'busy'", f"{heading} is said")
+        page.wait("document.querySelector('#columns-error').hidden", "the file is read as said")
         page.settle()
-        self.expect("columns without a meaning are told by hand", "force=five" in page.text("#mapping code"), page.text("#mapping code"))
-        page.click("#undo")
+        self.expect("columns without a meaning are told by hand", page.text("#data-name") == "odd.csv" and not page.run("return document.body.dataset.stale"), page.text("#mapping code"))
+        for _ in range(6):
+            page.click("#undo")
+            page.wait("document.body.dataset.state !== 'busy'", "a step back")
         page.wait("document.querySelector('#data-name').textContent === 'braid-loops.csv'", "undo brings the old file back")
         page.settle()
 

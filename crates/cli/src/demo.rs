@@ -133,7 +133,8 @@ impl Demo {
         let (data, muscle) = (self.out.join(DATA.0), self.out.join(MUSCLE.0));
         let _ = writeln!(
             text,
-            "Or see what another effect does: `bulge compare {} --muscle {} --with {},pressure-friction`.",
+            "Or see what another effect does: `bulge compare {} --muscle {} --with {},pressure-friction`.\n\
+             By hand, in the browser: `bulge open` (`cargo run --release -- open`).",
             data.display(),
             muscle.display(),
             ADDED.join(",")

@@ -32,10 +32,10 @@ function draw() {
 function rowsOf(column, key, i, isSeveral, said) {
   const isOpen = open === key;
   const isSaid = said.some((entry) => entry.heading === column.column || entry.heading === bare(column.column).heading);
-  const taken = `${column.quantity}${column.unit && column.unit !== "1" ? ` [${column.unit}]` : ""}`;
-  const marks = [column.guessed ? h("span", { class: "tag guess", title: column.says ?? "guessed from the readings" }, "guessed") : null, isSaid ? h("span", { class: "tag" }, "said") : null];
+  const taken = column.quantity ? `${column.quantity}${column.unit && column.unit !== "1" ? ` [${column.unit}]` : ""}` : "not read";
+  const marks = [column.guessed && column.quantity ? h("span", { class: "tag guess", title: column.says ?? "guessed from the readings" }, "guessed") : null, isSaid ? h("span", { class: "tag" }, "said") : null];
   const row = h(
-    "tr", { "data-column": column.column, "data-quantity": column.quantity, title: isSeveral ? column.file : null },
+    "tr", { "data-column": column.column, "data-quantity": column.quantity ?? "", title: isSeveral ? column.file : null },
     h("th", { scope: "row" }, h("button", { type: "button", class: "link", "aria-expanded": isOpen, "data-edit": i, title: `${column.column}: click to change`, onclick: () => toggle(key) }, column.column)),
     h("td", null, taken, " ", ...marks),
     h("td", { class: "values" }, column.first.slice(0, 3).join("  ")),

@@ -1,8 +1,6 @@
 // @ts-check
 // Files in, and what was found in them: remarks of the check, rows that don't count and why.
 
-import { Refusal } from "./api.js";
-import { closeAssign, openAssign } from "./assign.js";
 import { byId, fill, h, input, keepingFocus } from "./dom.js";
 import { counted, sentence } from "./format.js";
 import { showAt } from "./notices.js";
@@ -11,36 +9,32 @@ import { change, on, report, sendFile, state } from "./store.js";
 /** Rows that are named one by one. */
 const MOST_ROWS = 40;
 
-/** The file that the server could not read yet. @type {File | null} */
-let refused = null;
-
 function draw() {
   const session = state.session;
   if (!session) return;
+  // What the check of the data says is in the comparison: it needs the muscle.
+  const data = session.problem ? null : state.comparison?.data;
+  const quality = session.problem ? [] : state.comparison?.quality ?? [];
   const { reading } = session;
-  const sweeps = /** @type {any} */ (reading).sweeps;
-  byId("data-facts").textContent = [counted(session.data.rows, "row"), typeof sweeps === "number" ? counted(sweeps, "sweep") : ""].filter(Boolean).join(", ");
-  keepingFocus(byId("remarks"), () => fill(byId("remarks"), ...remarks(reading), aside(reading), excluded(session.excluded.length), session.columns ? mapping(session.columns) : null));
+  byId("data-facts").textContent = session.problem ? "" : [counted(session.data.rows, "row"), data ? counted(data.sweeps, "sweep") : ""].filter(Boolean).join(", ");
+  const found = [...(data?.findings ?? []), ...(reading.notes ?? []), ...quality];
+  keepingFocus(byId("remarks"), () => fill(byId("remarks"), ...remarks(found), aside(reading, data?.left_out ?? []), excluded(session.excluded.length), session.columns ? mapping(session.columns) : null));
 }
 
-/** @param {import("./types.js").Reading} reading */
-function remarks(reading) {
-  const found = [...(reading.findings ?? []), .../** @type {any} */ (reading).notes ?? [], ...(reading.quality ?? [])];
+/** @param {any[]} found */
+function remarks(found) {
   const texts = found.map((item) => [sentence(item), typeof item === "object" && item?.instead ? String(item.instead) : ""]).filter(([text]) => text);
   return texts.map(([text, instead]) => h("p", { class: "remark" }, text, instead ? h("code", null, ` ${instead}`) : null));
 }
 
-/** Rows that the reading set apart or the check left out, by reason. @param {import("./types.js").Reading} reading */
-function aside(reading) {
-  const left = reading.left_out ?? [];
+/** Rows that the reading set apart or the check left out, by reason. @param {import("./types.js").Reading} reading @param {any[]} left */
+function aside(reading, left) {
+  const leftRows = left.reduce((sum, one) => sum + one.rows, 0);
   const apart = reading.set_apart ?? [];
   const apartCount = reading.set_apart_rows ?? apart.length;
   if (!left.length && !apartCount) return null;
-  const lines = [...apart, ...left].map((/** @type {Record<string, any>} */ row) => {
-    const at = row.line ?? row.row;
-    return `${at === undefined ? "" : `line ${at}: `}${sentence(row)}`;
-  });
-  const head = [left.length ? `${counted(left.length, "row")} left out` : "", apartCount ? `${counted(apartCount, "row")} set apart` : ""].filter(Boolean).join(", ");
+  const lines = [...apart.map((row) => `line ${row.row}: ${row.reason}`), ...left.map((one) => `line ${one.lines}: ${one.why}`)];
+  const head = [left.length ? `${counted(leftRows, "row")} left out` : "", apartCount ? `${counted(apartCount, "row")} set apart` : ""].filter(Boolean).join(", ");
   return h(
     "details", { class: "remark", id: "left-out" }, h("summary", null, head),
     h("ul", null, ...lines.slice(0, MOST_ROWS).map((line) => h("li", null, line)), lines.length > MOST_ROWS ? h("li", null, `and ${lines.length - MOST_ROWS} more`) : null),
@@ -58,25 +52,13 @@ function mapping(columns) {
   return h("p", { class: "remark", id: "mapping" }, "columns as said: ", h("code", null, columns), " ", h("button", { type: "button", class: "small", id: "forget-columns", onclick: () => void change(() => ({ columns: null }), "columns") }, "forget"));
 }
 
-/** @param {File} file @param {string} [columns] */
-async function take(file, columns) {
+/** @param {File} file */
+async function take(file) {
   showAt("data", "");
   showAt("columns", "");
   try {
-    await sendFile(file, file.name, { add: input("add-file").checked, columns });
-    refused = null;
-    closeAssign();
+    await sendFile(file, file.name, { add: input("add-file").checked });
   } catch (error) {
-    if (error instanceof Refusal && (error.where === "columns" || error.where === "data")) {
-      showAt("data", `${file.name}: ${error.message}`);
-      // Which column is which may be all that is missing.
-      if (error.where === "columns" || error.message.includes("column")) {
-        if (refused !== file) closeAssign();
-        refused = file;
-        openAssign(error.message);
-      }
-      return;
-    }
     report(error, "data");
   }
 }
@@ -85,19 +67,11 @@ export function startDataPanel() {
   on("session", (why) => {
     if (why !== "refused") draw();
   });
+  on("documents", draw);
   input("file").addEventListener("change", () => {
     const file = input("file").files?.[0];
     if (file) void take(file);
     input("file").value = "";
-  });
-  byId("assign").addEventListener("submit", (event) => {
-    event.preventDefault();
-    if (refused) void take(refused, input("assign-columns").value.trim());
-  });
-  byId("assign-cancel").addEventListener("click", () => {
-    refused = null;
-    closeAssign();
-    showAt("data", "");
   });
 
   // A file may be dropped anywhere: whoever misses the box would otherwise leave the page.

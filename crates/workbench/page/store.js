@@ -94,14 +94,27 @@ export function report(error, where) {
 }
 
 /** All that the documents depend on. @param {Session} of */
-const content = (of) => JSON.stringify([of.data, /** @type {any} */ (of.reading).sha256, of.columns, of.muscle.toml, of.effects, of.own_effects, of.excluded]);
+const content = (of) => JSON.stringify([of.data, of.columns, of.muscle.toml, of.effects, of.own_effects, of.excluded]);
 
 /** Takes a session as the current one, unless a newer one is there. @param {Session} next @param {boolean} [again] computes the documents even so */
 function take(next, again = false) {
   if (session && next.revision < session.revision && !again) return;
   session = { ...next, view: { ...next.view, ...unsaved } };
   tell("session");
-  if (again || content(next) !== computedFor) void compute(content(next));
+  if (next.problem) refuseAll(next.problem);
+  else if (again || content(next) !== computedFor) void compute(content(next));
+}
+
+/** Nothing can be computed with these choices: what is drawn belongs to older ones. @param {{error: string, where: string}} problem */
+function refuseAll(problem) {
+  computing.abort();
+  runs += 1;
+  computedFor = "";
+  heldOutIsPending = false;
+  document.body.dataset.heldOut = "done";
+  if (comparison) document.body.dataset.stale = "true";
+  tell("refused", { says: problem.error, where: problem.where });
+  void loadCards();
 }
 
 /** Fetches what belongs to the session; an older run is aborted, and what it may still bring is dropped. @param {string} key */
@@ -224,12 +237,11 @@ export function step(which) {
 /**
  * @param {Blob} file
  * @param {string} name
- * @param {{add?: boolean, columns?: string}} [how]
+ * @param {{add?: boolean}} [how]
  */
 export function sendFile(file, name, how = {}) {
   const query = new URLSearchParams({ name });
   if (how.add) query.set("add", "1");
-  if (how.columns) query.set("columns", how.columns);
   const mine = queue.then(() => counted(async () => {
     take(await post(`data?${query}`, file), true);
   }));

@@ -11,18 +11,21 @@
 
 /**
  * @typedef {object} Reading
+ * @property {ColumnReading[]} columns
+ * @property {{file: string, row: number, reason: string}[]} set_apart
+ * @property {number} set_apart_rows
+ * @property {string[]} [notes]
+ */
+
+/**
+ * @typedef {object} Data what was compared
  * @property {number} rows
  * @property {number} used
- * @property {ColumnReading[]} columns
- * @property {{kind?: string, says: string, instead?: string | null, decided?: boolean}[]} [findings]
- * @property {Record<string, any>[]} [left_out]
- * @property {{file?: string, row?: number, reason: string}[]} [set_apart]
- * @property {number} [set_apart_rows]
- * @property {string[]} [sweep_kinds]
- * @property {boolean} [is_path]
- * @property {number} [full_scale_n]
- * @property {any[]} [quality]
- * @property {string[]} [ignored]
+ * @property {number} sweeps
+ * @property {number} full_scale_n
+ * @property {boolean} is_path
+ * @property {{says: string, instead: string}[]} findings
+ * @property {{rows: number, lines: string, why: string}[]} left_out
  */
 
 /** @typedef {{name: string, toml: string, shipped: string | null}} Muscle */
@@ -32,7 +35,7 @@
  * @property {number} revision
  * @property {boolean} can_undo
  * @property {boolean} can_redo
- * @property {{names: string[], rows: number, bytes: number}} data
+ * @property {{names: string[], rows: number, sha256: string}} data
  * @property {string | null} columns
  * @property {Reading} reading
  * @property {Muscle} muscle
@@ -40,6 +43,7 @@
  * @property {string | null} own_effects
  * @property {number[]} excluded
  * @property {View} view
+ * @property {{error: string, where: string} | null} problem why nothing can be computed
  * @property {string} command
  * @property {string} python
  */
@@ -79,7 +83,7 @@
 /**
  * @typedef {object} Comparison
  * @property {string} muscle
- * @property {Reading} data
+ * @property {Data} data
  * @property {any[]} quality
  * @property {{sd_n: number | null, source: string, says: string} | null} noise_floor
  * @property {Rung[]} ladder

@@ -26,6 +26,7 @@ files! {
     "api.js" => "page/api.js",
     "axis.js" => "page/axis.js",
     "bulge-panel.js" => "page/bulge-panel.js",
+    "cells.js" => "page/cells.js",
     "column-map.js" => "page/column-map.js",
     "columns.js" => "page/columns.js",
     "connection.js" => "page/connection.js",

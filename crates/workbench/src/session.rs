@@ -43,6 +43,8 @@ pub(crate) struct SessionDocument {
 struct DataDocument {
     names: Vec<String>,
     rows: usize,
+    /// Of what was read; empty where nothing could be.
+    sha256: String,
 }
 
 #[derive(Debug, Serialize)]
@@ -200,9 +202,11 @@ impl Session {
     pub(crate) fn document(&self) -> SessionDocument {
         let Kept { choices, past, future, view, .. } = &self.kept;
         let problem = self.inputs.as_ref().err();
-        let (reading, rows) = match &self.inputs {
-            Ok(inputs) => (inputs.data.reading().clone(), inputs.data.len()),
-            Err(refusal) => (Reading { columns: refusal.columns.clone(), ..Reading::default() }, 0),
+        let (reading, rows, sha256) = match &self.inputs {
+            Ok(inputs) => (inputs.data.reading().clone(), inputs.data.len(), inputs.data.sha256()),
+            Err(refusal) => {
+                (Reading { columns: refusal.columns.clone(), ..Reading::default() }, 0, String::new())
+            }
         };
         let origin = choices.muscle.origin.clone();
         SessionDocument {
@@ -210,7 +214,11 @@ impl Session {
             revision: self.revision,
             can_undo: !past.is_empty(),
             can_redo: !future.is_empty(),
-            data: DataDocument { names: choices.data.iter().map(|file| file.name.clone()).collect(), rows },
+            data: DataDocument {
+                names: choices.data.iter().map(|file| file.name.clone()).collect(),
+                rows,
+                sha256,
+            },
             columns: choices.columns.clone(),
             reading,
             muscle: MuscleDocument {

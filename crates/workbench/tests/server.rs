@@ -142,8 +142,9 @@ fn the_documents_are_those_of_the_library() {
     let catalogue = Catalogue::builtin();
     let chosen = ["end-taper", "coulomb-friction"].map(|name| Arc::clone(catalogue.find(name).unwrap()));
     let expected = compare(&data, &muscle, &Options::new(catalogue, chosen.to_vec())).unwrap();
-    let found = page.get("comparison").json();
-    assert_eq!(found, serde_json::to_value(&expected).unwrap());
+    let found = page.get("comparison");
+    assert!(found.body == serde_json::to_vec(&expected).unwrap(), "the bytes differ");
+    let found = found.json();
     // Without held-out errors all else is the same.
     let quick = page.get("comparison?held_out=0").json();
     assert_eq!(quick["ladder"][2]["rmse_n"], found["ladder"][2]["rmse_n"]);
@@ -248,7 +249,6 @@ fn what_is_wrong_is_said_where_it_is_and_changes_nothing() {
         card["unsuitable"].as_str().map(str::to_owned)
     };
     assert!(unsuitable("fibre-count").unwrap().contains("pleated") && unsuitable("creep").is_none());
-    assert!(unsuitable("thermal-gas").is_none_or(|why| why.contains("temperature")));
 }
 
 #[test]
@@ -266,14 +266,9 @@ fn a_dropped_file_whose_columns_are_strange_is_mapped_by_hand() {
         .collect();
     assert!(named.starts_with(&["alpha", "beta"]) && named[2].contains("img"), "{named:?}");
     assert_eq!(page.get("comparison").refusal().0, "columns");
-    let columns = "pressure=alpha [bar], displacement=beta [mm], force=#3 [N]";
+    let columns = format!("pressure=alpha [bar], displacement=beta [mm], force={} [N]", named[2]);
     let session = page.put(&json!({"columns": columns})).json();
-    let columns = if session["problem"].is_null() {
-        session
-    } else {
-        page.put(&json!({"columns": "pressure=alpha [bar], displacement=beta [mm], force=<img src=x onerror=alert(1)> [N]"})).json()
-    };
-    assert!(columns["problem"].is_null() && columns["data"]["rows"] == 5, "{columns}");
+    assert!(session["problem"].is_null() && session["data"]["rows"] == 5, "{}", session["problem"]);
     // Back to the tour, with its columns.
     page.ask("POST", "api/undo", b"");
     let session = page.ask("POST", "api/undo", b"").json();
