@@ -1,16 +1,12 @@
 //! `compare` and `fit` as a user sees them: ladders on data with a known truth, files that lead on, and messages for bad input.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
+use crate::support::{Folder, bulge, failure, json};
 use bulge::effects::{Catalogue, Moment};
 use bulge::model::{Model, Record, Wanted};
 use bulge::muscles::from_toml;
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
-use support::{Folder, bulge, failure, json};
 
 const MUSCLE: &str =
     "name = \"trial\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n";
