@@ -17,6 +17,7 @@ use crate::arguments;
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
+use crate::restricted::RestrictedArguments;
 use progress::Bar;
 
 /// Which physical effect is missing: compares, looks for what the model lacks, adds it, and says how sure that is.
@@ -30,6 +31,8 @@ pub(crate) struct DiagnoseCommand {
     /// Effects that the model has already: `--with end-taper,bladder-elasticity`
     #[arg(long, value_delimiter = ',', value_name = "EFFECT")]
     with: Vec<String>,
+    #[command(flatten)]
+    restricted: RestrictedArguments,
     /// Looks for these effects only, such as those that a hypothesis is about: `--among creep,coulomb-friction`
     #[arg(long, value_delimiter = ',', value_name = "EFFECT")]
     among: Vec<String>,
@@ -60,6 +63,8 @@ impl DiagnoseCommand {
         let data = self.data.read(&muscle)?;
         let known = known(&muscle, &catalogue)?;
         let base = Options { known, ..Options::new(catalogue, effects) };
+        // What a diagnosis fits along: widths that no file states are the usual ones.
+        let base = self.restricted.apply(base, &data, &muscle.clone().with_usual_widths().0)?;
         let bar = Bar::new(self.json);
         let progress = bar.progress();
         let options =
@@ -87,6 +92,7 @@ impl DiagnoseCommand {
             columns: self.data.columns.clone(),
             muscle: self.muscle.clone(),
             with: self.with.iter().map(|name| name.trim().to_owned()).collect(),
+            restricted: self.restricted.clone(),
             effects: self.effects.as_ref().map(|path| path.display().to_string()),
         }
     }

@@ -15,6 +15,7 @@ use crate::compare::parameters;
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files::{self, Named};
+use crate::restricted::RestrictedArguments;
 
 /// Fits the named effects, and writes the muscle with what was learnt: a file for `shape`, `curve` and the next `compare`.
 #[derive(Debug, Args)]
@@ -27,6 +28,8 @@ pub(crate) struct FitCommand {
     /// Effects to fit: `--with end-taper,bladder-elasticity`
     #[arg(long, required = true, value_delimiter = ',', value_name = "EFFECT")]
     with: Vec<String>,
+    #[command(flatten)]
+    restricted: RestrictedArguments,
     /// Your own effects, as expressions in a TOML file
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
@@ -48,9 +51,11 @@ impl FitCommand {
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = self.data.read(&muscle)?;
-        let learnt = learn(&data, &muscle, effects.clone(), catalogue.clone())?;
+        let options = options(&muscle, effects, catalogue)?;
+        let options = self.restricted.apply(options, &data, &muscle)?;
+        let learnt = learn(&data, &muscle, &options)?;
         let drawn = match &self.form_error {
-            Some(path) => Some(drawn(&data, &muscle, effects, catalogue, path)?),
+            Some(path) => Some(drawn(&data, &muscle, &options, path)?),
             None => None,
         };
         if let Some(path) = &self.out {
@@ -101,12 +106,10 @@ impl FitCommand {
 fn drawn(
     data: &Data,
     muscle: &Muscle,
-    effects: Vec<Arc<dyn Effect>>,
-    catalogue: Catalogue,
+    options: &Options,
     path: &Path,
 ) -> Result<(DrawnForms, String), Failure> {
-    let known = known(muscle, &catalogue)?;
-    let drawn = drawn_forms(data, muscle, &Options { known, ..Options::new(catalogue, effects) })?;
+    let drawn = drawn_forms(data, muscle, options)?;
     let mut text = format!(
         "\n  RMS error with the formulas {:.3} N, with the forms that the data want {:.3} N\n",
         drawn.rmse_n, drawn.bent_rmse_n
@@ -125,16 +128,19 @@ fn drawn(
     Ok((drawn, text))
 }
 
-/// Fits effects to data.
-pub(crate) fn learn(
-    data: &Data,
+/// Effects to fit to a muscle, with those that its file states.
+pub(crate) fn options(
     muscle: &Muscle,
     effects: Vec<Arc<dyn Effect>>,
     catalogue: Catalogue,
-) -> Result<Learnt, Failure> {
+) -> Result<Options, Failure> {
     let known = known(muscle, &catalogue)?;
-    let options = Options { known, ..Options::new(catalogue, effects) };
-    Ok(Learnt::of(fit_effects(data, muscle, &options)?)?)
+    Ok(Options { known, ..Options::new(catalogue, effects) })
+}
+
+/// Fits effects to data.
+pub(crate) fn learn(data: &Data, muscle: &Muscle, options: &Options) -> Result<Learnt, Failure> {
+    Ok(Learnt::of(fit_effects(data, muscle, options)?)?)
 }
 
 /// What was learnt, in lines: the error before and after, the numbers, and what to mind.
@@ -145,7 +151,7 @@ pub(crate) fn lines(learnt: &Learnt) -> String {
         let _ = writeln!(text, "  {line}");
     }
     let fit = &learnt.fitting.fit;
-    parameters(&mut text, fit);
+    parameters(&mut text, fit, &learnt.fitting.held);
     for warning in &fit.warnings {
         let _ = writeln!(text, "  ! {warning}");
     }

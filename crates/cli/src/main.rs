@@ -19,6 +19,7 @@ mod membrane;
 mod muscle;
 mod next;
 mod plan;
+mod restricted;
 mod sense;
 mod shape;
 mod simulate;

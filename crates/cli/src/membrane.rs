@@ -129,7 +129,7 @@ impl MembraneCommand {
         let catalogue = arguments::catalogue(None)?;
         let effects = arguments::effects(&catalogue, &["limited-unfolding".to_owned()])?;
         let data = Data::from_csv(&forces, &self.out.join("forces.csv").display().to_string())?;
-        let fitted = fit::learn(&data, muscle, effects, catalogue)?;
+        let fitted = fit::learn(&data, muscle, &fit::options(muscle, effects, catalogue)?)?;
         is_the_cloth(case, &fitted)?;
         files::write(path, fitted.model.as_bytes())?;
         Ok(fitted)

@@ -9,6 +9,7 @@ use std::fmt::Write;
 
 use crate::diagnose::paragraph::{paragraph, quoted};
 use crate::diagnose::untested::reasons;
+use crate::restricted::RestrictedArguments;
 use crate::text::{significant, with_interval};
 
 /// Lines of a kind that are shown; JSON has all.
@@ -33,6 +34,8 @@ pub(crate) struct Call {
     pub(crate) muscle: String,
     /// Effects that the base had.
     pub(crate) with: Vec<String>,
+    /// What was stated of numbers.
+    pub(crate) restricted: RestrictedArguments,
     /// File of the user's own effects.
     pub(crate) effects: Option<String>,
 }
@@ -304,10 +307,11 @@ fn accept(out: &mut String, diagnosis: &Diagnosis, call: &Call) {
     let columns =
         call.columns.as_ref().map_or_else(String::new, |columns| format!(" --columns {}", quoted(columns)));
     let rest = format!(
-        "{}{columns} --muscle {}{own} --with {}",
+        "{}{columns} --muscle {}{own} --with {}{}",
         data.join(" "),
         quoted(&call.muscle),
-        quoted(&with.join(","))
+        quoted(&with.join(",")),
+        call.restricted.text()
     );
     let _ = writeln!(
         out,
@@ -350,6 +354,7 @@ mod tests {
             columns: None,
             muscle: "braid.toml".to_owned(),
             with: vec!["end-taper".to_owned()],
+            restricted: RestrictedArguments::default(),
             effects: Some("own.toml".to_owned()),
         }
     }
