@@ -1,7 +1,7 @@
 //! `bulge compare`: model against measurement, and the error as effects are added.
 
 use bulge_effects::Effect;
-use bulge_inference::{Comparison, Fit, compare};
+use bulge_inference::{Comparison, Fit, HeldNumber, compare};
 use bulge_report::comparison::{html, plots};
 use clap::Args;
 use std::fmt::Write;
@@ -12,6 +12,7 @@ use crate::arguments;
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
+use crate::restricted::RestrictedArguments;
 use crate::text::{significant, with_interval};
 
 /// Model against measurement. Effects are fitted only if you name them with `--with`.
@@ -25,6 +26,8 @@ pub(crate) struct CompareCommand {
     /// Effects to add, in this order: `--with end-taper,bladder-elasticity`
     #[arg(long, value_delimiter = ',', value_name = "EFFECT")]
     with: Vec<String>,
+    #[command(flatten)]
+    restricted: RestrictedArguments,
     /// Your own effects, as expressions in a TOML file
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
@@ -58,6 +61,7 @@ impl CompareCommand {
                 .with_law(name, &muscle, self.fit_law)
                 .map_err(|what| Failure::Value { option: "--law", what })?;
         }
+        let options = self.restricted.apply(options, &data, &muscle)?;
         let comparison = compare(&data, &muscle, &options)?;
         let document = serde_json::to_string_pretty(&comparison)? + "\n";
         let mut wrote = String::new();
@@ -121,8 +125,11 @@ pub(crate) fn text(comparison: &Comparison, effects: &[Arc<dyn Effect>]) -> Stri
         let _ = writeln!(out, "  {}", finding.says);
     }
     ladder(&mut out, comparison);
-    if let Some(fit) = comparison.ladder.last().and_then(|rung| rung.fit.as_ref()) {
-        parameters(&mut out, fit);
+    if let Some(rung) = comparison.ladder.last() {
+        match &rung.fit {
+            Some(fit) => parameters(&mut out, fit, &rung.held),
+            None => held(&mut out, &rung.held),
+        }
     }
     rivals(&mut out, comparison);
     for warning in &comparison.warnings {
@@ -175,8 +182,36 @@ pub(crate) fn ladder(out: &mut String, comparison: &Comparison) {
     }
 }
 
-/// The fitted numbers with their intervals.
-pub(crate) fn parameters(out: &mut String, fit: &Fit) {
+/// Numbers that were held at a value, or have that of another one.
+fn held(out: &mut String, numbers: &[HeldNumber]) {
+    if numbers.is_empty() {
+        return;
+    }
+    let label = |number: &HeldNumber| match &number.specimen {
+        Some(specimen) => format!("{} {} [{specimen}]", number.effect, number.name),
+        None => format!("{} {}", number.effect, number.name),
+    };
+    let _ = writeln!(out, "\n  numbers that were not fitted");
+    let width = numbers.iter().map(|number| label(number).len()).max().unwrap_or(0);
+    for number in numbers {
+        let unit = if number.unit == "1" { "" } else { &number.unit };
+        let how = number.to.as_ref().map_or_else(|| number.how.to_owned(), |to| format!("tied to {to}"));
+        let _ = writeln!(
+            out,
+            "    {:<width$}  {:>9} {unit:<6} {how}",
+            label(number),
+            significant(number.value, 4)
+        );
+    }
+}
+
+/// The fitted numbers with their intervals, and those that were held.
+pub(crate) fn parameters(out: &mut String, fit: &Fit, held_numbers: &[HeldNumber]) {
+    fitted(out, fit);
+    held(out, held_numbers);
+}
+
+fn fitted(out: &mut String, fit: &Fit) {
     if fit.parameters.is_empty() {
         return;
     }

@@ -68,6 +68,7 @@ impl DataArguments {
             muscle: muscle.to_owned(),
             effects: effects.map(|path| path.display().to_string()),
             with: with.iter().map(|name| name.trim().to_owned()).collect(),
+            restrictions: Vec::new(),
         }
     }
 

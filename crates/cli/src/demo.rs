@@ -249,8 +249,10 @@ fn measured(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result
         data.len()
     );
     ladder(text, &comparison);
-    if let Some(fit) = comparison.ladder.last().and_then(|rung| rung.fit.as_ref()) {
-        parameters(text, fit);
+    if let Some(rung) = comparison.ladder.last()
+        && let Some(fit) = &rung.fit
+    {
+        parameters(text, fit, &rung.held);
     }
     text.push_str("\n  It was simulated with c10 = 0.31 MPa and a friction of 14 N.\n\n");
     let document = serde_json::to_string_pretty(&comparison)? + "\n";

@@ -16,6 +16,7 @@ use crate::arguments;
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files;
+use crate::restricted::RestrictedArguments;
 use progress::Bar;
 
 /// Which physical effect is missing: compares, looks for what the model lacks, adds it, and says how sure that is.
@@ -29,6 +30,8 @@ pub(crate) struct DiagnoseCommand {
     /// Effects that the model has already: `--with end-taper,bladder-elasticity`
     #[arg(long, value_delimiter = ',', value_name = "EFFECT")]
     with: Vec<String>,
+    #[command(flatten)]
+    restricted: RestrictedArguments,
     /// Looks for these effects only, such as those that a hypothesis is about: `--among creep,coulomb-friction`
     #[arg(long, value_delimiter = ',', value_name = "EFFECT")]
     among: Vec<String>,
@@ -58,6 +61,8 @@ impl DiagnoseCommand {
         let among = arguments::among(&catalogue, &self.among)?;
         let data = self.data.read(&muscle)?;
         let base = self.data.options(&data, &muscle, catalogue, effects)?;
+        // What a diagnosis fits along: widths that no file states are the usual ones.
+        let base = self.restricted.apply(base, &data, &muscle.clone().with_usual_widths().0)?;
         let bar = Bar::new(self.json);
         let progress = bar.progress();
         let options =
@@ -74,12 +79,9 @@ impl DiagnoseCommand {
         if self.json {
             Ok(document)
         } else {
-            Ok(told(&found.data.reading)
-                + &text::text(
-                    &found,
-                    &self.data.call(&self.muscle, &self.with, self.effects.as_deref(), &[]),
-                )
-                + &wrote)
+            let mut call = self.data.call(&self.muscle, &self.with, self.effects.as_deref(), &[]);
+            call.restrictions = self.restricted.stated();
+            Ok(told(&found.data.reading) + &text::text(&found, &call) + &wrote)
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::compare::parameters;
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
 use crate::files::{self, Named};
+use crate::restricted::RestrictedArguments;
 
 /// Fits the named effects, and writes the muscle with what was learnt: a file for `shape`, `curve` and the next `compare`.
 #[derive(Debug, Args)]
@@ -25,6 +26,8 @@ pub(crate) struct FitCommand {
     /// Effects to fit: `--with end-taper,bladder-elasticity`
     #[arg(long, required = true, value_delimiter = ',', value_name = "EFFECT")]
     with: Vec<String>,
+    #[command(flatten)]
+    restricted: RestrictedArguments,
     /// Your own effects, as expressions in a TOML file
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
@@ -47,6 +50,7 @@ impl FitCommand {
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = self.data.read(&muscle)?;
         let options = self.data.options(&data, &muscle, catalogue, effects)?;
+        let options = self.restricted.apply(options, &data, &muscle)?;
         let learnt = learn(&data, &muscle, &options)?;
         let drawn = match &self.form_error {
             Some(path) => Some(drawn(&data, &muscle, &options, path)?),
@@ -135,7 +139,7 @@ pub(crate) fn lines(learnt: &Learnt) -> String {
         let _ = writeln!(text, "  {line}");
     }
     let fit = &learnt.fitting.fit;
-    parameters(&mut text, fit);
+    parameters(&mut text, fit, &learnt.fitting.held);
     for warning in &fit.warnings {
         let _ = writeln!(text, "  ! {warning}");
     }

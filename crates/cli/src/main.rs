@@ -20,6 +20,7 @@ mod muscle;
 mod next;
 mod open;
 mod plan;
+mod restricted;
 mod sense;
 mod shape;
 mod simulate;

@@ -3,6 +3,7 @@
 use bulge_muscles::PRESETS;
 use bulge_workbench::{Choices, ChosenEffect, DataFile, MuscleFile, Start, serve};
 use clap::Args;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -58,7 +59,11 @@ impl OpenCommand {
             data: self.files(&folder)?,
             columns: self.columns.clone(),
             muscle: self.muscle_file()?,
-            effects: self.with.iter().map(|name| ChosenEffect { name: name.trim().to_owned() }).collect(),
+            effects: self
+                .with
+                .iter()
+                .map(|name| ChosenEffect { name: name.trim().to_owned(), hold: BTreeMap::new() })
+                .collect(),
             own_effects: self.effects.as_deref().map(text_of).transpose()?,
             excluded: Vec::new(),
         };

@@ -1,6 +1,6 @@
 //! Effects in muscle files: `[effects.NAME]` tables as effects with their numbers, and back.
 
-use bulge_muscles::{Dimension, FileError, Learnt, LearntValue, Muscle, MuscleError, units};
+use bulge_muscles::{FileError, Learnt, LearntValue, Muscle, MuscleError};
 use std::sync::Arc;
 
 use crate::card::ParameterCard;
@@ -49,16 +49,11 @@ pub fn learnt(effect: &dyn Effect, numbers: &[f64], widths: &[Option<f64>]) -> R
     let value = |(i, card): (usize, &ParameterCard<'_>)| LearntValue {
         key: card.key.to_owned(),
         si: numbers.get(i).copied().unwrap_or(f64::NAN),
-        dimension: dimension(card),
+        dimension: card.dimension(),
         unit: card.unit.to_owned(),
         width: widths.get(i).copied().flatten().filter(|width| width.is_finite() && *width > 0.0),
     };
     Learnt::new(name, effect.parameters().iter().enumerate().map(value).collect())
-}
-
-/// The dimension of a number, from its unit. A unit that nobody knows is none.
-fn dimension(card: &ParameterCard<'_>) -> Dimension {
-    units::unit(card.unit).map_or(Dimension::NONE, |(_, dimension)| dimension)
 }
 
 fn numbers(stated: &Learnt, effect: &dyn Effect, muscle: &Muscle) -> Result<Vec<f64>, FileError> {
@@ -83,7 +78,7 @@ fn numbers(stated: &Learnt, effect: &dyn Effect, muscle: &Muscle) -> Result<Vec<
 }
 
 fn value(stated: &Learnt, card: &ParameterCard<'_>) -> Result<f64, FileError> {
-    let example = format!("write `{} = \"{}\"`", card.key, shown(card.typical, card));
+    let example = format!("write `{} = \"{}\"`", card.key, card.shown(card.typical));
     let Some(value) = stated.value(card.key) else {
         if card.may_be_absent {
             return Ok(card.off);
@@ -91,36 +86,27 @@ fn value(stated: &Learnt, card: &ParameterCard<'_>) -> Result<f64, FileError> {
         let what = format!("the effect `{}` needs `{}`, {}", stated.name(), card.key, card.about);
         return Err(stated.error(what, example));
     };
-    if value.dimension != dimension(card) {
+    if value.dimension != card.dimension() {
         let what =
-            format!("`{}` is {}, not {}", card.key, dimension(card).describe(), value.dimension.describe());
+            format!("`{}` is {}, not {}", card.key, card.dimension().describe(), value.dimension.describe());
         return Err(stated.value_error(card.key, what, example));
     }
-    // What a fit left on a bound may be off it by rounding.
-    let slack = 1e-12 * (card.high - card.low).abs();
-    if !(card.low - slack..=card.high + slack).contains(&value.si) {
+    card.within(value.si).ok_or_else(|| {
         let what = format!(
             "`{}` = {} is out of the bounds of the effect `{}`",
             card.key,
-            shown(value.si, card),
+            card.shown(value.si),
             stated.name()
         );
-        let instead = format!("it lies between {} and {}", shown(card.low, card), shown(card.high, card));
-        return Err(stated.value_error(card.key, what, instead));
-    }
-    Ok(value.si.clamp(card.low, card.high))
-}
-
-/// A number in the unit of its card.
-fn shown(si: f64, card: &ParameterCard<'_>) -> String {
-    // Twelve digits hide the rounding of the change of units.
-    format!("{} {}", units::rounded(si / card.factor, 12), card.unit).trim_end().to_owned()
+        let instead = format!("it lies between {} and {}", card.shown(card.low), card.shown(card.high));
+        stated.value_error(card.key, what, instead)
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bulge_muscles::{Quantity, SHAPE_EFFECTS, from_toml, preset, to_toml};
+    use bulge_muscles::{Quantity, SHAPE_EFFECTS, from_toml, preset, to_toml, units};
 
     #[test]
     fn files_from_before_an_effect_had_a_number_mean_what_they_meant() {

@@ -21,6 +21,7 @@ mod mechanism;
 mod probe;
 mod rig;
 mod specimen;
+mod stated;
 mod unit;
 pub mod user;
 

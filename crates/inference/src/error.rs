@@ -54,6 +54,16 @@ pub enum InferenceError {
         /// What it needs.
         needs: &'static str,
     },
+    /// Something is stated of a number that no fit changes.
+    #[error("`{number}` is {says}, but it isn't fitted: {instead}")]
+    Restriction {
+        /// The number, `effect.name`.
+        number: String,
+        /// `held`, `bounded` or `tied`.
+        says: &'static str,
+        /// Why it isn't, and what to do.
+        instead: String,
+    },
     /// A protocol that nobody can carry out, or with this muscle.
     #[error("{what}; {instead}")]
     Protocol {

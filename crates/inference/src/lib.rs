@@ -22,6 +22,7 @@ mod noise;
 mod progress;
 mod protocol;
 
+pub use bulge_model::{NumberName, Restriction, Says};
 pub use bulge_numerics::Random;
 pub use comparison::analysis::Options;
 pub use comparison::compare::{Comparing, Fitting, compare, fit_effects};
@@ -43,6 +44,8 @@ pub use diagnosis::search::MOST_EFFECTS;
 pub use error::InferenceError;
 pub use fit::document::{Convergence, Fit, Fitted};
 pub use fit::extension::{Extension, extended};
+pub use fit::held::HeldNumber;
+pub use fit::restrictions::check_restrictions;
 pub use fit::weights::{Noise, effective_rows};
 pub use noise::error::NoiseError;
 pub use noise::law::{CorrelationTime, NoiseLaw, NoiseSource};

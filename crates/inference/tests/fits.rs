@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use bulge_effects::{Catalogue, Effect, Moment, known};
-use bulge_inference::{Fit, Fitting, Options, compare, extended, fit_effects};
+use bulge_inference::{Fit, Fitting, Options, check_restrictions, compare, extended, fit_effects};
 use bulge_measurements::Data;
 use bulge_model::{Model, Record, Wanted};
 use bulge_muscles::{Muscle, from_toml, to_toml};
@@ -350,4 +350,90 @@ fn specimens_of_the_muscle_and_of_the_data_must_be_the_same() {
     assert!(comparison.warnings[0].contains("stands for the specimen `middle`"), "{:?}", comparison.warnings);
     let message = compare(&data, &of("short", 0.02).unwrap(), &options(&[])).unwrap_err().to_string();
     assert!(message.contains("of the 20.0 mm of the specimen `short` of trial"), "{message}");
+}
+
+/// Options of a fit with statements about its numbers: `hold x=v`, `bound x=a..b`, `tie x=y`.
+fn restricted(muscle: &Muscle, names: &[&str], statements: &[&str]) -> Options {
+    statements.iter().fold(options(names), |options, statement| {
+        let (how, text) = statement.split_once(' ').unwrap();
+        let found = match how {
+            "hold" => options.hold(text, muscle),
+            "bound" => options.bound(text, muscle),
+            _ => options.tie(text, muscle),
+        };
+        found.unwrap()
+    })
+}
+
+/// What is held stays, and the others are fitted as to data from which it has been taken.
+#[test]
+fn a_held_number_is_taken_off_the_data() {
+    let muscle = muscle(PLEATED);
+    let truth: &[(&str, &[f64])] = &[("coulomb-friction", &[12.0]), ("force-offset", &[5.0])];
+    let data = measured(&muscle, truth, 0.0, 1);
+    let names = ["coulomb-friction", "force-offset"];
+    let held = restricted(&muscle, &names, &["hold force-offset.offset=2 N"]);
+    let found = fit_effects(&data, &muscle, &held).unwrap();
+    // Friction is odd and about as often there as back: an offset that is 3 N wrong hardly moves it, and leaves 3 N.
+    let [friction] = found.fit.parameters.as_slice() else { panic!("{:?}", found.fit.parameters) };
+    assert!((friction.value - 12.0).abs() < 0.2 && (found.rmse_n - 3.0).abs() < 0.02, "{found:?}");
+    let [offset] = found.held.as_slice() else { panic!("{:?}", found.held) };
+    assert_eq!(
+        (offset.effect.as_str(), offset.how, offset.value.to_bits()),
+        ("force-offset", "held", 2.0_f64.to_bits())
+    );
+    // The learnt muscle states it like what was fitted, without a width.
+    let text = to_toml(&extended(&found.model, &found.fit).unwrap().muscle);
+    assert!(text.contains("offset = \"2 N\""), "{text}");
+    // With all held nothing is fitted, and the ladder says so.
+    let all = restricted(&muscle, &names, &["hold force-offset=2 N", "hold coulomb-friction=10 N"]);
+    let comparison = compare(&data, &muscle, &all).unwrap();
+    let last = &comparison.ladder[2];
+    assert!(last.fit.is_none() && last.fitted == 0 && last.held.len() == 2, "{last:?}");
+    assert!((last.rmse_n - 13.0_f64.sqrt()).abs() < 0.02, "{}", last.rmse_n);
+}
+
+#[test]
+fn a_bounded_number_stays_within_and_a_tied_one_follows() {
+    let muscle = muscle(PLEATED);
+    let truth: &[(&str, &[f64])] = &[("coulomb-friction", &[12.0]), ("force-offset", &[6.0])];
+    let data = measured(&muscle, truth, 0.0, 1);
+    let names = ["coulomb-friction", "force-offset"];
+    let fitted =
+        |statement: &str| fit_effects(&data, &muscle, &restricted(&muscle, &names, &[statement])).unwrap();
+    let found = fitted("bound coulomb-friction.force=4..9 N");
+    let friction = &found.fit.parameters[0];
+    assert!((friction.value - 9.0).abs() < 1e-6 && friction.at_bound == Some("upper"), "{friction:?}");
+    let found = fitted("bound coulomb-friction.force=4..20 N");
+    assert!((found.fit.parameters[0].value - 12.0).abs() < 0.02, "{:?}", found.fit.parameters);
+    // Of b (1 +- 1) the best is (12 + 6)/2 where both branches weigh the same: (12 - b)^2 + (6 - b)^2 is least.
+    let found = fitted("tie coulomb-friction.force=force-offset.offset");
+    let [offset] = found.fit.parameters.as_slice() else { panic!("{:?}", found.fit.parameters) };
+    assert!((offset.value - 9.0).abs() < 0.02 && (found.rmse_n - 18.0_f64.sqrt()).abs() < 0.02, "{offset:?}");
+    assert_eq!(found.held[0].to.as_deref(), Some("force-offset.offset"));
+    let learnt = extended(&found.model, &found.fit).unwrap().muscle;
+    let value = |effect: &str| {
+        let table = learnt.learnt().iter().find(|learnt| learnt.name() == effect).unwrap();
+        (table.values()[0].si.to_bits(), table.values()[0].width.map(f64::to_bits))
+    };
+    assert_eq!(value("coulomb-friction"), value("force-offset"));
+}
+
+/// What is stated of a number that isn't fitted is refused where it is asked, and passed over where effects come and go.
+#[test]
+fn statements_about_other_numbers_are_refused() {
+    let muscle = muscle(PLEATED);
+    let data = measured(&muscle, &[("coulomb-friction", &[12.0])], 1.0, 1);
+    let asked = restricted(&muscle, &["coulomb-friction"], &["hold force-offset.offset=2 N"]);
+    let message = check_restrictions(&data, &muscle, &asked).unwrap_err().to_string();
+    assert!(message.contains("`force-offset.offset` is held, but it isn't fitted"), "{message}");
+    assert!(message.contains("--with"), "{message}");
+    assert!((compare(&data, &muscle, &asked).unwrap().ladder[1].rmse_n - 1.0).abs() < 0.2);
+    // A rig error within its data sheet is fitted along, and can be held.
+    let rig =
+        self::muscle(&format!("{PLEATED}[instruments]\nforce = {{ noise = \"1 N\", zero = \"3 N\" }}\n"));
+    assert!(check_restrictions(&data, &rig, &asked).is_ok());
+    let found = compare(&data, &rig, &asked).unwrap();
+    assert_eq!((found.ladder[0].held.len(), found.ladder[0].fitted), (1, 0));
+    assert!((found.ladder[1].rmse_n - 5.0_f64.sqrt()).abs() < 0.2, "{}", found.ladder[1].rmse_n);
 }

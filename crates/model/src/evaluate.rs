@@ -143,6 +143,8 @@ impl Model {
         all_or_none: bool,
         slots: &mut Slots,
     ) -> Result<(Prediction, Vec<(usize, RowError)>), ModelError> {
+        let (theta, asked) = (&*self.with_ties(theta), wanted);
+        let wanted = &*self.wanted_with_ties(asked);
         let counts = |row: usize| warm.is_none_or(|warm| warm.counts(row));
         let mut runs = self.runs(record, theta, &wanted.parameters, &counts, slots)?;
         for run in &mut runs {
@@ -167,7 +169,7 @@ impl Model {
             .map(|((rows, part), slots)| segment(&runs, &task, rows.clone(), part, slots))
             .collect();
         slots.alone = runs.iter().map(|run| run.alone.load(Ordering::Relaxed)).collect();
-        Ok((all, failed.into_iter().flatten().collect()))
+        Ok((self.folded(all, asked, wanted), failed.into_iter().flatten().collect()))
     }
 
     /// One run for each of the muscles that the specimens are.
@@ -280,6 +282,7 @@ impl Model {
     pub(crate) fn rest(&self, theta: &[f64], moment: &Moment) -> Result<AtRest, ModelError> {
         let record = Record::from_moments(vec![*moment], vec![0.0], std::iter::once(0..1).collect());
         let Some(record) = record else { return Err(ModelError::Values { given: 0, expected: 1 }) };
+        let theta = &*self.with_ties(theta);
         let mut slots = Slots::default();
         slots.for_bodies(self.bodies.len());
         let run = self.run(self.body_of(moment.specimen), &record, theta, &[], &|_| true, &mut slots)?;

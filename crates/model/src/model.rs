@@ -9,6 +9,7 @@ use std::sync::Arc;
 use crate::base::{Equilibrium, ShapeVariable};
 use crate::error::ModelError;
 use crate::parameter::ModelParameter;
+use crate::restriction::Restriction;
 use crate::solved::Solved;
 
 /// Coarsest lattice that follows the force at all.
@@ -70,7 +71,9 @@ pub struct Model {
     pub(crate) body_of: Vec<usize>,
     pub(crate) effects: Vec<Chosen>,
     pub(crate) specimens: Vec<String>,
-    parameters: Vec<ModelParameter>,
+    pub(crate) parameters: Vec<ModelParameter>,
+    /// What is stated of numbers, also of those that effects still bring.
+    pub(crate) restrictions: Arc<[Restriction]>,
     /// Steps of the lattice are divided by this.
     pub(crate) refinement: f64,
     /// Lattices that this model and those made from it have solved.
@@ -100,6 +103,7 @@ impl Model {
             effects: Vec::new(),
             specimens: vec!["1".to_owned()],
             parameters: Vec::new(),
+            restrictions: Arc::from([]),
             refinement: 1.0,
             solved: Arc::default(),
         }
@@ -157,10 +161,13 @@ impl Model {
                     unit: number.unit.to_owned(),
                     factor: number.factor,
                     fixed: values.is_some(),
+                    held: false,
+                    tied: None,
                     about: number.about.to_owned(),
                 });
             }
         }
+        model.restrict(self.parameters.len());
         Ok(model)
     }
 
@@ -275,7 +282,7 @@ impl Model {
     /// If the muscle can't have an effect, or not with these values.
     pub fn reshaped(&self, theta: &[f64]) -> Result<Muscle, ModelError> {
         let stated = Body::of(self.muscle.clone().without_specimens(), Vec::new());
-        self.moves(&stated, theta, &[]).map(|(muscle, _)| muscle)
+        self.moves(&stated, &self.with_ties(theta), &[]).map(|(muscle, _)| muscle)
     }
 
     /// The muscle to solve for one of the bodies, and for each of the `wanted` parameters that change it how they do.
@@ -357,8 +364,9 @@ impl Model {
         if self.law().is_some() {
             return Ok(false);
         }
+        let theta = self.with_ties(theta);
         for body in 0..self.bodies.len() {
-            let (muscle, _) = self.reshape(body, theta, &[])?;
+            let (muscle, _) = self.reshape(body, &theta, &[])?;
             if Self::equilibrium(&muscle, &[]).is_ok_and(|equilibrium| equilibrium.is_costly()) {
                 return Ok(true);
             }
@@ -447,6 +455,8 @@ fn law_parameters(
         unit: coefficient.unit.to_owned(),
         factor: 1.0,
         fixed: !free || coefficient.role != Role::Fitted,
+        held: false,
+        tied: None,
         about: coefficient.meaning.to_owned(),
     };
     law.coefficients.iter().enumerate().map(number).collect()

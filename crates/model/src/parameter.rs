@@ -33,6 +33,10 @@ pub struct ModelParameter {
     pub factor: f64,
     /// Whether the value is taken as known: stated in the muscle file and not asked for.
     pub fixed: bool,
+    /// Whether it is held at its value by a [`crate::Restriction`]; it is `fixed` then.
+    pub held: bool,
+    /// The place of the number whose value it has, by a [`crate::Restriction`]; it is `fixed` then.
+    pub tied: Option<usize>,
     /// What it is.
     pub about: String,
 }

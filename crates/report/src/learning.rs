@@ -1,6 +1,6 @@
 //! What a fit has taught: the muscle file that holds it, with where its numbers come from, and the document.
 
-use bulge_inference::{DataSummary, DrawnForms, Extension, Fit, Fitting, NoiseFloor, extended};
+use bulge_inference::{DataSummary, DrawnForms, Extension, Fit, Fitting, HeldNumber, NoiseFloor, extended};
 use bulge_model::ModelError;
 use bulge_muscles::{Fault, to_toml, units::significant};
 use serde::Serialize;
@@ -61,6 +61,7 @@ pub struct LearntDocument<'a> {
     rmse_percent: f64,
     noise_floor: &'a Option<NoiseFloor>,
     fit: &'a Fit,
+    held: &'a [HeldNumber],
     written: &'a [String],
     left_out: &'a [(String, &'static str)],
     model: &'a str,
@@ -108,6 +109,7 @@ impl Learnt {
             rmse_percent: percent(fitting, fitting.rmse_n),
             noise_floor: &fitting.noise_floor,
             fit: &fitting.fit,
+            held: &fitting.held,
             written: &extension.written,
             left_out: &extension.left_out,
             model,
@@ -152,6 +154,9 @@ fn provenance(fitting: &Fitting) -> String {
         let [value, low, high] = shown(p.value, p.low, p.high);
         let unit = if p.unit.is_empty() || p.unit == "1" { String::new() } else { format!(" {}", p.unit) };
         let _ = writeln!(text, "# {} {} = {value}{unit} (95 %: {low} to {high}){flag}", p.effect, p.name);
+    }
+    for number in &fitting.held {
+        let _ = writeln!(text, "# {number}");
     }
     text + "# Widths of effects (+-) are one standard deviation, for the reader: later fits take the numbers as known.\n\n"
 }

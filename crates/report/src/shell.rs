@@ -22,6 +22,8 @@ pub struct Call {
     pub effects: Option<String>,
     /// Effects, in their order.
     pub with: Vec<String>,
+    /// What is stated of numbers: `--hold`, `--bound` or `--tie`, each with its value.
+    pub restrictions: Vec<(&'static str, String)>,
 }
 
 impl Call {
@@ -38,6 +40,9 @@ impl Call {
         option("--effects", self.effects.as_deref());
         let with = self.with.join(",");
         option("--with", Some(with.as_str()).filter(|with| !with.is_empty()));
+        for (name, value) in &self.restrictions {
+            option(name, Some(value));
+        }
         words.join(" ")
     }
 }
@@ -55,7 +60,8 @@ mod tests {
         call.exclude = Some("3-5".into());
         call.effects = Some("own.toml".into());
         call.with = vec!["creep".into(), "hose".into()];
-        let whole = "\"a b.csv\" c.csv --columns \"force=F [N]\" --exclude 3-5 --muscle m.toml --effects own.toml --with creep,hose";
+        call.restrictions = vec![("--hold", "creep.time=3 s".into())];
+        let whole = "\"a b.csv\" c.csv --columns \"force=F [N]\" --exclude 3-5 --muscle m.toml --effects own.toml --with creep,hose --hold \"creep.time=3 s\"";
         assert_eq!(call.arguments(), whole);
     }
 

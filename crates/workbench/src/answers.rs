@@ -11,7 +11,7 @@ use std::sync::{Arc, PoisonError};
 use tokio::sync::oneshot;
 
 use crate::diagnosis::{self, Listener};
-use crate::inputs::{Inputs, catalogue};
+use crate::inputs::{Inputs, MUSCLE, catalogue};
 use crate::refusal::{Place, Refusal};
 use crate::rows;
 use crate::server::{Diagnosed, Workbench};
@@ -126,27 +126,41 @@ pub(crate) fn muscles() -> Muscles {
     Muscles { muscles: shipped.collect() }
 }
 
-/// The muscle as it is stated, or as it was learnt where something can be learnt.
-fn muscle(workbench: &Workbench) -> Result<(Muscle, Vec<Known>), Refusal> {
-    let (toml, own) = {
+/// The muscle as it was learnt, where effects are on and can be fitted; else as it is stated.
+fn muscle(workbench: &Workbench) -> Result<Arc<(Muscle, Vec<Known>)>, Refusal> {
+    let (revision, toml, own, has_effects) = {
         let session = workbench.session();
-        (session.choices().muscle.toml.clone(), session.choices().own_effects.clone())
+        let choices = session.choices();
+        (
+            session.revision(),
+            choices.muscle.toml.clone(),
+            choices.own_effects.clone(),
+            !choices.effects.is_empty(),
+        )
     };
-    let muscle = from_toml(&toml, "the muscle").map_err(Refusal::at(Place::Muscle))?;
+    let mut last = workbench.shaped.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, found)) = last.as_ref().filter(|(of, _)| *of == revision) {
+        return Ok(Arc::clone(found));
+    }
+    // What can't be learnt has a shape all the same: the ladder says why it can't.
+    let toml = if has_effects { learnt(workbench).unwrap_or(toml) } else { toml };
+    let muscle = from_toml(&toml, MUSCLE).map_err(Refusal::at(Place::Muscle))?;
     let known = known(&muscle, &catalogue(own.as_deref())?).map_err(Refusal::at(Place::Muscle))?;
-    Ok((muscle, known))
+    let found = Arc::new((muscle, known));
+    *last = Some((revision, Arc::clone(&found)));
+    Ok(found)
 }
 
 /// The bulge.
 pub(crate) fn surface(workbench: &Workbench, state: State) -> Result<Surface, Refusal> {
-    let (muscle, known) = muscle(workbench)?;
-    surface::surface(&muscle, &known, state)
+    let found = muscle(workbench)?;
+    surface::surface(&found.0, &found.1, state)
 }
 
 /// The bulge as a VTK file.
 pub(crate) fn vtp(workbench: &Workbench, state: State) -> Result<Vec<u8>, Refusal> {
-    let (muscle, known) = muscle(workbench)?;
-    surface::vtp(&muscle, &known, state)
+    let found = muscle(workbench)?;
+    surface::vtp(&found.0, &found.1, state)
 }
 
 /// The muscle with what was learnt, as `bulge fit` writes it.

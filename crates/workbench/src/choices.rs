@@ -1,6 +1,7 @@
 //! What a person has chosen: everything that an answer depends on.
 
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// A file of measurements.
@@ -22,14 +23,18 @@ pub struct MuscleFile {
 }
 
 /// An effect that was switched on.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ChosenEffect {
     /// Its name in the catalogue.
     pub name: String,
+    /// Numbers that are held, by name, with their values in the unit that its card shows; the others are fitted.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub hold: BTreeMap<String, f64>,
 }
 
 /// All choices of a session at one time: undo goes back from one to the one before.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Choices {
     /// The measurements, one analysis.
     pub data: Vec<DataFile>,
@@ -51,6 +56,14 @@ impl Choices {
         self.needs_other_data(other)
             || self.own_effects != other.own_effects
             || self.excluded != other.excluded
+            || !self.held().eq(other.held())
+    }
+
+    /// Every number that is held: effect, number, value in the unit that the card shows.
+    pub(crate) fn held(&self) -> impl Iterator<Item = (&str, &str, f64)> {
+        self.effects.iter().flat_map(|effect| {
+            effect.hold.iter().map(|(number, value)| (effect.name.as_str(), number.as_str(), *value))
+        })
     }
 
     /// Whether the files must be read anew: how they are read depends on the muscle.

@@ -4,7 +4,7 @@ use bulge_report::Call;
 use std::sync::Arc;
 
 use crate::choices::Choices;
-use crate::inputs::Inputs;
+use crate::inputs::{self, Inputs};
 
 /// What the files are called that the page offers to save.
 const MUSCLE: &str = "muscle.toml";
@@ -25,6 +25,13 @@ fn excluded(choices: &Choices, inputs: Option<&Arc<Inputs>>) -> Option<String> {
     Some(inputs.data.line_ranges(&choices.excluded).join(","))
 }
 
+/// The numbers that are held, as `--hold` takes them.
+fn held(choices: &Choices) -> Vec<String> {
+    // Choices that name what there isn't were refused.
+    let catalogue = inputs::catalogue(choices.own_effects.as_deref());
+    catalogue.and_then(|catalogue| inputs::held(choices, &catalogue)).unwrap_or_default()
+}
+
 /// `bulge compare ...`
 pub(crate) fn shell(choices: &Choices, inputs: Option<&Arc<Inputs>>) -> String {
     let call = Call {
@@ -34,6 +41,7 @@ pub(crate) fn shell(choices: &Choices, inputs: Option<&Arc<Inputs>>) -> String {
         muscle: muscle(choices).to_owned(),
         effects: choices.own_effects.as_ref().map(|_| EFFECTS.to_owned()),
         with: names(choices).into_iter().map(str::to_owned).collect(),
+        restrictions: held(choices).into_iter().map(|text| ("--hold", text)).collect(),
     };
     format!("bulge compare {}", call.arguments())
 }

@@ -3,7 +3,7 @@
 use bulge_effects::{Catalogue, Effect, Known, known};
 use bulge_inference::Options;
 use bulge_measurements::{ColumnMap, Data};
-use bulge_model::read_options;
+use bulge_model::{Restriction, read_options};
 use bulge_muscles::{Muscle, from_toml};
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::choices::Choices;
 use crate::refusal::{Place, Refusal};
 
 /// The name that messages give the muscle's file.
-const MUSCLE: &str = "the muscle";
+pub(crate) const MUSCLE: &str = "the muscle";
 /// The name that messages give the user's own effects.
 const OWN: &str = "your effects";
 
@@ -22,6 +22,7 @@ pub(crate) struct Inputs {
     pub(crate) muscle: Muscle,
     pub(crate) catalogue: Catalogue,
     known: Vec<Known>,
+    restrictions: Vec<Restriction>,
     excluded: Vec<usize>,
 }
 
@@ -36,13 +37,15 @@ impl Inputs {
             None => Arc::new(read_rows(choices, &muscle)?),
         };
         let excluded: Vec<usize> = choices.excluded.iter().copied().filter(|row| *row < data.len()).collect();
-        Ok(Self { data, muscle, catalogue, known, excluded })
+        let restrictions = restrictions(choices, &catalogue, &muscle)?;
+        Ok(Self { data, muscle, catalogue, known, restrictions, excluded })
     }
 
     /// What is compared, with these effects.
     pub(crate) fn options(&self, effects: Vec<Arc<dyn Effect>>, held_out: bool) -> Options {
         let mut options = Options::new(self.catalogue.clone(), effects);
         options.known.clone_from(&self.known);
+        options.restrictions.clone_from(&self.restrictions);
         options.excluded.clone_from(&self.excluded);
         options.held_out = held_out;
         options
@@ -71,6 +74,32 @@ fn read_rows(choices: &Choices, muscle: &Muscle) -> Result<Data, Refusal> {
         let place = if error.columns().is_empty() { Place::Data } else { Place::Columns };
         Refusal { columns: error.columns().to_vec(), ..Refusal::new(place, error) }
     })
+}
+
+/// Each number that is held as the command line states it: `coulomb-friction.force=14 N`.
+pub(crate) fn held(choices: &Choices, catalogue: &Catalogue) -> Result<Vec<String>, Refusal> {
+    let one = |(effect, number, value): (&str, &str, f64)| {
+        let found = catalogue.find(effect).map_err(Refusal::at(Place::Effects))?;
+        let unit =
+            found.parameters().iter().find(|card| card.name == number).map(|card| card.unit.to_owned());
+        // Of a number that there isn't, the library says which there are.
+        let unit = unit.filter(|unit| unit != "1").map_or_else(String::new, |unit| format!(" {unit}"));
+        Ok(format!("{effect}.{number}={value}{unit}"))
+    };
+    choices.held().map(one).collect()
+}
+
+/// The same for a fit.
+pub(crate) fn restrictions(
+    choices: &Choices,
+    catalogue: &Catalogue,
+    muscle: &Muscle,
+) -> Result<Vec<Restriction>, Refusal> {
+    let mut options = Options::new(catalogue.clone(), Vec::new());
+    for text in held(choices, catalogue)? {
+        options = options.hold(&text, muscle).map_err(Refusal::at(Place::Effects))?;
+    }
+    Ok(options.restrictions)
 }
 
 /// The built-in effects with the user's own.

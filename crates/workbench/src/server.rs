@@ -6,6 +6,8 @@ use axum::extract::Request;
 use axum::http::request::Parts;
 use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use bulge_effects::Known;
+use bulge_muscles::Muscle;
 use futures_util::StreamExt;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -43,6 +45,9 @@ pub(crate) struct Diagnosed {
     pub(crate) report: String,
 }
 
+/// A muscle with the effects that it has learnt.
+pub(crate) type Shaped = Arc<(Muscle, Vec<Known>)>;
+
 /// A running workbench.
 pub(crate) struct Workbench {
     guard: Guard,
@@ -50,6 +55,8 @@ pub(crate) struct Workbench {
     pub(crate) quick: Worker,
     pub(crate) held_out: Worker,
     pub(crate) diagnosed: Mutex<Option<Diagnosed>>,
+    /// The muscle whose shape was asked for last, with the revision that it belongs to.
+    pub(crate) shaped: Mutex<Option<(u64, Shaped)>>,
     pub(crate) revision: watch::Sender<u64>,
     received: AtomicU64,
 }
@@ -63,6 +70,7 @@ impl Workbench {
             quick: Worker::start(false),
             held_out: Worker::start(true),
             diagnosed: Mutex::default(),
+            shaped: Mutex::default(),
             revision,
             received: AtomicU64::new(0),
         }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use crate::choices::{Change, Choices, ChosenEffect, DataFile, MuscleChange, MuscleFile};
 use crate::command;
 use crate::folder::{Folder, Kept, MOST_STEPS};
-use crate::inputs::{Inputs, catalogue};
+use crate::inputs::{Inputs, MUSCLE, catalogue, restrictions};
 use crate::refusal::{Place, Refusal};
 
 /// Most bytes of what the page keeps of its own.
@@ -108,7 +108,7 @@ impl Session {
         if let Some(effects) = change.effects {
             next.effects = effects;
         }
-        check_effects(&next)?;
+        Self::check_effects(&next)?;
         if let Some(excluded) = change.excluded {
             next.excluded = self.exclude(excluded)?;
         }
@@ -176,6 +176,26 @@ impl Session {
         }
         self.revision += 1;
         std::mem::replace(&mut self.kept.choices, next)
+    }
+
+    /// Refuses effects that are not in the catalogue or there twice, and numbers that can't be held.
+    fn check_effects(next: &Choices) -> Result<(), Refusal> {
+        let catalogue = catalogue(next.own_effects.as_deref())?;
+        let mut seen = HashSet::new();
+        for ChosenEffect { name, .. } in &next.effects {
+            catalogue.find(name).map_err(Refusal::at(Place::Effects))?;
+            if !seen.insert(name) {
+                return Err(Refusal::new(
+                    Place::Effects,
+                    format!("`{name}` is there already: each effect acts once"),
+                ));
+            }
+        }
+        // Values have bounds that the muscle knows; a muscle that can't be read says so itself.
+        match from_toml(&next.muscle.toml, MUSCLE) {
+            Ok(muscle) => restrictions(next, &catalogue, &muscle).map(drop),
+            Err(_) => Ok(()),
+        }
     }
 
     /// Rows to exclude, sorted; not all of them.
@@ -260,24 +280,8 @@ fn other_muscle(change: MuscleChange) -> Result<MuscleFile, Refusal> {
             Ok(MuscleFile { toml: found.text.to_owned(), origin: Some(shipped) })
         }
         MuscleChange::Toml { toml } => {
-            from_toml(&toml, "the muscle").map_err(Refusal::at(Place::Muscle))?;
+            from_toml(&toml, MUSCLE).map_err(Refusal::at(Place::Muscle))?;
             Ok(MuscleFile { toml, origin: None })
         }
     }
-}
-
-/// Effects that are in the catalogue, each once.
-fn check_effects(choices: &Choices) -> Result<(), Refusal> {
-    let catalogue = catalogue(choices.own_effects.as_deref())?;
-    let mut seen = HashSet::new();
-    for ChosenEffect { name } in &choices.effects {
-        catalogue.find(name).map_err(Refusal::at(Place::Effects))?;
-        if !seen.insert(name) {
-            return Err(Refusal::new(
-                Place::Effects,
-                format!("`{name}` is there already: each effect acts once"),
-            ));
-        }
-    }
-    Ok(())
 }

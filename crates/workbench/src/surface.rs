@@ -23,7 +23,8 @@ pub(crate) struct State {
 
 #[derive(Debug, Serialize)]
 struct Field {
-    name: &'static str,
+    name: String,
+    unit: &'static str,
     values: Vec<f32>,
 }
 
@@ -65,11 +66,7 @@ pub(crate) fn surface(muscle: &Muscle, known: &[Known], state: State) -> Result<
         points: short(&mesh.points.concat()),
         triangles: mesh.quads.iter().flat_map(|[a, b, c, d]| [*a, *b, *c, *a, *c, *d]).collect(),
         fibres: mesh.fibres,
-        fields: mesh
-            .point_fields
-            .into_iter()
-            .map(|(name, values)| Field { name, values: short(&values) })
-            .collect(),
+        fields: mesh.point_fields.into_iter().map(|(name, values)| field(name, &values)).collect(),
         force_n: shape.response.force_n,
         length_m: muscle.length().si() * (1.0 - shape.response.contraction),
         radius_m: shape.meridian.iter().map(|point| point.r_m).fold(0.0, f64::max),
@@ -77,6 +74,16 @@ pub(crate) fn surface(muscle: &Muscle, known: &[Known], state: State) -> Result<
         pressure_pa: state.pressure_pa,
         contraction_limit: found.contraction_limit,
     })
+}
+
+/// Units at the end of the names of fields, and how people write them.
+const UNITS: [(&str, &str); 4] = [("_N_per_m", "N/m"), ("_rad", "rad"), ("_m", "m"), ("_N", "N")];
+
+/// A field for people: what it is and its unit apart.
+fn field(name: &str, values: &[f64]) -> Field {
+    let found = UNITS.iter().find_map(|(end, unit)| Some((name.strip_suffix(end)?, *unit)));
+    let (name, unit) = found.unwrap_or((name, "1"));
+    Field { name: name.replace('_', " "), unit, values: short(values) }
 }
 
 /// As exact as a picture needs.

@@ -1,6 +1,11 @@
 //! The workbench as a browser meets it: over HTTP, on this machine, against the answers of the library.
 
-#![expect(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't be set up fails")]
+#![expect(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test that can't be set up fails"
+)]
 
 use bulge_effects::Catalogue;
 use bulge_inference::{Options, compare};
@@ -177,6 +182,73 @@ fn the_error_falls_and_comes_back() {
     );
 }
 
+#[test]
+fn a_number_is_held_and_fitted_again() {
+    let (_folder, page) = opened();
+    page.put(&effects(&["end-taper", "bladder-elasticity", "coulomb-friction"]));
+    let fitted = page.errors();
+    let with = |force: f64| json!({"effects": [{"name": "end-taper"}, {"name": "bladder-elasticity"}, {"name": "coulomb-friction", "hold": {"force": force}}]});
+    let session = page.put(&with(5.0)).json();
+    assert!(
+        session["command"].as_str().unwrap().ends_with("--hold \"coulomb-friction.force=5 N\""),
+        "{}",
+        session["command"]
+    );
+    let comparison = page.get("comparison?held_out=0").json();
+    let rung = &comparison["ladder"][3];
+    // What is left of the friction of 13.9 N has its sign: the error is their root of squares.
+    let expected = (fitted[3].powi(2) + (13.94_f64 - 5.0).powi(2)).sqrt();
+    assert!(
+        (rung["rmse_n"].as_f64().unwrap() / expected - 1.0).abs() < 0.01,
+        "{} {expected}",
+        rung["rmse_n"]
+    );
+    assert!(
+        rung["held"][0]["value"] == 5.0 && rung["fit"]["parameters"].as_array().unwrap().len() == 1,
+        "{rung}"
+    );
+    let (place, error) = page.put(&with(-5.0)).refusal();
+    assert!(place == "effects" && error.contains("coulomb-friction"), "{error}");
+    let (place, error) =
+        page.put(&json!({"effects": [{"name": "coulomb-friction", "hold": {"farce": 5.0}}]})).refusal();
+    assert!(place == "effects" && error.contains("coulomb-friction.force"), "{error}");
+    page.ask("POST", "api/undo", b"");
+    assert_eq!(page.errors(), fitted);
+}
+
+/// The bulge is that of the model: clamped ends are narrower than a cylinder's.
+#[test]
+fn the_shape_follows_what_was_learnt() {
+    let (_folder, page) = opened();
+    let shape = || page.get("shape?pressure_pa=3e5&contraction=0.1").json();
+    let narrowest = |shape: &Value| {
+        let radius = shape["fields"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|field| field["name"] == "radius")
+            .unwrap()
+            .clone();
+        assert_eq!(radius["unit"], "m");
+        let values: Vec<f64> =
+            radius["values"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
+        assert_eq!(shape["points"].as_array().unwrap().len(), 3 * values.len());
+        values.iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    let stated = shape();
+    page.put(&effects(&["end-taper"]));
+    let learnt = shape();
+    // A clamped end keeps the radius of the unpressurised braid, 10.725 mm.
+    assert!(
+        (narrowest(&learnt) - 10.725e-3).abs() < 1e-6 && narrowest(&stated) > 12e-3,
+        "{}",
+        narrowest(&learnt)
+    );
+    assert!(learnt["force_n"].as_f64().unwrap() < stated["force_n"].as_f64().unwrap());
+    let file = page.get("shape.vtp?pressure_pa=3e5&contraction=0.1").body;
+    assert!(file.starts_with(b"<?xml") && file.len() > 10_000);
+}
+
 /// A column of 32-bit numbers from the bytes of the rows.
 fn column(bytes: &[u8], name: &str) -> Vec<f32> {
     let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
@@ -185,7 +257,8 @@ fn column(bytes: &[u8], name: &str) -> Vec<f32> {
     let place =
         header["columns"].as_array().unwrap().iter().position(|column| column["name"] == name).unwrap();
     assert!(
-        length % 4 == 0 && bytes.len() == 4 + length + 4 * rows * header["columns"].as_array().unwrap().len()
+        length.is_multiple_of(4)
+            && bytes.len() == 4 + length + 4 * rows * header["columns"].as_array().unwrap().len()
     );
     let start = 4 + length + 4 * rows * place;
     bytes[start..start + 4 * rows]

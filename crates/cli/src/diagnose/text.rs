@@ -328,6 +328,7 @@ mod tests {
             exclude: None,
             muscle: "braid.toml".to_owned(),
             with: vec!["end-taper".to_owned()],
+            restrictions: Vec::new(),
             effects: Some("own.toml".to_owned()),
         }
     }

@@ -3,7 +3,7 @@
 use bulge_effects::law::Law;
 use bulge_effects::{Catalogue, Effect};
 use bulge_measurements::{Data, PureError};
-use bulge_model::{Model, ModelError, Partly, Record, Wanted, Warm};
+use bulge_model::{Model, ModelError, Partly, Record, Restriction, Wanted, Warm};
 use bulge_muscles::{Muscle, Quantity};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -22,6 +22,7 @@ use crate::comparison::{loops, residuals};
 use crate::error::InferenceError;
 use crate::fit::carry_over::carry_over;
 use crate::fit::document::Fit;
+use crate::fit::held::held;
 use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::free;
 use crate::fit::search::{Task, fit, fit_and_force, some_of_long};
@@ -40,6 +41,8 @@ pub struct Options {
     pub known: Vec<(Arc<dyn Effect>, Vec<f64>)>,
     /// Where nuisances are looked up.
     pub catalogue: Catalogue,
+    /// Numbers held, bounded or tied. Those of effects that aren't in the model say nothing, see [`crate::check_restrictions`].
+    pub restrictions: Vec<Restriction>,
     /// A force law as the base instead of the equilibrium: with these coefficients, fitted if so asked.
     pub law: Option<(&'static Law, Vec<f64>, bool)>,
     /// Rows that are left out by hand.
@@ -58,6 +61,7 @@ impl Options {
             effects,
             known: Vec::new(),
             catalogue,
+            restrictions: Vec::new(),
             law: None,
             excluded: Vec::new(),
             held_out: true,
@@ -139,6 +143,7 @@ impl<'a> Analysis<'a> {
             Some((law, values, free)) => Model::from_law(muscle, law, values, *free),
             None => Model::new(muscle),
         };
+        let root = root.restricted(&options.restrictions);
         Ok(Self {
             pure_error: data.repeats(muscle.length().si()).pure_error(),
             data,
@@ -416,6 +421,7 @@ impl<'a> Analysis<'a> {
             directed_rmse_n: self.directed_rmse(&climbed.force, error.rmse),
             half_gap_rmse_n: loops::half_gap_error(self, &climbed.force),
             fit: climbed.fit.clone(),
+            held: held(&climbed.prepared.model, &climbed.theta),
             without_state: self.without_state(climbed),
         }
     }

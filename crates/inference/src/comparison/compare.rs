@@ -15,6 +15,7 @@ use crate::comparison::warnings::without_state;
 use crate::comparison::{isotonic, loops, residuals, rivals, stack};
 use crate::error::InferenceError;
 use crate::fit::document::{Convergence, Fit};
+use crate::fit::held::{HeldNumber, held};
 
 /// Compares.
 ///
@@ -237,6 +238,8 @@ pub struct Fitting {
     pub model: Model,
     /// The fit.
     pub fit: Fit,
+    /// Numbers that were held at a value or tied to another one.
+    pub held: Vec<HeldNumber>,
     /// What the data are.
     pub data: DataSummary,
     /// RMS error of the muscle as stated \[N\].
@@ -271,6 +274,7 @@ fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, In
     fit.warnings.extend(note(&analysis.data, muscle));
     fit.warnings.splice(0..0, analysis.findings.iter().map(ToString::to_string));
     Ok(Fitting {
+        held: held(&prepared.model, &fit.theta),
         model: prepared.model,
         fit,
         data: analysis.summary(),

@@ -4,6 +4,7 @@ use bulge_measurements::{Finding, Reading, SweepKind};
 use serde::Serialize;
 
 use crate::fit::document::Fit;
+use crate::fit::held::HeldNumber;
 
 /// Model against measurement, from the base law to the last effect added.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -156,6 +157,8 @@ pub struct Rung {
     pub half_gap_rmse_n: Option<f64>,
     /// The fit, where something was fitted.
     pub fit: Option<Fit>,
+    /// Numbers that were held at a value or tied to another one.
+    pub held: Vec<HeldNumber>,
     /// Rows of which this model says nothing: they have no state with its numbers, and aren't in its errors.
     pub without_state: Option<LeftOut>,
 }

@@ -115,6 +115,9 @@ impl Sensitivities {
             if !nuisance && prepared.model.effects().iter().any(|c| c.effect.card().name == card.name) {
                 continue;
             }
+            if nuisance && is_held(prepared, card.name) {
+                continue;
+            }
             let untestable =
                 check_needs(effect, record).err().map(|_| format!("needs {}", card.needs.says()));
             effects.push(Screened { effect: Arc::clone(effect), untestable, nuisance });
@@ -153,6 +156,11 @@ pub(crate) fn longest_sweep(record: &Record) -> f64 {
     let moments = record.moments();
     let lasts = |rows: &std::ops::Range<usize>| moments[rows.end - 1].clock - moments[rows.start].clock;
     record.sweeps().iter().map(lasts).fold(0.0, f64::max)
+}
+
+/// Whether all numbers of an effect are stated: then it can't be larger than that.
+fn is_held(prepared: &Prepared, name: &str) -> bool {
+    prepared.model.parameters().iter().filter(|p| p.effect == name).all(|p| p.fixed)
 }
 
 /// Whether a model has an effect only as what data sheets leave open.

@@ -10,9 +10,13 @@ pub(crate) fn carry_over(from: &Model, values: &[f64], to: &Model, theta: &mut [
             other.effect == number.effect && other.name == number.name && other.specimen == number.specimen
         };
         if let Some(old) = from.parameters().iter().position(same) {
-            theta[place] = values[old];
+            // What is known or held in the one may have been fitted in the other.
+            theta[place] =
+                if number.fixed { number.value } else { values[old].clamp(number.low, number.high) };
             carried[place] = true;
         }
     }
+    let tied = to.with_ties(theta).into_owned();
+    theta.copy_from_slice(&tied);
     carried
 }

@@ -44,34 +44,33 @@ pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
         }
         let places: Vec<usize> =
             (0..model.parameters().len()).filter(|i| model.parameters()[*i].effect == name).collect();
-        let fitted: Vec<Option<&Fitted>> = places.iter().map(|i| fitted(model, fit, *i)).collect();
-        if fitted.iter().flatten().any(|f| f.nuisance) {
+        let nuisance = |i: &usize| fitted(model, fit, *i).is_some_and(|(_, found)| found.nuisance);
+        if places.iter().any(nuisance) {
             extension.left_out.push((name, "it is an error of the rig, which the next data set has anew"));
             continue;
         }
-        let numbers: Vec<f64> = places
-            .iter()
-            .zip(&fitted)
-            .map(|(i, found)| {
-                found.map_or(fit.theta[*i], |f| rounded(fit.theta[*i], f, &model.parameters()[*i]))
-            })
-            .collect();
-        let widths: Vec<Option<f64>> = places
-            .iter()
-            .zip(&fitted)
-            .map(|(i, found)| found.and_then(width).map(|sd| in_si(sd, &model.parameters()[*i])))
-            .collect();
+        let (numbers, widths): (Vec<f64>, Vec<Option<f64>>) =
+            places.iter().map(|i| stated(model, fit, *i)).unzip();
         extension.muscle = put(&extension.muscle, chosen, &numbers, &widths)?;
         extension.written.push(name);
     }
     Ok(extension)
 }
 
-fn fitted<'f>(model: &Model, fit: &'f Fit, index: usize) -> Option<&'f Fitted> {
+/// Value and standard deviation \[SI\] of a number; one that was held has its value alone, one that is tied those of the other.
+fn stated(model: &Model, fit: &Fit, index: usize) -> (f64, Option<f64>) {
+    let Some((source, found)) = fitted(model, fit, index) else { return (fit.theta[index], None) };
+    let number = &model.parameters()[source];
+    (rounded(fit.theta[source], found, number), width(found).map(|sd| in_si(sd, number)))
+}
+
+/// The fit of a number, or of the one that it is tied to, with the place of that.
+fn fitted<'f>(model: &Model, fit: &'f Fit, index: usize) -> Option<(usize, &'f Fitted)> {
+    let index = model.parameters()[index].tied.unwrap_or(index);
     let number = &model.parameters()[index];
     let is_it =
         |f: &&Fitted| f.effect == number.effect && f.name == number.name && f.specimen == number.specimen;
-    fit.parameters.iter().find(is_it)
+    fit.parameters.iter().find(is_it).map(|found| (index, found))
 }
 
 /// One standard deviation in the unit shown; none where the interval is none.

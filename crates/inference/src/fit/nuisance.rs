@@ -30,12 +30,13 @@ impl Prepared {
         let mut start = self.model.start();
         let stated =
             self.priors.iter().zip(&self.nuisance).map(|(prior, nuisance)| prior.filter(|_| *nuisance));
-        for (value, (mean, _)) in
-            start.iter_mut().zip(stated).filter_map(|(value, prior)| Some((value, prior?)))
-        {
-            *value = mean;
+        for ((value, p), prior) in start.iter_mut().zip(self.model.parameters()).zip(stated) {
+            if let Some((mean, _)) = prior.filter(|_| !p.fixed) {
+                // Bounds that were stated may be narrower than the data sheet.
+                *value = mean.max(p.low).min(p.high);
+            }
         }
-        start
+        self.model.with_ties(&start).into_owned()
     }
 }
 

@@ -3,6 +3,7 @@
 use bulge_model::{Model, ModelError, ModelParameter, Record, Wanted, Warm};
 use bulge_numerics::least_squares::{Bounds, Residuals};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::ops::Range;
 
 use crate::noise::whitening::Whitening;
@@ -73,7 +74,7 @@ impl<'a> FitProblem<'a> {
         for ((index, value), logarithmic) in self.free.iter().zip(free).zip(&self.logarithmic) {
             theta[*index] = if *logarithmic { value.exp() } else { *value };
         }
-        theta
+        if let Cow::Owned(tied) = self.model.with_ties(&theta) { tied } else { theta }
     }
 
     /// Coordinates of the search.

@@ -300,7 +300,9 @@ fn scattered(
             Some((mean, sd)) if prepared.nuisance[index] => (mean - sd, mean + sd),
             _ => p.plausible,
         };
-        (lowest[index], highest[index]) = (low.max(p.low), high.min(p.high));
+        let (low, high) = (low.max(p.low), high.min(p.high));
+        // Bounds that were stated may leave nothing of what is plausible.
+        (lowest[index], highest[index]) = if low < high { (low, high) } else { (p.low, p.high) };
     }
     let (mut lower, mut upper) = (problem.coordinates(&lowest), problem.coordinates(&highest));
     for (low, high) in lower.iter_mut().zip(&mut upper) {

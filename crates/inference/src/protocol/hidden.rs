@@ -2,7 +2,7 @@
 
 use bulge_effects::{Catalogue, CatalogueError, Effect, Group, ParameterCard, known};
 use bulge_model::{Model, ModelError};
-use bulge_muscles::{Fault, FileError, Muscle, units};
+use bulge_muscles::{Fault, FileError, Muscle};
 use bulge_numerics::Random;
 use std::sync::Arc;
 
@@ -172,7 +172,7 @@ impl Stated {
 
     fn put(&mut self, place: usize, text: &str, muscle: &Muscle) -> Result<(), HideError> {
         let name = self.name();
-        let value = self.with_cards(muscle, |cards| read(&name, &cards[place], text))?;
+        let value = self.with_cards(muscle, |cards| cards[place].read(&name, text)).map_err(wrong)?;
         self.numbers[place] = Some(value);
         Ok(())
     }
@@ -180,45 +180,13 @@ impl Stated {
     /// How a number, or all of them, is written.
     fn example(&self, key: Option<&str>, muscle: &Muscle) -> String {
         let name = self.name();
-        let one = |card: &ParameterCard<'_>| format!("`{name}.{}={}`", card.key, shown(usual(card), card));
+        let one = |card: &ParameterCard<'_>| format!("`{name}.{}={}`", card.key, card.shown(card.usual()));
         self.with_cards(muscle, |cards| {
             let fitting = cards.iter().filter(|card| key.is_none_or(|key| card.key == key));
             let list: Vec<String> = fitting.map(one).collect();
             if list.is_empty() { format!("`{name}`: it has no such number") } else { list.join(", ") }
         })
     }
-}
-
-/// A number within the bounds of its effect, in SI.
-fn read(effect: &str, card: &ParameterCard<'_>, text: &str) -> Result<f64, HideError> {
-    let example = format!("write such as `{effect}.{}={}`", card.key, shown(usual(card), card));
-    let found = units::any(text).map_err(|error| wrong(format!("`{effect}`: {error}; {example}")))?;
-    let dimension = units::unit(card.unit).map_or(found.dimension, |(_, dimension)| dimension);
-    if found.dimension != dimension {
-        let (is, must) = (found.dimension.describe(), dimension.describe());
-        return Err(wrong(format!(
-            "`{}` of `{effect}` is {must}, but `{text}` is {is}; {example}",
-            card.key
-        )));
-    }
-    // What a fit left on a bound may be off it by rounding.
-    let slack = 1e-12 * (card.high - card.low).abs();
-    if !(card.low - slack..=card.high + slack).contains(&found.si) {
-        return Err(wrong(format!(
-            "`{text}` is out of the bounds of `{effect}`: `{}` lies between {} and {}",
-            card.key,
-            shown(card.low, card),
-            shown(card.high, card)
-        )));
-    }
-    Ok(found.si.clamp(card.low, card.high))
-}
-
-/// A usual value at which the effect does something: that of the card, or one standard deviation of the literature beside it.
-fn usual(card: &ParameterCard<'_>) -> f64 {
-    let does_nothing = card.typical.total_cmp(&card.off).is_eq();
-    let beside = card.prior.map(|(mean, sd)| (mean + sd).clamp(card.low, card.high));
-    beside.filter(|_| does_nothing).unwrap_or(card.typical)
 }
 
 /// All numbers of the model: those stated, usual ones, and one draw for each specimen.
@@ -238,7 +206,7 @@ fn numbers(model: &Model, stated: &[Stated], muscle: &Muscle, seed: u64) -> Resu
         let is_silent = one.numbers.iter().all(Option::is_none);
         let values = one.with_cards(muscle, |cards| -> Vec<f64> {
             let value = |(card, number): (&ParameterCard<'_>, &Option<f64>)| {
-                number.unwrap_or(if is_silent { usual(card) } else { card.typical })
+                number.unwrap_or(if is_silent { card.usual() } else { card.typical })
             };
             cards.iter().zip(&one.numbers).map(value).collect()
         });
@@ -260,10 +228,4 @@ fn numbers(model: &Model, stated: &[Stated], muscle: &Muscle, seed: u64) -> Resu
         }
     }
     Ok(theta)
-}
-
-/// A number in the unit of its card.
-fn shown(si: f64, card: &ParameterCard<'_>) -> String {
-    // Twelve digits hide the rounding of the change of units.
-    format!("{} {}", units::rounded(si / card.factor, 12), card.unit).trim_end().to_owned()
 }

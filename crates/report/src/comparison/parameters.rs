@@ -107,8 +107,22 @@ fn draw(svg: &mut Svg, parameter: &Fitted, (y, row): (f64, f64)) {
     svg.text((right + 10.0, y), &fitted(&words, TEXT, NUMBERS - 14.0), Style::new(Anchor::Start).colour(INK));
 }
 
-/// The sentence above the plot.
+/// The sentences above the plot.
 pub(crate) fn says(comparison: &Comparison) -> String {
+    fitted_says(comparison) + &held_says(comparison)
+}
+
+/// What was held or tied; empty if nothing was.
+fn held_says(comparison: &Comparison) -> String {
+    let held = comparison.ladder.last().map_or(&[][..], |rung| &rung.held);
+    if held.is_empty() {
+        return String::new();
+    }
+    let all: Vec<String> = held.iter().map(ToString::to_string).collect();
+    format!(" Not fitted: {}.", all.join(", "))
+}
+
+fn fitted_says(comparison: &Comparison) -> String {
     let Some(fit) = last_fit(comparison).filter(|fit| !fit.parameters.is_empty()) else {
         return "Nothing was fitted: all numbers are those of the muscle file and of the literature."
             .to_owned();

@@ -385,6 +385,7 @@ fn ladder(rows: &[Row]) -> Vec<Rung> {
             directed_rmse_n: None,
             half_gap_rmse_n: Some(if i < 2 { 12.4 } else { 0.84 }),
             fit: (i > 0).then(fit),
+            held: Vec::new(),
         });
     }
     ladder

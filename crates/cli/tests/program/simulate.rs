@@ -1,12 +1,8 @@
 //! `simulate` as a user sees it: files that `compare` and `fit` go on with, the same bytes for a seed, one message for bad input.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
+use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
 use std::fs;
-use support::{Folder, bulge, failure, json};
 
 const MUSCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid.toml");
 const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml");

@@ -1,17 +1,13 @@
 //! `bulge sweep` and `bulge table` as a user sees them: exit statuses, messages, JSON names, and nothing lost or doubled when a run is killed.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
-use support::{Folder, bulge, failure, json};
 
 const SWEEP: &str = "name = \"small family\"\nmuscle = \"ppam-2-r16\"\npressure = \"1 bar\"\noutputs = [\"force_f\", \"volume_v\", \"force\"]\n\
     chunk = 50\n[axes.contraction]\nrange = \"2 %..45 %\"\npoints = 44\n[axes.slenderness]\nrange = \"4..12\"\npoints = 5\n";

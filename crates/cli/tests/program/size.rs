@@ -1,10 +1,6 @@
 //! `bulge size` as a user sees it: S4's example, and what it says of mistaken loads.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
-use support::{Folder, bulge, failure, json};
+use crate::support::{Folder, bulge, failure, json};
 
 const LIFT: [&str; 5] = ["size", "--force", "500 N", "--stroke", "50 mm"];
 

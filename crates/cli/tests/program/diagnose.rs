@@ -1,14 +1,10 @@
 //! `diagnose` as a user sees it: hidden effects are named, documents and reports are whole, messages for bad input.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
+use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use support::{Folder, bulge, failure, json};
 
 const MUSCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid.toml");
 const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml");
@@ -564,7 +560,7 @@ fn gent(folder: &Folder, name: &str, numbers: &str) -> [String; 2] {
 
 #[test]
 fn the_page_on_drawn_forms_says_what_the_commands_say() {
-    let page = include_str!("../../../docs/drawn-form.md");
+    let page = include_str!("../../../../docs/drawn-form.md");
     let folder = Folder::new("drawn-form");
     let [data, muscle] = gent(&folder, "gent", "150 N,1");
     // They are what the tour ships.

@@ -1,13 +1,9 @@
 //! `bulge membrane` as a user sees it: result, files, and what it says of mistaken cases.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
+use crate::support::{Folder, bulge, failure, json};
 use bulge_membrane::case::{Case, Row};
-use support::{Folder, bulge, failure, json};
 
-const TUBE: &str = include_str!("../../../meshes/tube.toml");
+const TUBE: &str = include_str!("../../../../meshes/tube.toml");
 
 /// Cloth of 50 kN/m that is 270 mm round: its last fold is gone at a radius of 43 mm.
 const PLEATED: &str = "[mesher]\nkind = \"pleated\"\nmuscle = \"ppam-2-r16\"\ncircumference = \"270 mm\"\ncells = [4, 12]\n\

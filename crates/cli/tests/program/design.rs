@@ -1,11 +1,7 @@
 //! `bulge air`, `bulge sense` and `bulge heat` as a user sees them.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
+use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
-use support::{Folder, bulge, failure, json};
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()

@@ -1,16 +1,12 @@
 //! `compare` and `fit` as a user sees them: ladders on data with a known truth, files that lead on, and messages for bad input.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
+use crate::support::{Folder, bulge, failure, json};
 use bulge::effects::{Catalogue, Moment};
 use bulge::model::{Model, Record, Wanted};
 use bulge::muscles::from_toml;
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
-use support::{Folder, bulge, failure, json};
 
 const MUSCLE: &str =
     "name = \"trial\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n";
@@ -219,6 +215,75 @@ fn bad_input_gets_one_clear_message() {
     }
     // Nothing is left behind.
     assert_eq!(folder.names(), ["data.csv", "muscle.toml"]);
+}
+
+/// A number that is held, bounded or tied is so in every answer, and in the learnt file.
+#[test]
+fn numbers_are_held_bounded_and_tied() {
+    let folder = Folder::new("held");
+    let data = folder.write("data.csv", &loops(TRUTH));
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let with = "fibre-stretch,coulomb-friction";
+    let compared = |more: &[&str]| {
+        json(&[&["compare", &data, "--muscle", &muscle, "--with", with, "--json"], more].concat())
+    };
+    let held = compared(&["--hold", "coulomb-friction.force=10 N"]);
+    let last = &held["ladder"][2];
+    assert_eq!((last["fitted"].as_u64(), last["fit"]["parameters"].as_array().unwrap().len()), (Some(1), 1));
+    assert_eq!(
+        (&last["held"][0]["how"], last["held"][0]["value"].as_f64()),
+        (&serde_json::json!("held"), Some(10.0))
+    );
+    // Of 12 N of friction 2 N are left, in both directions.
+    assert!((rmse(&held, 2) - 2.0).abs() < 0.02, "{}", rmse(&held, 2));
+    let bounded = compared(&["--bound", "coulomb-friction=1..11 N"]);
+    assert!((rmse(&bounded, 2) - 1.0).abs() < 0.02, "{}", rmse(&bounded, 2));
+    let with_offset = "coulomb-friction,force-offset";
+    let tied = json(&[
+        "compare",
+        &data,
+        "--muscle",
+        &muscle,
+        "--with",
+        with_offset,
+        "--tie",
+        "force-offset.offset=coulomb-friction.force",
+        "--json",
+    ]);
+    assert_eq!(tied["ladder"][2]["held"][0]["to"], "coulomb-friction.force");
+    let learnt = folder.path("learnt.toml");
+    let hold = "coulomb-friction.force=10 N";
+    let fit = bulge(&["fit", &data, "--muscle", &muscle, "--with", with, "--hold", hold, "--out", &learnt]);
+    let says = String::from_utf8(fit.stdout).unwrap();
+    assert!(says.contains("numbers that were not fitted") && says.contains("10.00 N"), "{says}");
+    let text = std::fs::read_to_string(&learnt).unwrap();
+    assert!(
+        text.contains("force = \"10 N\"") && text.contains("# coulomb-friction force = 10 N (held)"),
+        "{text}"
+    );
+    let told = bulge(&["diagnose", &data, "--muscle", &muscle, "--with", "coulomb-friction", "--hold", hold]);
+    let told = String::from_utf8(told.stdout).unwrap();
+    assert!(told.contains("bulge fit") && told.contains("--hold \"coulomb-friction.force=10 N\""), "{told}");
+    for (arguments, parts) in [
+        (["--hold", "coulomb-frction.force=1 N"], ["--hold: ", "did you mean `coulomb-friction`"]),
+        (["--hold", "coulomb-friction.forc=1 N"], ["has no `forc`", "did you mean `coulomb-friction.force`"]),
+        (["--hold", "coulomb-friction.force=1 mm"], ["is a force", "`1 mm` is a length"]),
+        (["--hold", "coulomb-friction.force=-1 N"], ["out of the bounds", "lies between"]),
+        (["--hold", "force-offset.offset=1 N"], ["isn't fitted", "name it in --with"]),
+        (["--bound", "coulomb-friction.force=3 N"], ["--bound: ", "is no range"]),
+        (["--tie", "coulomb-friction.force=fibre-stretch.compliance"], ["--tie: ", "same unit"]),
+    ] {
+        let mut call = vec!["compare", &data, "--muscle", &muscle, "--with", with];
+        call.extend(arguments);
+        let (status, message) = failure(&call);
+        assert_eq!(status, 1, "{message}");
+        for part in parts {
+            assert!(message.contains(part), "{message:?} does not say {part:?}");
+        }
+    }
+    let both = ["--hold", hold, "--bound", "coulomb-friction.force=1..3 N"];
+    let call = [&["compare", &data, "--muscle", &muscle, "--with", with], &both[..]].concat();
+    assert!(failure(&call).1.contains("is held and bounded"));
 }
 
 /// A base is there to be wrong: a muscle that would push where this one pulls is compared all the same, and that is said.

@@ -1,12 +1,8 @@
 //! `next` as a user sees it: what is open, the experiment that decides it (and does), the honest answers where none does.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
+use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
 use std::fs;
-use support::{Folder, bulge, failure, json};
 
 const MUSCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid.toml");
 const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml");

@@ -1,11 +1,7 @@
 //! `bulge joint` as a user sees it: rest, outside torque, pressures, shut valves, and mistakes.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
+use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
-use support::{Folder, bulge, failure, json};
 
 const KNEE: &str = "name = \"knee\"\nmuscle = \"ppam-2-r16\"\nkind = \"pulley\"\nradius = \"40 mm\"\ncontraction = \"20 %\"\n\
     angle = \"-25 deg..25 deg\"\npressure = \"0.5 bar..3 bar\"\n";

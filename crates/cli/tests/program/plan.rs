@@ -1,12 +1,8 @@
 //! `plan` as a user sees it: detection limits by hand, twins by name, one message for bad input.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
+use crate::support::{Folder, bulge, failure, json};
 use serde_json::Value;
 use std::fs;
-use support::{Folder, bulge, failure, json};
 
 const MUSCLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid.toml");
 const PROTOCOL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/protocol.toml");

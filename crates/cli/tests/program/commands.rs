@@ -1,12 +1,8 @@
 //! The command as a user sees it: exit statuses, messages, JSON names, and what is left on the disk.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
-mod support;
-
+use crate::support::{Folder, bulge, failure, json};
 use std::path::Path;
 use std::process::Command;
-use support::{Folder, bulge, failure, json};
 
 const PPAM: &str =
     "name = \"test\"\nkind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\n";

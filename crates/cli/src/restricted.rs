@@ -1,0 +1,51 @@
+//! Numbers held, bounded or tied on the command line.
+
+use bulge_inference::{Options, check_restrictions};
+use bulge_measurements::Data;
+use bulge_muscles::Muscle;
+use clap::Args;
+
+use crate::failure::Failure;
+
+/// What commands that fit take: each option as often as there are numbers.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct RestrictedArguments {
+    /// Hold a number at a value: `--hold bladder-elasticity.modulus="0.31 MPa"` (`bulge effects NAME` has the numbers of an effect)
+    #[arg(long, value_name = "EFFECT.NUMBER=VALUE")]
+    hold: Vec<String>,
+    /// Keep a number between two values: `--bound coulomb-friction.force="5..20 N"`
+    #[arg(long, value_name = "EFFECT.NUMBER=LOW..HIGH")]
+    bound: Vec<String>,
+    /// Give a number the value of another one, which is fitted: `--tie force-lag.time=pressure-lag.time`
+    #[arg(long, value_name = "EFFECT.NUMBER=EFFECT.NUMBER")]
+    tie: Vec<String>,
+}
+
+impl RestrictedArguments {
+    /// The options of a fit with what is stated of its numbers. `muscle` is the one that is fitted: its widths say what is fitted along.
+    pub(crate) fn apply(
+        &self,
+        mut options: Options,
+        data: &Data,
+        muscle: &Muscle,
+    ) -> Result<Options, Failure> {
+        let wrong = |option| move |what| Failure::Value { option, what };
+        for text in &self.hold {
+            options = options.hold(text, muscle).map_err(wrong("--hold"))?;
+        }
+        for text in &self.bound {
+            options = options.bound(text, muscle).map_err(wrong("--bound"))?;
+        }
+        for text in &self.tie {
+            options = options.tie(text, muscle).map_err(wrong("--tie"))?;
+        }
+        check_restrictions(data, muscle, &options)?;
+        Ok(options)
+    }
+
+    /// Each option with its value, for a command line.
+    pub(crate) fn stated(&self) -> Vec<(&'static str, String)> {
+        let all = [("--hold", &self.hold), ("--bound", &self.bound), ("--tie", &self.tie)];
+        all.iter().flat_map(|(option, texts)| texts.iter().map(|text| (*option, text.clone()))).collect()
+    }
+}

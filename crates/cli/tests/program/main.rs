@@ -1,0 +1,16 @@
+//! The command as a user sees it: one program of tests, one module for each part of it.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod commands;
+mod compare;
+mod design;
+mod diagnose;
+mod joint;
+mod membrane;
+mod next;
+mod plan;
+mod simulate;
+mod size;
+mod support;
+mod sweep;

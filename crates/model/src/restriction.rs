@@ -1,0 +1,303 @@
+//! What is stated of a model's numbers before they are fitted: held at a value, kept within narrower bounds, or tied to another number.
+//!
+//! ```text
+//! held    x = v                      no longer fitted
+//! within  low <= x <= high           fitted, within these bounds and its own
+//! tied    x = y                      not fitted itself: dF/dy is then dF/dy + dF/dx
+//! ```
+//! Restrictions go by name. A model that doesn't have the number yet is as it was; it has it with its restriction once the effect is added.
+
+use serde::Serialize;
+use std::borrow::Cow;
+
+use crate::evaluate::Wanted;
+use crate::model::Model;
+use crate::parameter::ModelParameter;
+use crate::prediction::Prediction;
+
+/// Which number of a model is meant.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct NumberName {
+    /// The effect, or the law.
+    pub effect: String,
+    /// The name within the effect.
+    pub name: String,
+    /// One specimen's own; none: of all that have it.
+    pub specimen: Option<String>,
+}
+
+/// What is stated of a number.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Says {
+    /// It has this value \[SI\].
+    Held(f64),
+    /// It lies between these bounds \[SI\].
+    Within([f64; 2]),
+    /// It has the value of another number.
+    Tied(NumberName),
+}
+
+/// A statement about a number.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Restriction {
+    /// The number.
+    pub number: NumberName,
+    /// What it is.
+    pub says: Says,
+}
+
+impl NumberName {
+    /// Whether a number of a model is meant.
+    #[must_use]
+    pub fn is_of(&self, parameter: &ModelParameter) -> bool {
+        self.effect == parameter.effect
+            && self.name == parameter.name
+            && self.specimen.as_ref().is_none_or(|own| parameter.specimen.as_ref() == Some(own))
+    }
+}
+
+impl std::fmt::Display for NumberName {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { effect, name, specimen } = self;
+        match specimen {
+            Some(specimen) => write!(f, "{effect}.{name}[{specimen}]"),
+            None => write!(f, "{effect}.{name}"),
+        }
+    }
+}
+
+impl Model {
+    /// The same with statements about its numbers, those that it has and those that effects bring: a later statement about the same number stands for the
+    /// earlier. Numbers that are taken as known stay so, with their values.
+    #[must_use]
+    pub fn restricted(mut self, restrictions: &[Restriction]) -> Self {
+        self.restrictions = restrictions.into();
+        self.restrict(0);
+        self
+    }
+
+    /// Whether a statement says something of one of this model's numbers.
+    #[must_use]
+    pub fn has(&self, restriction: &Restriction) -> bool {
+        let is_meant = |p: &&ModelParameter| restriction.number.is_of(p);
+        match &restriction.says {
+            Says::Held(_) => self.parameters().iter().filter(is_meant).any(|p| p.held),
+            Says::Within(_) => self.parameters().iter().filter(is_meant).any(|p| !p.fixed),
+            Says::Tied(_) => self.parameters().iter().filter(is_meant).any(|p| p.tied.is_some()),
+        }
+    }
+
+    /// Applies what is stated of the numbers from a place on, and ties that have both of their ends now.
+    pub(crate) fn restrict(&mut self, from: usize) {
+        let restrictions = std::sync::Arc::clone(&self.restrictions);
+        for Restriction { number, says } in restrictions.iter() {
+            for place in from..self.parameters.len() {
+                let p = &mut self.parameters[place];
+                // Coefficients of a law that isn't fitted, and what a file states, are known.
+                if p.fixed && !p.held || !number.is_of(p) {
+                    continue;
+                }
+                match says {
+                    Says::Held(value) => (p.value, p.fixed, p.held) = (*value, true, true),
+                    Says::Within([low, high]) => p.narrow([*low, *high]),
+                    Says::Tied(_) => {}
+                }
+            }
+        }
+        for Restriction { number, says } in restrictions.iter() {
+            let Says::Tied(to) = says else { continue };
+            for place in 0..self.parameters.len() {
+                let p = &self.parameters[place];
+                if !p.fixed && number.is_of(p) {
+                    self.tie(place, to);
+                }
+            }
+        }
+    }
+
+    /// Ties a number to another, if that is there: to the one of the same specimen, where each has its own.
+    fn tie(&mut self, place: usize, to: &NumberName) {
+        let own = self.parameters[place].specimen.clone();
+        let is_source = |p: &ModelParameter| {
+            to.is_of(p) && (to.specimen.is_some() || p.specimen.is_none() || p.specimen == own)
+        };
+        let Some(mut source) = self.parameters.iter().position(is_source) else { return };
+        while let Some(next) = self.parameters[source].tied {
+            source = next;
+        }
+        if source == place {
+            return;
+        }
+        let bounds = [self.parameters[place].low, self.parameters[place].high];
+        self.parameters[source].narrow(bounds);
+        let value = self.parameters[source].value;
+        // What was tied to this one goes along.
+        for (at, p) in self.parameters.iter_mut().enumerate() {
+            if at == place || p.tied == Some(place) {
+                (p.tied, p.fixed, p.value) = (Some(source), true, value);
+            }
+        }
+    }
+
+    /// Whether any number is tied to another.
+    fn has_ties(&self) -> bool {
+        self.parameters().iter().any(|p| p.tied.is_some())
+    }
+
+    /// Numbers of the model in which those that are tied have the values of the others.
+    #[must_use]
+    pub fn with_ties<'t>(&self, theta: &'t [f64]) -> Cow<'t, [f64]> {
+        if !self.has_ties() || theta.len() != self.parameters().len() {
+            return Cow::Borrowed(theta);
+        }
+        let value = |(place, p): (usize, &ModelParameter)| theta[p.tied.unwrap_or(place)];
+        Cow::Owned(self.parameters().iter().enumerate().map(value).collect())
+    }
+
+    /// What must be evaluated for what is wanted: numbers that are tied to a wanted one come last.
+    pub(crate) fn wanted_with_ties<'w>(&self, wanted: &'w Wanted) -> Cow<'w, Wanted> {
+        let is_moved = |p: &ModelParameter| p.tied.is_some_and(|to| wanted.parameters.contains(&to));
+        let tied: Vec<usize> =
+            (0..self.parameters().len()).filter(|place| is_moved(&self.parameters()[*place])).collect();
+        if tied.is_empty() {
+            return Cow::Borrowed(wanted);
+        }
+        let parameters = wanted.parameters.iter().copied().chain(tied).collect();
+        Cow::Owned(Wanted { parameters, readings: wanted.readings })
+    }
+
+    /// Derivatives by what was wanted, from those by that and by what is tied to it.
+    pub(crate) fn folded(&self, mut prediction: Prediction, wanted: &Wanted, found: &Wanted) -> Prediction {
+        let (k, all) = (wanted.parameters.len(), found.parameters.len());
+        if all == k {
+            return prediction;
+        }
+        let column_of = |place: &usize| {
+            let to = self.parameters()[*place].tied?;
+            wanted.parameters.iter().position(|other| *other == to)
+        };
+        let into: Vec<Option<usize>> = found.parameters[k..].iter().map(column_of).collect();
+        let mut jacobian = Vec::with_capacity(prediction.force.len() * k);
+        for row in prediction.jacobian.chunks_exact(all) {
+            let start = jacobian.len();
+            jacobian.extend_from_slice(&row[..k]);
+            for (slope, column) in row[k..].iter().zip(&into) {
+                if let Some(column) = column {
+                    jacobian[start + column] += slope;
+                }
+            }
+        }
+        prediction.jacobian = jacobian;
+        prediction
+    }
+}
+
+impl ModelParameter {
+    /// Keeps it within bounds too.
+    fn narrow(&mut self, [low, high]: [f64; 2]) {
+        (self.low, self.high) = (self.low.max(low), self.high.min(high));
+        if !self.fixed && self.low <= self.high {
+            self.value = self.value.clamp(self.low, self.high);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Record;
+    use bulge_effects::{Catalogue, Moment};
+    use bulge_muscles::from_toml;
+
+    const BRAID: &str = "name = \"b\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nwall = \"1.8 mm\"\nbraid_angle = \"25 deg\"\nends = \"clamped\"\n";
+
+    fn name(text: &str) -> NumberName {
+        let (effect, name) = text.split_once('.').unwrap();
+        NumberName { effect: effect.to_owned(), name: name.to_owned(), specimen: None }
+    }
+
+    fn model(effects: &[&str], restrictions: &[(&str, Says)]) -> Model {
+        let catalogue = Catalogue::builtin();
+        let restrictions: Vec<Restriction> = restrictions
+            .iter()
+            .map(|(text, says)| Restriction { number: name(text), says: says.clone() })
+            .collect();
+        let base = Model::new(&from_toml(BRAID, "b").unwrap()).restricted(&restrictions);
+        effects.iter().fold(base, |model, effect| model.with(catalogue.find(effect).unwrap(), None).unwrap())
+    }
+
+    fn record() -> Record {
+        let moment = |i: u32| Moment {
+            direction: if i < 20 { 1.0 } else { -1.0 },
+            begins: i == 0,
+            ..Moment::at_rest(2e5 + 2e3 * f64::from(i), 0.02 + 0.004 * f64::from(i))
+        };
+        let moments = (0..40).map(moment).collect();
+        Record::from_moments(moments, vec![0.0; 40], std::iter::once(0..40).collect()).unwrap()
+    }
+
+    #[test]
+    fn numbers_are_held_bounded_and_tied_as_they_come() {
+        let effects = ["coulomb-friction", "force-offset", "pressure-offset"];
+        let says = [
+            ("coulomb-friction.force", Says::Tied(name("force-offset.offset"))),
+            ("force-offset.offset", Says::Within([2.0, 7.0])),
+            ("pressure-offset.offset", Says::Held(1500.0)),
+        ];
+        let partly = model(&effects[..1], &says);
+        assert!(!partly.parameters()[0].fixed && partly.parameters()[0].tied.is_none());
+        let whole = model(&effects, &says);
+        let [friction, offset, pressure] = whole.parameters() else { panic!("three numbers") };
+        assert_eq!((friction.tied, friction.fixed, friction.held), (Some(1), true, false));
+        assert!(!offset.fixed && (offset.low - 2.0).abs() + (offset.high - 7.0).abs() < 1e-12);
+        assert!((offset.value - 2.0).abs() < 1e-12 && (friction.value - 2.0).abs() < 1e-12);
+        assert!(pressure.held && (pressure.value - 1500.0).abs() < 1e-12);
+        assert_eq!(whole.with_ties(&[9.0, 3.0, 1500.0]).to_vec(), [3.0, 3.0, 1500.0]);
+        // What isn't there yet is free, what is known stays known, and ties follow ties.
+        let known =
+            model(&[], &says).with(Catalogue::builtin().find("coulomb-friction").unwrap(), Some(&[5.0]));
+        assert!((known.unwrap().parameters()[0].value - 5.0).abs() < 1e-12);
+        let chain = model(
+            &["coulomb-friction", "force-offset", "presliding-hysteresis"],
+            &[
+                ("force-offset.offset", Says::Tied(name("presliding-hysteresis.force"))),
+                ("coulomb-friction.force", Says::Tied(name("force-offset.offset"))),
+            ],
+        );
+        let root = chain.parameters().iter().position(|p| p.effect == "presliding-hysteresis").unwrap();
+        assert_eq!([chain.parameters()[0].tied, chain.parameters()[1].tied], [Some(root); 2]);
+    }
+
+    /// The force moves with a number as with all that are tied to it together, by load effects and by those of the shape.
+    #[test]
+    fn derivatives_are_those_of_both_numbers_together() {
+        for (effects, tied, to) in [
+            (["coulomb-friction", "force-offset"], "coulomb-friction.force", "force-offset.offset"),
+            (
+                ["membrane-axial", "bladder-elasticity"],
+                "membrane-axial.modulus",
+                "bladder-elasticity.modulus",
+            ),
+        ] {
+            let (free, tied) = (model(&effects, &[]), model(&effects, &[(tied, Says::Tied(name(to)))]));
+            let source = tied.parameters().iter().position(|p| p.tied.is_none() && to.starts_with(&p.effect));
+            let other = tied.parameters().iter().position(|p| p.tied.is_some());
+            let (source, other) = (source.unwrap(), other.unwrap());
+            let mut theta = tied.start();
+            theta[source] = if effects[0] == "membrane-axial" { 2.5e5 } else { 6.0 };
+            let wanted = Wanted { parameters: vec![source], readings: false };
+            let found = tied.evaluate(&record(), &theta, &wanted).unwrap();
+            let both = tied.with_ties(&theta).to_vec();
+            let wanted = Wanted { parameters: vec![source, other], readings: false };
+            let apart = free.evaluate(&record(), &both, &wanted).unwrap();
+            assert_eq!(found.force, apart.force);
+            assert_eq!(found.jacobian.len(), 40);
+            for (row, slope) in found.jacobian.iter().enumerate() {
+                let sum = apart.jacobian[2 * row] + apart.jacobian[2 * row + 1];
+                assert!((slope - sum).abs() <= 1e-12 * sum.abs(), "{row}: {slope} {sum}");
+            }
+            assert!(found.jacobian.iter().any(|slope| slope.abs() > 0.0));
+        }
+    }
+}
