@@ -1,7 +1,7 @@
 // @ts-check
 // Diagnose: a run with its progress, then the verdict as an offer. A preview switches the plots to a claim until it is kept or discarded.
 
-import { diagnose, isAborted } from "./api.js";
+import { diagnose, get, isAborted } from "./api.js";
 import { byId, button, fill, h, keepingFocus } from "./dom.js";
 import { notice } from "./notices.js";
 import { change, on, report, state, step } from "./store.js";
@@ -60,6 +60,22 @@ async function run() {
       draw();
       failure = "";
     }
+  }
+}
+
+/** A diagnosis that is there already, of this session or of another tab. @param {import("./types.js").Session} session */
+async function restore(session) {
+  if (!session.diagnosis || running || found) return;
+  try {
+    const result = await get("diagnosis.json");
+    if (running || found) return;
+    found = result;
+    askedWith = session.diagnosis.effects;
+    askedFor = session.diagnosis.is_current ? subject() : "";
+    document.body.dataset.diagnosis = "done";
+    draw();
+  } catch (error) {
+    report(error, "diagnosis");
   }
 }
 
@@ -166,6 +182,9 @@ async function endPreview(isKept) {
 
 export function startDiagnosis() {
   button("diagnose").addEventListener("click", () => (running ? showTab("diagnosis") : void run()));
-  on("session", draw);
+  on("session", () => {
+    draw();
+    if (state.session) void restore(state.session);
+  });
   draw();
 }

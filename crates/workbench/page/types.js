@@ -43,6 +43,7 @@
  * @property {string | null} own_effects
  * @property {number[]} excluded
  * @property {View} view
+ * @property {{effects: ChosenEffect[], is_current: boolean} | null} diagnosis
  * @property {{error: string, where: string} | null} problem why nothing can be computed
  * @property {string} command
  * @property {string} python

@@ -10,11 +10,13 @@ use serde::Serialize;
 use std::sync::{Arc, PoisonError};
 use tokio::sync::oneshot;
 
+use crate::choices::Choices;
 use crate::diagnosis::{self, Listener};
+use crate::folder::Diagnosed;
 use crate::inputs::{Inputs, MUSCLE, catalogue};
 use crate::refusal::{Place, Refusal};
 use crate::rows;
-use crate::server::{Diagnosed, Workbench};
+use crate::server::Workbench;
 use crate::surface::{self, State, Surface};
 use crate::worker::{Question, Worker};
 
@@ -179,16 +181,14 @@ pub(crate) fn diagnose(workbench: &Workbench) -> Result<Listener, Refusal> {
     Ok(diagnosis::begin(inputs, options))
 }
 
-/// A diagnosis as it is saved.
-pub(crate) fn to_keep(found: &Diagnosis) -> Result<Diagnosed, Refusal> {
-    let refused = |error: &dyn std::fmt::Display| Refusal::new(Place::Request, error);
-    let document = serde_json::to_string_pretty(found).map_err(|error| refused(&error))? + "\n";
-    let report = bulge_report::diagnosis::html(found).map_err(|error| refused(&error))?;
-    Ok(Diagnosed { document, report })
-}
-
-/// The last diagnosis.
-pub(crate) fn diagnosed(workbench: &Workbench) -> Result<Diagnosed, Refusal> {
-    let last = workbench.diagnosed.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    last.ok_or_else(|| Refusal::new(Place::Request, "nothing was diagnosed yet: press Diagnose"))
+/// Keeps a diagnosis with its report, and tells all pages of it.
+pub(crate) fn keep_diagnosis(
+    workbench: &Workbench,
+    found: &Diagnosis,
+    about: &Choices,
+) -> Result<(), Refusal> {
+    let document = serde_json::to_string_pretty(found).map_err(Refusal::at(Place::Request))? + "\n";
+    let report = bulge_report::diagnosis::html(found).map_err(Refusal::at(Place::Request))?;
+    let found = Diagnosed { document, report };
+    workbench.change(|session| session.diagnosed(&found, about.clone())).map(drop)
 }

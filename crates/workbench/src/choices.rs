@@ -53,10 +53,12 @@ pub struct Choices {
 impl Choices {
     /// Whether the rows, the muscle or the catalogue differ: more than the effects that are switched on.
     pub(crate) fn needs_other_inputs(&self, other: &Self) -> bool {
-        self.needs_other_data(other)
-            || self.own_effects != other.own_effects
-            || self.excluded != other.excluded
-            || !self.held().eq(other.held())
+        self.needs_other_rows(other) || self.own_effects != other.own_effects || !self.held().eq(other.held())
+    }
+
+    /// Whether the rows that count, or the muscle, differ.
+    pub(crate) fn needs_other_rows(&self, other: &Self) -> bool {
+        self.needs_other_data(other) || self.excluded != other.excluded
     }
 
     /// Every number that is held: effect, number, value in the unit that the card shows.

@@ -13,6 +13,9 @@ use crate::refusal::{Place, Refusal};
 
 /// The file that holds the choices.
 const STATE: &str = "session.json";
+/// The last diagnosis: its document, and its report.
+const DIAGNOSIS: &str = "diagnosis.json";
+const REPORT: &str = "diagnosis.html";
 /// The folder of the files that were dropped.
 const DATA: &str = "data";
 /// What the state says of itself.
@@ -28,11 +31,28 @@ pub(crate) struct Kept {
     pub(crate) past: Vec<Choices>,
     pub(crate) future: Vec<Choices>,
     pub(crate) view: Value,
+    /// What the last diagnosis was about.
+    #[serde(default)]
+    pub(crate) diagnosed: Option<Choices>,
+}
+
+/// A diagnosis as it is saved.
+#[derive(Debug, Clone)]
+pub(crate) struct Diagnosed {
+    pub(crate) document: String,
+    pub(crate) report: String,
 }
 
 impl Kept {
     pub(crate) fn new(choices: Choices) -> Self {
-        Self { schema: SCHEMA.to_owned(), choices, past: Vec::new(), future: Vec::new(), view: Value::Null }
+        Self {
+            schema: SCHEMA.to_owned(),
+            choices,
+            past: Vec::new(),
+            future: Vec::new(),
+            view: Value::Null,
+            diagnosed: None,
+        }
     }
 }
 
@@ -87,6 +107,18 @@ impl Folder {
         output::write(&path, text.as_bytes()).map_err(|error| {
             Refusal::new(Place::Request, format!("cannot write {}: {error}", path.display()))
         })
+    }
+
+    /// Keeps a diagnosis.
+    pub(crate) fn keep_diagnosis(&self, found: &Diagnosed) -> io::Result<()> {
+        output::write(&self.path.join(DIAGNOSIS), found.document.as_bytes())?;
+        output::write(&self.path.join(REPORT), found.report.as_bytes())
+    }
+
+    /// The diagnosis that is kept here.
+    pub(crate) fn diagnosis(&self) -> io::Result<Diagnosed> {
+        let [document, report] = [DIAGNOSIS, REPORT].map(|name| fs::read_to_string(self.path.join(name)));
+        Ok(Diagnosed { document: document?, report: report? })
     }
 
     /// A name for a file that is being received: beside those that are whole, under a name that none of them has.

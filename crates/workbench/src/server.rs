@@ -19,7 +19,6 @@ use tokio::sync::watch;
 
 use crate::answers;
 use crate::assets::asset;
-use crate::diagnosis::News;
 use crate::folder::file_name;
 use crate::guard::Guard;
 use crate::refusal::{Place, Refusal};
@@ -38,13 +37,6 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 /// Reports hold their style and their plots; they run nothing.
 const REPORT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// The last diagnosis, as it is saved.
-#[derive(Debug, Clone)]
-pub(crate) struct Diagnosed {
-    pub(crate) document: String,
-    pub(crate) report: String,
-}
-
 /// A muscle with the effects that it has learnt.
 pub(crate) type Shaped = Arc<(Muscle, Vec<Known>)>;
 
@@ -54,7 +46,6 @@ pub(crate) struct Workbench {
     session: Mutex<Session>,
     pub(crate) quick: Worker,
     pub(crate) held_out: Worker,
-    pub(crate) diagnosed: Mutex<Option<Diagnosed>>,
     /// The muscle whose shape was asked for last, with the revision that it belongs to.
     pub(crate) shaped: Mutex<Option<(u64, Shaped)>>,
     pub(crate) revision: watch::Sender<u64>,
@@ -69,7 +60,6 @@ impl Workbench {
             session: Mutex::new(session),
             quick: Worker::start(false),
             held_out: Worker::start(true),
-            diagnosed: Mutex::default(),
             shaped: Mutex::default(),
             revision,
             received: AtomicU64::new(0),
@@ -82,7 +72,10 @@ impl Workbench {
     }
 
     /// Makes a change, tells all pages of it, and answers with the session.
-    fn change(&self, make: impl FnOnce(&mut Session) -> Result<(), Refusal>) -> Result<Response, Refusal> {
+    pub(crate) fn change(
+        &self,
+        make: impl FnOnce(&mut Session) -> Result<(), Refusal>,
+    ) -> Result<Response, Refusal> {
         let mut session = self.session();
         make(&mut session)?;
         self.revision
@@ -161,15 +154,17 @@ async fn api(workbench: Arc<Workbench>, call: &str, parts: &Parts, body: Body) -
             let page = bulge_report::comparison::html(&comparison).map_err(Refusal::at(Place::Request))?;
             Ok(report(page))
         }
-        ("GET", "diagnosis-report") => answers::diagnosed(&workbench).map(|found| report(found.report)),
-        ("GET", "diagnosis.json") => answers::diagnosed(&workbench).map(|found| as_json(found.document)),
+        ("GET", "diagnosis-report") => {
+            blocking(workbench, |w| w.session().diagnosis().map(|found| report(found.report))).await
+        }
+        ("GET", "diagnosis.json") => {
+            blocking(workbench, |w| w.session().diagnosis().map(|found| as_json(found.document))).await
+        }
         ("POST", "diagnose") => {
+            let about = workbench.session().choices().clone();
             let listener = blocking(Arc::clone(&workbench), |w| answers::diagnose(&w)).await?;
-            Ok(stream::of_diagnosis(listener, move |news| {
-                if let News::Found(found) = news {
-                    let made = answers::to_keep(found).ok();
-                    *workbench.diagnosed.lock().unwrap_or_else(PoisonError::into_inner) = made;
-                }
+            Ok(stream::of_diagnosis(listener, move |found| {
+                answers::keep_diagnosis(&workbench, found, &about)
             }))
         }
         ("GET", "events") => Ok(stream::of_revisions(workbench.revision.subscribe())),

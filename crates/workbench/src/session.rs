@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::choices::{Change, Choices, ChosenEffect, DataFile, MuscleChange, MuscleFile};
 use crate::command;
-use crate::folder::{Folder, Kept, MOST_STEPS};
+use crate::folder::{Diagnosed, Folder, Kept, MOST_STEPS};
 use crate::inputs::{Inputs, MUSCLE, catalogue, restrictions};
 use crate::refusal::{Place, Refusal};
 
@@ -34,6 +34,8 @@ pub(crate) struct SessionDocument {
     excluded: Vec<usize>,
     /// Why nothing can be computed with these choices.
     problem: Option<Refusal>,
+    /// The diagnosis that can be saved.
+    diagnosis: Option<DiagnosisDocument>,
     view: Value,
     command: String,
     python: String,
@@ -45,6 +47,14 @@ struct DataDocument {
     rows: usize,
     /// Of what was read; empty where nothing could be.
     sha256: String,
+}
+
+#[derive(Debug, Serialize)]
+struct DiagnosisDocument {
+    /// Effects that the model had.
+    effects: Vec<ChosenEffect>,
+    /// Whether data and muscle are still those that it is about.
+    is_current: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -220,7 +230,7 @@ impl Session {
 
     /// What the page shows.
     pub(crate) fn document(&self) -> SessionDocument {
-        let Kept { choices, past, future, view, .. } = &self.kept;
+        let Kept { choices, past, future, view, diagnosed, .. } = &self.kept;
         let problem = self.inputs.as_ref().err();
         let (reading, rows, sha256) = match &self.inputs {
             Ok(inputs) => (inputs.data.reading().clone(), inputs.data.len(), inputs.data.sha256()),
@@ -251,10 +261,30 @@ impl Session {
             own_effects: choices.own_effects.clone(),
             excluded: choices.excluded.clone(),
             problem: problem.cloned(),
+            diagnosis: diagnosed.as_ref().map(|about| DiagnosisDocument {
+                effects: about.effects.clone(),
+                is_current: !choices.needs_other_rows(about),
+            }),
             view: view.clone(),
             command: command::shell(choices, self.inputs.as_ref().ok()),
             python: command::python(choices, self.inputs.as_ref().ok()),
         }
+    }
+
+    /// Keeps a diagnosis of some choices.
+    pub(crate) fn diagnosed(&mut self, found: &Diagnosed, about: Choices) -> Result<(), Refusal> {
+        self.folder.keep_diagnosis(found).map_err(Refusal::at(Place::Request))?;
+        self.kept.diagnosed = Some(about);
+        self.revision += 1;
+        self.folder.keep(&self.kept)
+    }
+
+    /// The last diagnosis.
+    pub(crate) fn diagnosis(&self) -> Result<Diagnosed, Refusal> {
+        if self.kept.diagnosed.is_none() {
+            return Err(Refusal::new(Place::Request, "nothing was diagnosed yet: press Diagnose"));
+        }
+        self.folder.diagnosis().map_err(Refusal::at(Place::Request))
     }
 
     /// What is compared with the chosen effects.

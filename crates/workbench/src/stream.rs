@@ -2,31 +2,42 @@
 
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
+use bulge_inference::Diagnosis;
 use futures_util::stream::unfold;
 use serde::Serialize;
 use std::convert::Infallible;
 use tokio::sync::watch;
 
 use crate::diagnosis::{Listener, News};
+use crate::refusal::Refusal;
 
 /// An event with a document; what can't be written as one is empty.
 fn event(name: &str, document: &impl Serialize) -> Event {
     Event::default().event(name).data(serde_json::to_string(document).unwrap_or_default())
 }
 
-/// A diagnosis as it goes on; `heard` sees all that is told.
-pub(crate) fn of_diagnosis(listener: Listener, heard: impl Fn(&News) + Send + 'static) -> Response {
-    let next = |(mut listener, heard): (Listener, _)| async move {
-        let news = listener.news.recv().await?;
-        (&heard as &(dyn Fn(&News) + Send))(&news);
+/// A diagnosis as it goes on; `keep` gets what was found before it is told.
+pub(crate) fn of_diagnosis(
+    listener: Listener,
+    keep: impl Fn(&Diagnosis) -> Result<(), Refusal> + Send + 'static,
+) -> Response {
+    type Keep = dyn Fn(&Diagnosis) -> Result<(), Refusal> + Send;
+    let next = |(mut listener, keep): (Listener, Box<Keep>)| async move {
+        let mut news = listener.news.recv().await?;
+        if let News::Found(found) = &news
+            && let Err(refusal) = keep(found)
+        {
+            news = News::Failed(refusal);
+        }
         let told = match &news {
             News::Progress(stage) => event("progress", stage),
             News::Found(found) => event("result", found),
             News::Failed(refusal) => event("failed", refusal),
         };
-        Some((Ok::<_, Infallible>(told), (listener, heard)))
+        Some((Ok::<_, Infallible>(told), (listener, keep)))
     };
-    Sse::new(unfold((listener, heard), next)).keep_alive(KeepAlive::default()).into_response()
+    let keep: Box<Keep> = Box::new(keep);
+    Sse::new(unfold((listener, keep), next)).keep_alive(KeepAlive::default()).into_response()
 }
 
 /// The number of changes, whenever it grows.

@@ -425,7 +425,9 @@ fn a_session_is_found_again() {
 
 #[test]
 fn a_diagnosis_is_told_by_stages_and_kept() {
-    let (_folder, page) = opened();
+    let folder = tempfile::tempdir().unwrap();
+    let session = folder.path().join("session");
+    let page = Page::open(tour(folder.path()), Some(session.clone()), true);
     page.put(&effects(&["end-taper", "bladder-elasticity"]));
     assert_eq!(page.get("diagnosis.json").status, 422);
     let told = String::from_utf8(page.ask("POST", "api/diagnose", b"").body).unwrap();
@@ -443,4 +445,9 @@ fn a_diagnosis_is_told_by_stages_and_kept() {
     );
     assert_eq!(page.get("diagnosis.json").json(), found);
     assert!(page.get("diagnosis-report").body.starts_with(b"<!"));
+    // It outlives the process, and knows whether it is about what is there.
+    let again = Page::open(tour(folder.path()), Some(session), false);
+    assert_eq!(again.get("diagnosis.json").json(), found);
+    assert_eq!(again.get("session").json()["diagnosis"]["is_current"], true);
+    assert_eq!(again.put(&json!({"excluded": [3]})).json()["diagnosis"]["is_current"], false);
 }
