@@ -1,6 +1,6 @@
 //! Measured rows on the command line: the files, which column is which, and how they were read.
 
-use bulge_measurements::{ColumnMap, Data, Reading};
+use bulge_measurements::{ColumnMap, Data, ReadOptions, Reading};
 use bulge_model::read_options;
 use bulge_muscles::Muscle;
 use clap::Args;
@@ -30,8 +30,18 @@ pub(crate) struct DataArguments {
 impl DataArguments {
     /// Reads the files of a muscle's measurements.
     pub(crate) fn read(&self, muscle: &Muscle) -> Result<Data, Failure> {
+        Ok(Data::read_with(&self.data, &self.options(muscle)?)?)
+    }
+
+    /// The same of files that may have no force.
+    pub(crate) fn read_with_or_without_force(&self, muscle: &Muscle) -> Result<Data, Failure> {
+        let options = ReadOptions { force_may_lack: true, ..self.options(muscle)? };
+        Ok(Data::read_with(&self.data, &options)?)
+    }
+
+    fn options(&self, muscle: &Muscle) -> Result<ReadOptions, Failure> {
         let columns = self.columns.as_deref().map(str::parse::<ColumnMap>).transpose()?;
-        Ok(Data::read_with(&self.data, &read_options(muscle, columns.as_ref())?)?)
+        Ok(read_options(muscle, columns.as_ref())?)
     }
 
     /// The names of the files, as they were given.

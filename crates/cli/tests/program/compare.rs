@@ -330,6 +330,43 @@ fn rows_are_written_and_read_again() {
     assert!(status == 1 && message.contains("the data file, which is read"), "{message}");
 }
 
+/// What was learnt from one test predicts another, with or without a force in it.
+#[test]
+fn a_learnt_muscle_predicts_new_rows() {
+    let folder = Folder::new("predict");
+    let data = folder.write("data.csv", &loops(TRUTH));
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let learnt = folder.path("learnt.toml");
+    let with = "fibre-stretch,coulomb-friction";
+    let fit = bulge(&["fit", &data, "--muscle", &muscle, "--with", with, "--out", &learnt]);
+    assert!(fit.status.success());
+    let file = folder.path("predicted.csv");
+    let found = json(&["predict", &data, "--muscle", &learnt, "--out", &file, "--json"]);
+    assert_eq!((found["schema"].as_str(), found["rows"].as_u64()), (Some("bulge.prediction/1"), Some(200)));
+    let coverage = found["against"]["coverage"].as_f64().unwrap();
+    assert!(coverage > 0.9 && found["against"]["rmse_n"].as_f64().unwrap() < 0.01, "{}", found["against"]);
+    assert_eq!(found["uncertain"].as_array().unwrap().len(), 2);
+    let heading = std::fs::read_to_string(&file).unwrap().lines().next().unwrap().to_owned();
+    let ending = "pressure [Pa],contraction [-],force [N],model force [N],model uncertainty [N],low [N],high [N],residual [N]";
+    assert!(heading.ends_with(ending), "{heading}");
+    // The same rows without their force.
+    let bare: String =
+        loops(TRUTH).lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n").collect();
+    let bare = folder.write("bare.csv", &bare);
+    let again = json(&["predict", &bare, "--muscle", &learnt, "--json"]);
+    assert_eq!(again["columns"]["force_n"], found["columns"]["force_n"]);
+    assert!(again["against"].is_null() && again["columns"]["measured_n"].is_null());
+    let told = String::from_utf8(bulge(&["predict", &bare, "--muscle", &learnt]).stdout).unwrap();
+    assert!(
+        told.contains("200 of 200 rows have a state") && told.contains("no force to compare with"),
+        "{told}"
+    );
+    let (status, message) = failure(&["compare", &bare, "--muscle", &learnt]);
+    assert!(status == 1 && message.contains("force"), "{message}");
+    let (status, message) = failure(&["predict", &data, "--muscle", &learnt, "--out", &learnt]);
+    assert!(status == 1 && message.contains("the muscle file, which is read"), "{message}");
+}
+
 /// A base is there to be wrong: a muscle that would push where this one pulls is compared all the same, and that is said.
 #[test]
 fn a_base_that_would_push_is_shown_with_a_warning() {

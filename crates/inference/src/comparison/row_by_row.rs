@@ -173,7 +173,7 @@ fn difference(measured: &[f64], model: &[f64]) -> Vec<f64> {
     measured.iter().zip(model).map(|(measured, model)| measured - model).collect()
 }
 
-fn short(number: usize) -> u32 {
+pub(crate) fn short(number: usize) -> u32 {
     // Files of more rows aren't read: their lines are numbers of this kind.
     u32::try_from(number).unwrap_or(u32::MAX)
 }
