@@ -1,7 +1,8 @@
 //! `bulge compare`: model against measurement, and the error as effects are added.
 
 use bulge_effects::Effect;
-use bulge_inference::{Comparison, Fit, HeldNumber, compare};
+use bulge_inference::{Comparing, Comparison, Fit, HeldNumber};
+use bulge_measurements::written;
 use bulge_report::comparison::{html, plots};
 use clap::Args;
 use std::fmt::Write;
@@ -11,7 +12,7 @@ use std::sync::Arc;
 use crate::arguments;
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
-use crate::files;
+use crate::files::{self, Named};
 use crate::restricted::RestrictedArguments;
 use crate::text::{significant, with_interval};
 
@@ -43,6 +44,9 @@ pub(crate) struct CompareCommand {
     /// Folder for report.html, the plots as SVG files, and compare.json
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// File for all rows, CSV or Parquet by its ending: what was read, the force of the base and of the last rung, and why a row doesn't count
+    #[arg(long, value_name = "FILE.csv|.parquet")]
+    rows: Option<PathBuf>,
     /// One JSON document on standard output
     #[arg(long)]
     json: bool,
@@ -62,15 +66,40 @@ impl CompareCommand {
                 .map_err(|what| Failure::Value { option: "--law", what })?;
         }
         let options = self.restricted.apply(options, &data, &muscle)?;
-        let comparison = compare(&data, &muscle, &options)?;
+        if let Some(path) = &self.rows {
+            self.can_be_written(path)?;
+        }
+        // Rungs that the comparison has climbed aren't climbed again for its rows.
+        let comparing = Comparing::new(&data, &muscle, &options)?;
+        let comparison = comparing.with(&options.effects)?;
         let document = serde_json::to_string_pretty(&comparison)? + "\n";
         let mut wrote = String::new();
+        if let Some(path) = &self.rows {
+            let rows = comparing.rows(&options.effects)?;
+            files::write(path, &written(path, &rows.columns())?)?;
+            let _ = writeln!(wrote, "  wrote {}", path.display());
+        }
         if let Some(folder) = &self.out {
             for path in report(folder, &comparison, &document)? {
                 let _ = writeln!(wrote, "  wrote {}", path.display());
             }
         }
         if self.json { Ok(document) } else { Ok(text(&comparison, &options.effects) + &wrote) }
+    }
+
+    /// Refuses a file of rows that would be written over what is read, before anything is computed.
+    fn can_be_written(&self, rows: &Path) -> Result<(), Failure> {
+        let muscle = ("the muscle file", Path::new(&self.muscle));
+        let read: Vec<Named<'_>> = self
+            .data
+            .data
+            .iter()
+            .map(|path| ("the data file", path.as_path()))
+            .chain(self.effects.as_deref().map(|path| ("the file of --effects", path)))
+            .chain([muscle])
+            .collect();
+        files::are_apart(&[("--rows", rows)], &read)?;
+        files::can_be_written(rows)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use bulge_effects::{Catalogue, Effect, known};
 use bulge_inference::Options;
-use bulge_measurements::{ColumnMap, Data, Reading};
+use bulge_measurements::{ColumnMap, Data, ReadOptions, Reading};
 use bulge_model::read_options;
 use bulge_muscles::Muscle;
 use bulge_report::Call;
@@ -55,8 +55,18 @@ impl DataArguments {
 
     /// Reads the files of a muscle's measurements.
     pub(crate) fn read(&self, muscle: &Muscle) -> Result<Data, Failure> {
+        Ok(Data::read_with(&self.data, &self.reading_options(muscle)?)?)
+    }
+
+    /// The same of files that may have no force.
+    pub(crate) fn read_with_or_without_force(&self, muscle: &Muscle) -> Result<Data, Failure> {
+        let options = ReadOptions { force_may_lack: true, ..self.reading_options(muscle)? };
+        Ok(Data::read_with(&self.data, &options)?)
+    }
+
+    fn reading_options(&self, muscle: &Muscle) -> Result<ReadOptions, Failure> {
         let columns = self.columns.as_deref().map(str::parse::<ColumnMap>).transpose()?;
-        Ok(Data::read_with(&self.data, &read_options(muscle, columns.as_ref())?)?)
+        Ok(read_options(muscle, columns.as_ref())?)
     }
 
     /// The command line as far as the next step takes it over, with further files.

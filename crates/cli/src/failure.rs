@@ -8,7 +8,7 @@ use bulge_effects::CatalogueError;
 use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
 use bulge_inference::{HideError, InferenceError};
-use bulge_measurements::MeasurementError;
+use bulge_measurements::{MeasurementError, WrittenError};
 use bulge_membrane::MembraneError;
 use bulge_membrane::case::CaseError;
 use bulge_model::{ExtendedError, ModelError};
@@ -84,6 +84,8 @@ pub(crate) enum Failure {
     Workbench(#[from] bulge_workbench::WorkbenchError),
     #[error("the result cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),
+    #[error("{0}")]
+    Written(#[from] WrittenError),
     #[error("{failed} of {all} checks failed:\n{table}")]
     Checks { failed: usize, all: usize, table: String },
 }

@@ -20,6 +20,7 @@ mod muscle;
 mod next;
 mod open;
 mod plan;
+mod predict;
 mod restricted;
 mod sense;
 mod shape;
@@ -84,6 +85,8 @@ enum Command {
     Fit(fit::FitCommand),
     /// Before measuring: detection limits, and which effects a test could not tell apart
     Plan(plan::PlanCommand),
+    /// A (learnt) muscle on new rows: the force with intervals, and residuals where a force was measured
+    Predict(predict::PredictCommand),
     /// The next experiment, which best separates the effects that measurements leave open
     Next(next::NextCommand),
     /// Synthetic measurements with chosen (hidden) effects, noise and rig errors
@@ -128,6 +131,7 @@ fn main() -> ExitCode {
         Command::Diagnose(command) => command.run(),
         Command::Fit(command) => command.run(),
         Command::Plan(command) => command.run(),
+        Command::Predict(command) => command.run(),
         Command::Next(command) => command.run(),
         Command::Simulate(command) => command.run(),
         Command::Effects(command) => command.run(),

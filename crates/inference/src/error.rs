@@ -64,6 +64,14 @@ pub enum InferenceError {
         /// Why it isn't, and what to do.
         instead: String,
     },
+    /// The table `[fitted]` of a muscle file isn't about this muscle.
+    #[error("`{number}` in the table `[fitted]`: {why}; fit again, or take the table out")]
+    Fitted {
+        /// The number, `effect.key`.
+        number: String,
+        /// What doesn't agree.
+        why: String,
+    },
     /// A protocol that nobody can carry out, or with this muscle.
     #[error("{what}; {instead}")]
     Protocol {

@@ -5,6 +5,7 @@
 //!   leave open, with its error on the data and on held-out pressures, and the noise floor; [`fit_effects`] is the last rung alone,
 //! - `noise`: the law of the noise ([`NoiseLaw`]) and how it is taken out ([`Whitening`]),
 //! - `diagnosis`: [`diagnose`] finds what is missing, [`plan`] what a test would show,
+//! - `prediction`: [`predict`] gives the force of new rows, with intervals by what a fit knows of the numbers,
 //! - `protocol`: what a test bench does ([`Protocol`]) and would measure ([`simulate`]).
 //!
 //! Results are plain values that text, JSON and report are functions of. `noise` knows none of the others, `fit` only `noise`; `diagnosis` knows them all.
@@ -19,6 +20,7 @@ mod error;
 mod fit;
 mod median;
 mod noise;
+mod prediction;
 mod progress;
 mod protocol;
 
@@ -51,6 +53,8 @@ pub use noise::error::NoiseError;
 pub use noise::law::{CorrelationTime, NoiseLaw, NoiseSource};
 pub use noise::offset_belief::OffsetBelief;
 pub use noise::whitening::Whitening;
+pub use prediction::document::{Against, Predicted, PredictedColumns, UncertainNumber};
+pub use prediction::predict::predict;
 pub use progress::Progress;
 pub use protocol::bench::{Block, MOST_ROWS, Path, Protocol, ReadingNoise, ReadingSteps, RigErrors};
 pub use protocol::file::PROTOCOL_EXAMPLE;

@@ -3,8 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use bulge_effects::{Catalogue, Effect, Moment, known};
-use bulge_inference::{Fit, Fitting, Options, check_restrictions, compare, extended, fit_effects};
-use bulge_measurements::Data;
+use bulge_inference::{Fit, Fitting, Options, check_restrictions, compare, extended, fit_effects, predict};
+use bulge_measurements::{Data, ReadOptions};
 use bulge_model::{Model, Record, Wanted};
 use bulge_muscles::{Muscle, from_toml, to_toml};
 use std::fmt::Write;
@@ -436,4 +436,115 @@ fn statements_about_other_numbers_are_refused() {
     let found = compare(&data, &rig, &asked).unwrap();
     assert_eq!((found.ladder[0].held.len(), found.ladder[0].fitted), (1, 0));
     assert!((found.ladder[1].rmse_n - 5.0_f64.sqrt()).abs() < 0.2, "{}", found.ladder[1].rmse_n);
+}
+
+/// A muscle that has learnt friction and an offset from loops, by its file; and that file.
+fn learnt_muscle(seed: u64) -> (Muscle, String) {
+    let truth: &[(&str, &[f64])] = &[("coulomb-friction", &[12.0]), ("force-offset", &[5.0])];
+    let plain = muscle(PLEATED);
+    let data = measured(&plain, truth, 4.0, seed);
+    let found = fitted(&data, &plain, &["coulomb-friction", "force-offset"]);
+    let text = to_toml(&extended(&found.model, &found.fit).unwrap().muscle);
+    (muscle(&text), text)
+}
+
+/// Intervals are made of the covariance that the learnt file holds: of friction and an offset it can be written down.
+#[test]
+fn intervals_of_new_rows_are_those_of_the_numbers_and_of_a_reading() {
+    let (learnt, text) = learnt_muscle(1);
+    let known = learnt.fitted().unwrap();
+    assert_eq!(known.numbers.len(), 2, "{text}");
+    let (friction, offset, r) = (known.sd(0), known.sd(1), known.correlation(0, 1));
+    assert!(friction > 0.1 && offset > 0.1 && (known.error_n - 4.0).abs() < 0.6, "{text}");
+    let truth: &[(&str, &[f64])] = &[("coulomb-friction", &[12.0]), ("force-offset", &[5.0])];
+    let data = measured(&muscle(PLEATED), truth, 4.0, 2);
+    let found = predict(&data, &learnt, &Catalogue::builtin()).unwrap();
+    let columns = &found.columns;
+    let freedom = known.rows as f64 - 2.0;
+    // Student's quantile, by Cornish and Fisher.
+    let z = 1.959_964_f64;
+    let q = z
+        + (z.powi(3) + z) / (4.0 * freedom)
+        + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * freedom.powi(2));
+    for row in 0..found.rows {
+        let direction = if row % 30 < 15 { 1.0 } else { -1.0 };
+        let variance = friction.powi(2) + offset.powi(2) - 2.0 * direction * r * friction * offset;
+        assert!((columns.sd_n[row] / variance.sqrt() - 1.0).abs() < 1e-6, "{row}: {}", columns.sd_n[row]);
+        let half = q * (variance + known.error_n.powi(2)).sqrt();
+        assert!(((columns.high_n[row] - columns.force_n[row]) / half - 1.0).abs() < 1e-4, "{row}");
+        assert!((columns.high_n[row] + columns.low_n[row] - 2.0 * columns.force_n[row]).abs() < 1e-9);
+    }
+    let against = found.against.as_ref().unwrap();
+    assert!((against.rmse_n - 4.0).abs() < 0.7, "{against:?}");
+    assert!((against.coverage.unwrap() - 0.95).abs() < 0.05, "{against:?}");
+    assert!(found.warnings.is_empty() && found.without_state.is_none(), "{found:?}");
+    assert_eq!(found.uncertain[0].from, "fitted");
+    assert!((found.uncertain[0].moves_n / friction - 1.0).abs() < 1e-9, "{:?}", found.uncertain);
+    // What was predicted is what a comparison of the learnt muscle says.
+    let base = Options { known: known_of(&learnt), ..options(&[]) };
+    let compared = compare(&data, &learnt, &base).unwrap();
+    assert!((compared.ladder[0].rmse_n / against.rmse_n - 1.0).abs() < 1e-9);
+}
+
+fn known_of(muscle: &Muscle) -> Vec<bulge_effects::Known> {
+    known(muscle, &Catalogue::builtin()).unwrap()
+}
+
+/// Numbers that went into the muscle's own (a bladder's modulus) are in doubt as well, and a width that is stated.
+#[test]
+fn shape_and_stated_widths_widen_the_intervals() {
+    let plain = muscle(BRAIDED);
+    let truth: &[(&str, &[f64])] = &[("bladder-elasticity", &[0.3e6])];
+    let data = measured(&plain, truth, 2.0, 1);
+    let found = fitted(&data, &plain, &["bladder-elasticity"]);
+    let text = to_toml(&extended(&found.model, &found.fit).unwrap().muscle);
+    let prediction = predict(&data, &muscle(&text), &Catalogue::builtin()).unwrap();
+    let [modulus] = prediction.uncertain.as_slice() else { panic!("{:?} of {text}", prediction.uncertain) };
+    assert!(modulus.from == "fitted" && (modulus.value - 0.3).abs() < 0.01, "{modulus:?}");
+    // By hand: the force at another modulus.
+    let force = |c10: f64| {
+        let model = Model::new(&plain.clone().with(bulge_muscles::Parameter::C10, c10).unwrap());
+        model
+            .at_rest(&[], prediction.columns.pressure_pa[7], prediction.columns.contraction[7])
+            .unwrap()
+            .force_n
+    };
+    let step = 1e3;
+    let value = 1e6 * modulus.value;
+    let slope = (force(value + step) - force(value - step)) / (2.0 * step);
+    let expected = (slope * 1e6 * modulus.sd).abs();
+    let sd = prediction.columns.sd_n[7];
+    assert!((sd / expected - 1.0).abs() < 1e-4, "{sd} {expected}");
+    let zero = text + "\n[instruments]\nforce = { noise = \"2 N\", zero = \"3 N\" }\n";
+    let wider = predict(&data, &muscle(&zero), &Catalogue::builtin()).unwrap();
+    assert!((wider.columns.sd_n[7].powi(2) - sd * sd - 9.0).abs() < 1e-6, "{}", wider.columns.sd_n[7]);
+}
+
+#[test]
+fn a_prediction_says_what_it_lacks() {
+    let (learnt, text) = learnt_muscle(1);
+    let csv = "pressure [bar],contraction [%]\n3,5\n3,10\n3,44\n0,5\n";
+    let read = ReadOptions { force_may_lack: true, ..ReadOptions::default() };
+    assert!(Data::from_csv(csv, "new.csv").is_err());
+    let data = Data::from_bytes(csv.as_bytes(), "new.csv", &read).unwrap();
+    assert!(!data.has_force());
+    let found = predict(&data, &learnt, &Catalogue::builtin()).unwrap();
+    assert!(found.against.is_none() && found.columns.measured_n.is_none() && found.left_out.is_empty());
+    assert!(found.warnings[0].contains("`coulomb-friction` needs a path"), "{:?}", found.warnings);
+    let left = found.without_state.as_ref().unwrap();
+    assert!(left.lines.contains('5') && found.columns.force_n[3].is_nan(), "{left:?}");
+    assert!(found.columns.high_n[3].is_nan() && found.columns.high_n[1] > found.columns.force_n[1]);
+    // A muscle of which no fit knows anything has no intervals, and says so.
+    let plain = predict(&data, &muscle(PLEATED), &Catalogue::builtin()).unwrap();
+    assert!(
+        plain.columns.high_n.iter().all(|high| high.is_nan()) && plain.warnings.len() == 2,
+        "{:?}",
+        plain.warnings
+    );
+    // A number that was changed by hand is no longer the one that was fitted.
+    let value = text.lines().find(|line| line.starts_with("force = ")).unwrap();
+    let changed = text.replacen(value, "force = \"20 N\"", 1);
+    let message = predict(&data, &muscle(&changed), &Catalogue::builtin()).unwrap_err().to_string();
+    assert!(message.contains("`coulomb-friction.force` in the table `[fitted]`: it is"), "{message}");
+    assert!(message.contains("20 N in its effect"), "{message}");
 }

@@ -6,7 +6,7 @@ use crate::error::MeasurementError;
 use crate::heading::{Field, Heading};
 use crate::names::{Guess, Strength, assumed, guesses};
 use crate::quote::quoted;
-use crate::reading::ColumnUse;
+use crate::reading::{ColumnUse, ReadOptions};
 use crate::unit::{problem, unit};
 use bulge_muscles::units::UnitError;
 
@@ -47,7 +47,8 @@ impl Choice {
 }
 
 /// Decides, or says all that keeps it from deciding.
-pub(crate) fn assign(header: &Header, map: &ColumnMap) -> Result<Assignment, MeasurementError> {
+pub(crate) fn assign(header: &Header, options: &ReadOptions) -> Result<Assignment, MeasurementError> {
+    let map = &options.columns;
     let mut complaints = Vec::new();
     let (mut chosen, ignored) = stated(header, map, &mut complaints);
     let free = |place: &usize, chosen: &[Choice]| {
@@ -78,7 +79,8 @@ pub(crate) fn assign(header: &Header, map: &ColumnMap) -> Result<Assignment, Mea
         ("force", |field| field == Field::Force),
     ] {
         // A quantity that was complained of already isn't missing as well.
-        let is_there = chosen.iter().any(|choice| is_it(choice.guess.field));
+        let is_there = chosen.iter().any(|choice| is_it(choice.guess.field))
+            || (name == "force" && options.force_may_lack);
         if !is_there && !complaints.iter().any(|complaint: &MeasurementError| complaint.is_about(name)) {
             complaints.push(missing(header, name));
         }

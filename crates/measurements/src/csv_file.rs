@@ -45,7 +45,7 @@ pub(crate) fn read_text(
         units: layout.units.as_deref(),
         first: &layout.first,
     };
-    let assignment = assign(&header, &options.columns)?;
+    let assignment = assign(&header, options)?;
     // A guess from the header's length; too small costs a few copies, too large only address space.
     let rows =
         (text.len() / layout.names.iter().map(|name| name.len() + 1).sum::<usize>().max(1)).min(1 << 20);

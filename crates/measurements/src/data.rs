@@ -330,6 +330,18 @@ impl Data {
         &self.columns.force_n
     }
 
+    /// Whether every file has a column of force; without it forces are 0, where [`ReadOptions::force_may_lack`] lets such files in.
+    #[must_use]
+    pub fn has_force(&self) -> bool {
+        let uses = &self.reading.columns;
+        let has = |file: &SourceFile| {
+            let mut own = uses.iter().filter(|used| used.file == file.name).peekable();
+            // Columns of a program come without headings.
+            own.peek().is_none() || own.any(|used| used.quantity.as_deref() == Some("force"))
+        };
+        self.files.iter().all(has)
+    }
+
     /// Time of each row \[s\].
     #[must_use]
     pub fn time(&self) -> Option<&[f64]> {

@@ -51,6 +51,7 @@ mod tests {
 mod turning;
 mod unit;
 mod window;
+mod written;
 
 pub use cell_error::CellError;
 pub use column_map::{ColumnEntry, ColumnMap};
@@ -63,3 +64,4 @@ pub use reading::{ColumnUse, ReadOptions, Reading, SetApart};
 pub use repeats::{Offset, PureError, RepeatGroup, Repeats, Run};
 pub use source::SourceFile;
 pub use sweep::{Sweep, SweepKind};
+pub use written::{WrittenColumn, WrittenError, WrittenValues, to_csv, to_parquet, written};

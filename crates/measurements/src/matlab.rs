@@ -75,7 +75,7 @@ pub(crate) fn read(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Ta
         .map(|variable| variable.values.iter().take(3).map(ToString::to_string).collect())
         .collect();
     let header = Header { file, line: 1, names: &names, units: None, first: &first };
-    let assignment = assign(&header, &options.columns)?;
+    let assignment = assign(&header, options)?;
     let used = assignment
         .headings
         .into_iter()

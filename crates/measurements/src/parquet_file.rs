@@ -32,7 +32,7 @@ pub(crate) fn read<R: ChunkReader + 'static>(
     let schema = reader.metadata().file_metadata().schema_descr();
     let names: Vec<String> = schema.columns().iter().map(|column| column.path().string()).collect();
     let header = Header { file, line: 1, names: &names, units: None, first: &[] };
-    let assignment = assign(&header, &options.columns)?;
+    let assignment = assign(&header, options)?;
     let (mut places, mut slots) = (Vec::new(), Vec::new());
     for (place, heading) in assignment.headings.into_iter().enumerate() {
         if let Some(heading) = heading {

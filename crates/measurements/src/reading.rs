@@ -13,6 +13,9 @@ pub struct ReadOptions {
     /// Force over gauge pressure \[m^2\] of the muscle as stated, at contractions in ascending order: which unit a pressure has whose heading says
     /// none. Empty where it isn't known.
     pub pull: Vec<[f64; 2]>,
+    /// Whether a file may have no column of force: its forces are then 0, and [`crate::Data::has_force`] says so. Without forces sweeps are told by time,
+    /// labels and held pressures alone.
+    pub force_may_lack: bool,
 }
 
 /// What a column of a file was taken for.

@@ -189,5 +189,7 @@ pub(crate) fn columns(slots: Vec<Slot>) -> Columns {
             (_, Values::Numbers(_)) => {}
         }
     }
+    // A file without forces, where that was allowed.
+    found.force_n.resize(found.pressure_pa.len(), 0.0);
     found
 }

@@ -143,8 +143,7 @@ impl Model {
         all_or_none: bool,
         slots: &mut Slots,
     ) -> Result<(Prediction, Vec<(usize, RowError)>), ModelError> {
-        let (theta, asked) = (&*self.with_ties(theta), wanted);
-        let wanted = &*self.wanted_with_ties(asked);
+        let (theta, asked, wanted) = (&*self.with_ties(theta), wanted, &*self.wanted_with_ties(wanted));
         let counts = |row: usize| warm.is_none_or(|warm| warm.counts(row));
         let mut runs = self.runs(record, theta, &wanted.parameters, &counts, slots)?;
         for run in &mut runs {

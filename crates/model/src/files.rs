@@ -22,7 +22,12 @@ pub fn read_options(muscle: &Muscle, columns: Option<&ColumnMap>) -> Result<Read
         stated.add(quantity, column)?;
     }
     let columns = columns.map_or(stated.clone(), |columns| columns.clone().or(&stated));
-    Ok(ReadOptions { columns, l0_m: Some(muscle.length().si()), pull: pull(muscle) })
+    Ok(ReadOptions {
+        columns,
+        l0_m: Some(muscle.length().si()),
+        pull: pull(muscle),
+        ..ReadOptions::default()
+    })
 }
 
 /// Force over pressure at several contractions; those that the muscle has.

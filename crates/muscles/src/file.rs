@@ -3,6 +3,7 @@
 use crate::construction::{Braided, Construction, Ends, FibreCount, Kind, Pleated};
 use crate::error::MuscleError;
 use crate::file_error::FileError;
+use crate::fitted::fitted_in;
 use crate::instrument::{Instrument, Instruments};
 use crate::keys;
 use crate::material::{Bladder, Fibre, Unfolding};
@@ -118,6 +119,9 @@ impl<'a> Reader<'a> {
             for (quantity, _) in columns.names() {
                 muscle = muscle.with_data_column(quantity, columns.text(quantity)?.unwrap_or_default());
             }
+        }
+        if let Some(fitted) = fitted_in(&self.root)? {
+            muscle = muscle.with_fitted(fitted);
         }
         if let Some(specimens) = self.root.table("specimens", "`[specimens]`", &[])? {
             muscle = specimens_in(&specimens, muscle)?;

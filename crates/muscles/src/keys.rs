@@ -25,6 +25,7 @@ const TABLES: &[(&str, Keys)] = &[
             ("instruments", "instruments.force = { noise = \"4 N\" }"),
             ("specimens", "specimens.short = { length = \"60 mm\" }"),
             ("data", "data.columns = { force = \"F1 [N]\" }"),
+            ("fitted", "fitted = { error = \"4 N\", rows = 238 }"),
         ],
     ),
     (

@@ -55,7 +55,7 @@ impl Settings<'_> {
     }
 
     /// "4 N s", "4 N s +- 1 N s", or a plain number.
-    fn learnt_value(&self, key: &str, value: Setting<'_>) -> Result<LearntValue, FileError> {
+    pub(crate) fn learnt_value(&self, key: &str, value: Setting<'_>) -> Result<LearntValue, FileError> {
         let wrong = |what: String| {
             let instead = format!("write such as `{key} = \"4 N s\"` or `{key} = \"4 N s +- 1 N s\"`");
             self.error(value.span(), what, instead)

@@ -3,6 +3,7 @@
 use crate::construction::{Braided, Construction, Ends, FibreCount, Kind, Pleated};
 use crate::error::{MuscleError, check};
 use crate::file_error::FileError;
+use crate::fitted::FittedNumbers;
 use crate::instrument::Instruments;
 use crate::learnt::Learnt;
 use crate::material::{Bladder, Fibre, Unfolding};
@@ -48,6 +49,8 @@ pub struct Muscle {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) specimens: Vec<Specimen>,
     pub(crate) data_columns: Vec<(String, String)>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) fitted: Option<FittedNumbers>,
 }
 
 impl Muscle {
@@ -74,6 +77,7 @@ impl Muscle {
             widths: Vec::new(),
             specimens: Vec::new(),
             data_columns: Vec::new(),
+            fitted: None,
         };
         muscle.with_room()?.with_name(name)
     }

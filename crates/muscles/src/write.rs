@@ -1,6 +1,7 @@
 //! A muscle into TOML text that reads back as exactly the same muscle.
 
 use crate::construction::{Braided, Construction, Ends, FibreCount, Pleated};
+use crate::fitted;
 use crate::instrument::Instrument;
 use crate::muscle::Muscle;
 use crate::parameter::Parameter;
@@ -54,6 +55,7 @@ pub fn to_toml(muscle: &Muscle) -> String {
         };
         lines.extend(muscle.data_columns().iter().map(line));
     }
+    lines.extend(muscle.fitted().map(fitted::lines).unwrap_or_default());
     lines.push(String::new());
     lines.join("\n")
 }

@@ -286,6 +286,87 @@ fn numbers_are_held_bounded_and_tied() {
     assert!(failure(&call).1.contains("is held and bounded"));
 }
 
+/// Every row goes into a file, with what the ladder's ends say of it, and Bulge reads that file as it read the first.
+#[test]
+fn rows_are_written_and_read_again() {
+    let folder = Folder::new("rows");
+    let data = folder.write("data.csv", &(loops(TRUTH) + "200,6,0,10,3\n"));
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let compared = |data: &str, more: &[&str]| {
+        let call = ["compare", data, "--muscle", &muscle, "--with", "coulomb-friction", "--json"];
+        json(&[&call, more].concat())
+    };
+    let files = ["rows.csv", "rows.parquet"].map(|name| folder.path(name));
+    let first = compared(&data, &["--rows", &files[0]]);
+    assert_eq!(compared(&data, &["--rows", &files[1]]), first);
+    let text = std::fs::read_to_string(&files[0]).unwrap();
+    let mut lines = text.lines();
+    let heading = "file,line,sweep,specimen,counts,why,time [s],pressure [Pa],contraction [-],force [N],base force [N],model force [N],residual [N]";
+    assert_eq!(lines.next(), Some(heading));
+    let cells = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
+    let (mut square, mut rows) = (0.0, 0);
+    for (number, line) in lines.by_ref().take(200).enumerate() {
+        let cells = cells(line);
+        assert_eq!((cells[1].as_str(), cells[4].as_str()), ((number + 2).to_string().as_str(), "true"));
+        let [force, model, residual] = [9, 11, 12].map(|at| cells[at].parse::<f64>().unwrap());
+        assert_eq!((force - model).to_bits(), residual.to_bits());
+        (square, rows) = (square + residual * residual, rows + 1);
+    }
+    let found = (square / f64::from(rows)).sqrt();
+    assert!((found / rmse(&first, 1) - 1.0).abs() < 1e-9, "{found}");
+    let last = cells(lines.next().unwrap());
+    assert!(
+        last[4] == "false" && last[5].contains("no gauge pressure") && last[10..] == ["", "", ""],
+        "{last:?}"
+    );
+    for file in &files {
+        let again = compared(file, &[]);
+        assert_eq!(again["data"]["sweeps"], first["data"]["sweeps"]);
+        for rung in 0..2 {
+            assert!((rmse(&again, rung) / rmse(&first, rung) - 1.0).abs() < 1e-9, "{file}");
+        }
+    }
+    let (status, message) = failure(&["compare", &data, "--muscle", &muscle, "--rows", &data]);
+    assert!(status == 1 && message.contains("the data file, which is read"), "{message}");
+}
+
+/// What was learnt from one test predicts another, with or without a force in it.
+#[test]
+fn a_learnt_muscle_predicts_new_rows() {
+    let folder = Folder::new("predict");
+    let data = folder.write("data.csv", &loops(TRUTH));
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let learnt = folder.path("learnt.toml");
+    let with = "fibre-stretch,coulomb-friction";
+    let fit = bulge(&["fit", &data, "--muscle", &muscle, "--with", with, "--out", &learnt]);
+    assert!(fit.status.success());
+    let file = folder.path("predicted.csv");
+    let found = json(&["predict", &data, "--muscle", &learnt, "--out", &file, "--json"]);
+    assert_eq!((found["schema"].as_str(), found["rows"].as_u64()), (Some("bulge.prediction/1"), Some(200)));
+    let coverage = found["against"]["coverage"].as_f64().unwrap();
+    assert!(coverage > 0.9 && found["against"]["rmse_n"].as_f64().unwrap() < 0.01, "{}", found["against"]);
+    assert_eq!(found["uncertain"].as_array().unwrap().len(), 2);
+    let heading = std::fs::read_to_string(&file).unwrap().lines().next().unwrap().to_owned();
+    let ending = "pressure [Pa],contraction [-],force [N],model force [N],model uncertainty [N],low [N],high [N],residual [N]";
+    assert!(heading.ends_with(ending), "{heading}");
+    // The same rows without their force.
+    let bare: String =
+        loops(TRUTH).lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n").collect();
+    let bare = folder.write("bare.csv", &bare);
+    let again = json(&["predict", &bare, "--muscle", &learnt, "--json"]);
+    assert_eq!(again["columns"]["force_n"], found["columns"]["force_n"]);
+    assert!(again["against"].is_null() && again["columns"]["measured_n"].is_null());
+    let told = String::from_utf8(bulge(&["predict", &bare, "--muscle", &learnt]).stdout).unwrap();
+    assert!(
+        told.contains("200 of 200 rows have a state") && told.contains("no force to compare with"),
+        "{told}"
+    );
+    let (status, message) = failure(&["compare", &bare, "--muscle", &learnt]);
+    assert!(status == 1 && message.contains("force"), "{message}");
+    let (status, message) = failure(&["predict", &data, "--muscle", &learnt, "--out", &learnt]);
+    assert!(status == 1 && message.contains("the muscle file, which is read"), "{message}");
+}
+
 /// A base is there to be wrong: a muscle that would push where this one pulls is compared all the same, and that is said.
 #[test]
 fn a_base_that_would_push_is_shown_with_a_warning() {

@@ -10,6 +10,8 @@ mod joint;
 mod membrane;
 mod next;
 mod plan;
+mod schema;
+mod schemas;
 mod simulate;
 mod size;
 mod support;

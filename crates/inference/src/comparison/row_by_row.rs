@@ -1,5 +1,6 @@
 //! A comparison row by row: what was read, what the base and the last rung say of it, and whether it counts.
 
+use bulge_measurements::{WrittenColumn, WrittenValues};
 use bulge_model::{Wanted, Warm};
 use serde::Serialize;
 
@@ -34,8 +35,12 @@ pub struct Rows {
     pub counts: Vec<bool>,
     /// Place of the reason in `reasons`, of rows that don't count.
     pub reason: Vec<Option<u32>>,
+    /// Whether the rows follow each other; else they are a static map, and sweeps mean nothing.
+    pub is_path: bool,
     /// Time as read \[s\], where there is any.
     pub time_s: Option<Vec<f64>>,
+    /// Temperature as read \[K\], where there is any.
+    pub temperature_k: Option<Vec<f64>>,
     /// Gauge pressure as read \[Pa\].
     pub pressure_pa: Vec<f64>,
     /// Contraction as read, 1 - l/l0 where the length was read.
@@ -75,7 +80,9 @@ impl Rows {
             specimen: moments.iter().map(|moment| moment.specimen).collect(),
             counts: used.mask.clone(),
             reason: used.reason.clone(),
+            is_path: data.is_path(),
             time_s: data.time().map(<[f64]>::to_vec),
+            temperature_k: data.temperature().map(<[f64]>::to_vec),
             pressure_pa: moments.iter().map(|moment| moment.pressure).collect(),
             contraction: moments.iter().map(|moment| moment.contraction).collect(),
             direction: moments.iter().map(bulge_effects::Moment::branch).collect(),
@@ -95,6 +102,38 @@ impl Rows {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.counts.is_empty()
+    }
+
+    /// The columns of a file that Bulge reads again, in SI units; [`bulge_measurements::written`] makes its bytes.
+    #[must_use]
+    pub fn columns(&self) -> Vec<WrittenColumn<'_>> {
+        let numbers = WrittenValues::numbers;
+        let mut columns = vec![
+            ("file", WrittenValues::names(&self.files, &self.file)),
+            ("line", WrittenValues::Counts(&self.line)),
+        ];
+        // With a sweep a row would be one of a path.
+        if self.is_path {
+            columns.push(("sweep", WrittenValues::names(&self.sweeps, &self.sweep)));
+        }
+        columns.extend([
+            ("specimen", WrittenValues::names(&self.specimens, &self.specimen)),
+            ("counts", WrittenValues::Flags(&self.counts)),
+            ("why", WrittenValues::Names(&self.reasons, self.reason.clone())),
+        ]);
+        columns.extend(self.time_s.as_deref().map(|time| ("time [s]", numbers(time))));
+        columns.extend([
+            ("pressure [Pa]", numbers(&self.pressure_pa)),
+            ("contraction [-]", numbers(&self.contraction)),
+        ]);
+        columns.extend(self.temperature_k.as_deref().map(|t| ("temperature [K]", numbers(t))));
+        columns.extend([
+            ("force [N]", numbers(&self.measured_n)),
+            ("base force [N]", numbers(&self.base_n)),
+            ("model force [N]", numbers(&self.model_n)),
+            ("residual [N]", WrittenValues::Numbers(self.residual_n().into())),
+        ]);
+        columns.into_iter().map(|(heading, values)| WrittenColumn { heading, values }).collect()
     }
 
     /// Measured force less that of the model with the effects \[N\]; NaN where that has no state.
@@ -134,7 +173,7 @@ fn difference(measured: &[f64], model: &[f64]) -> Vec<f64> {
     measured.iter().zip(model).map(|(measured, model)| measured - model).collect()
 }
 
-fn short(number: usize) -> u32 {
+pub(crate) fn short(number: usize) -> u32 {
     // Files of more rows aren't read: their lines are numbers of this kind.
     u32::try_from(number).unwrap_or(u32::MAX)
 }

@@ -2,7 +2,7 @@
 
 use bulge_effects::{Group, learnt};
 use bulge_model::{Chosen, Model, ModelError, ModelParameter};
-use bulge_muscles::{Muscle, SHAPE_EFFECTS, units};
+use bulge_muscles::{Dimension, FittedNumber, FittedNumbers, LearntValue, Muscle, SHAPE_EFFECTS, units};
 
 use crate::fit::document::{Fit, Fitted};
 
@@ -54,7 +54,56 @@ pub fn extended(model: &Model, fit: &Fit) -> Result<Extension, ModelError> {
         extension.muscle = put(&extension.muscle, chosen, &numbers, &widths)?;
         extension.written.push(name);
     }
+    let fitted = fitted_numbers(model, fit, &extension.written);
+    extension.muscle = extension.muscle.with_fitted(fitted);
     Ok(extension)
+}
+
+/// What the fit knows of the numbers of the effects that were written, and what the muscle file knew of others before: those are as known as they were.
+fn fitted_numbers(model: &Model, fit: &Fit, written: &[String]) -> FittedNumbers {
+    let sources: Vec<usize> = fit.parameters.iter().filter_map(|found| place_of(model, found)).collect();
+    let mut own: Vec<usize> = Vec::new();
+    let mut numbers: Vec<FittedNumber> = Vec::new();
+    for (place, p) in model.parameters().iter().enumerate().filter(|(_, p)| written.contains(&p.effect)) {
+        let (si, Some(sd)) = stated(model, fit, place) else { continue };
+        let Some(source) = sources.iter().position(|source| *source == p.tied.unwrap_or(place)) else {
+            continue;
+        };
+        let value = LearntValue {
+            key: p.key.clone(),
+            si,
+            dimension: units::unit(&p.unit).map_or(Dimension::NONE, |(_, dimension)| dimension),
+            unit: p.unit.clone(),
+            width: Some(sd),
+        };
+        let correlations = own.iter().map(|other| correlation(fit, source, *other)).collect();
+        numbers.push(FittedNumber { effect: p.effect.clone(), value, correlations });
+        own.push(source);
+    }
+    let count = numbers.len();
+    let before = model.muscle().fitted().cloned().unwrap_or_default();
+    let others = before.keeping(|number| !written.contains(&number.effect));
+    numbers.extend(others.numbers.into_iter().map(|mut number| {
+        number.correlations.splice(0..0, std::iter::repeat_n(0.0, count));
+        number
+    }));
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a number of rows")]
+    let rows = fit.effective_rows.round() as u64;
+    FittedNumbers { error_n: units::rounded(fit.rmse_n, 4), rows, numbers }
+}
+
+/// To four digits: what is read in a file should not pretend to be exact.
+fn correlation(fit: &Fit, one: usize, other: usize) -> f64 {
+    let found = fit.correlations.get(one * fit.parameters.len() + other).copied().unwrap_or(0.0);
+    if one == other { 1.0 } else { units::rounded(found, 4).clamp(-1.0, 1.0) }
+}
+
+/// The place of a fitted number in the model.
+fn place_of(model: &Model, fitted: &Fitted) -> Option<usize> {
+    model
+        .parameters()
+        .iter()
+        .position(|p| fitted.effect == p.effect && fitted.name == p.name && fitted.specimen == p.specimen)
 }
 
 /// Value and standard deviation \[SI\] of a number; one that was held has its value alone, one that is tied those of the other.

@@ -40,7 +40,7 @@ impl Scale {
 }
 
 /// Quantile 0.975 of Student's t.
-fn quantile(freedom: f64) -> f64 {
+pub(crate) fn quantile(freedom: f64) -> f64 {
     StudentsT::new(0.0, 1.0, freedom.max(1.0))
         .map_or(1.959_964, |t| t.inverse_cdf(0.975))
         .clamp(1.959_964, 12.71)

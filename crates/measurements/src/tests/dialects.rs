@@ -21,7 +21,7 @@ pub(super) const ROWS: [[&str; 4]; 5] = [
 
 pub(super) fn options(columns: &str) -> ReadOptions {
     let columns = if columns.is_empty() { ColumnMap::default() } else { columns.parse().unwrap() };
-    ReadOptions { columns, l0_m: Some(0.3), pull: Vec::new() }
+    ReadOptions { columns, l0_m: Some(0.3), ..ReadOptions::default() }
 }
 
 #[track_caller]

@@ -1,0 +1,121 @@
+//! `bulge predict`: a (learnt) muscle on new rows.
+
+use bulge_inference::{Predicted, predict};
+use bulge_measurements::written;
+use clap::Args;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use crate::arguments;
+use crate::data::{DataArguments, told};
+use crate::failure::Failure;
+use crate::files::{self, Named};
+use crate::text::significant;
+
+/// The force of new rows: the muscle with the effects that its file states (`bulge fit` writes one), with intervals, and with residuals where a force was measured.
+#[derive(Debug, Args)]
+pub(crate) struct PredictCommand {
+    #[command(flatten)]
+    data: DataArguments,
+    /// A muscle file, such as a learnt one, or the name of a shipped muscle
+    #[arg(long)]
+    muscle: String,
+    /// Your own effects, as expressions in a TOML file
+    #[arg(long, value_name = "FILE")]
+    effects: Option<PathBuf>,
+    /// File for all rows, CSV or Parquet by its ending; "-" is standard output
+    #[arg(long, value_name = "FILE.csv|.parquet")]
+    out: Option<PathBuf>,
+    /// One JSON document on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl PredictCommand {
+    pub(crate) fn run(&self) -> Result<String, Failure> {
+        self.check_files()?;
+        let catalogue = arguments::catalogue(self.effects.as_deref())?;
+        let muscle = arguments::muscle(&self.muscle)?;
+        let data = self.data.read_with_or_without_force(&muscle)?;
+        let found = predict(&data, &muscle, &catalogue)?;
+        let mut wrote = String::new();
+        if let Some(path) = &self.out {
+            files::write(path, &written(path, &found.written_columns())?)?;
+            let _ = writeln!(wrote, "\n  wrote {}", path.display());
+        }
+        if self.json {
+            return Ok(serde_json::to_string_pretty(&found)? + "\n");
+        }
+        Ok(format!("{}{}{wrote}", told(data.reading()), text(&found)))
+    }
+
+    /// Refuses a file that could not be written, or that would be written over what is read.
+    fn check_files(&self) -> Result<(), Failure> {
+        let Some(out) = &self.out else { return Ok(()) };
+        let muscle = ("the muscle file", Path::new(&self.muscle));
+        let data = self.data.data.iter().map(|path| ("the data file", path.as_path()));
+        let own = self.effects.as_deref().map(|path| ("the file of --effects", path));
+        let read: Vec<Named<'_>> = data.chain(own).chain([muscle]).collect();
+        files::are_apart(&[("--out", out)], &read)?;
+        files::can_be_written(out)
+    }
+}
+
+/// The prediction for people: what it is like as a whole, rows being in the file.
+fn text(found: &Predicted) -> String {
+    let three = |value: f64| significant(value, 3);
+    let mut out = format!("{} predicted on {}\n\n", found.muscle, found.files.join(", "));
+    let forces = found.columns.force_n.iter().filter(|force| force.is_finite());
+    let [low, high] = forces.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], f| [l.min(*f), h.max(*f)]);
+    let with = found.rows - found.without_state.as_ref().map_or(0, |left| left.rows);
+    let range = if with > 0 { format!(", {} to {} N", three(low), three(high)) } else { String::new() };
+    let _ = writeln!(out, "  {with} of {} rows have a state{range}", found.rows);
+    if let Some(left) = &found.without_state {
+        let _ = writeln!(out, "  without a state: {} rows (line {}): {}", left.rows, left.lines, left.why);
+    }
+    if let Some(sd) = found.reading_sd_n {
+        let _ = writeln!(
+            out,
+            "  95 % intervals of a reading: its scatter of {} N, and the doubt about",
+            three(sd)
+        );
+    }
+    let width = found.uncertain.iter().map(|n| n.effect.len() + n.name.len()).max().unwrap_or(0) + 1;
+    for number in &found.uncertain {
+        let unit = if number.unit == "1" { "" } else { &number.unit };
+        let _ = writeln!(
+            out,
+            "    {:<width$}  {} +- {} {unit} ({}): {} N",
+            format!("{} {}", number.effect, number.name),
+            significant(number.value, 4),
+            significant(number.sd, 2),
+            number.from,
+            three(number.moves_n)
+        );
+    }
+    for left in &found.left_out {
+        let _ = writeln!(out, "  not compared: {} rows (line {}): {}", left.rows, left.lines, left.why);
+    }
+    match &found.against {
+        Some(against) => {
+            let coverage = against
+                .coverage
+                .map_or_else(String::new, |share| format!(", {:.1} % within their intervals", 100.0 * share));
+            let _ = writeln!(
+                out,
+                "  against {} measured forces: RMS error {} N, mean {} N{coverage}",
+                against.rows,
+                three(against.rmse_n),
+                three(against.bias_n)
+            );
+        }
+        None if found.columns.measured_n.is_none() => {
+            let _ = writeln!(out, "  the data have no force to compare with");
+        }
+        None => {}
+    }
+    for warning in &found.warnings {
+        let _ = writeln!(out, "  ! {warning}");
+    }
+    out
+}
