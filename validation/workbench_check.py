@@ -147,8 +147,9 @@ class Server:
 
     def __enter__(self):
         self.process = subprocess.Popen(
-            [self.program, "open", str(self.tour / "braid-loops.csv"), "--muscle", str(self.tour / "braid.toml"), "--no-browser"],
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            # In the folder of the tour: screenshots show the command line.
+            [Path(self.program).resolve(), "open", "braid-loops.csv", "--muscle", "braid.toml", "--no-browser"],
+            cwd=self.tour, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         )
         for line in self.process.stdout:
             if "http://127.0.0.1:" in line:
