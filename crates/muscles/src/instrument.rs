@@ -1,6 +1,7 @@
 //! How well the rig measures: standard deviations from the data sheets of its instruments.
 
 use crate::error::MuscleError;
+use crate::muscle::Muscle;
 use crate::quantity::Ratio;
 use serde::Serialize;
 
@@ -59,6 +60,21 @@ impl Instrument {
     #[must_use]
     pub fn gain(&self) -> Ratio {
         self.gain
+    }
+}
+
+impl Muscle {
+    /// The same on other instruments.
+    #[must_use]
+    pub fn with_instruments(mut self, instruments: Instruments) -> Self {
+        self.instruments = instruments;
+        self
+    }
+
+    /// The instruments of the rig.
+    #[must_use]
+    pub fn instruments(&self) -> &Instruments {
+        &self.instruments
     }
 }
 

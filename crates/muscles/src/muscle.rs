@@ -44,7 +44,7 @@ pub struct Muscle {
     unfolding: Option<Unfolding>,
     gas_wall: Option<GasWall>,
     pub(crate) learnt: Vec<Learnt>,
-    instruments: Instruments,
+    pub(crate) instruments: Instruments,
     widths: Vec<(Parameter, f64)>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) specimens: Vec<Specimen>,
@@ -167,13 +167,6 @@ impl Muscle {
         if let Construction::Braided(braided) = &self.construction {
             self.construction = Construction::Braided(braided.with_ends(ends));
         }
-        self
-    }
-
-    /// The same on other instruments.
-    #[must_use]
-    pub fn with_instruments(mut self, instruments: Instruments) -> Self {
-        self.instruments = instruments;
         self
     }
 
@@ -365,12 +358,6 @@ impl Muscle {
     /// Names the first one with its place in the file and the nearest known name.
     pub fn check_learnt(&self, known: &[&str]) -> Result<(), FileError> {
         self.learnt.iter().try_for_each(|effect| effect.check(known))
-    }
-
-    /// The instruments of the rig.
-    #[must_use]
-    pub fn instruments(&self) -> &Instruments {
-        &self.instruments
     }
 
     /// Stated widths ("110 mm +- 0.2 mm"): one standard deviation each in SI, in the order of [`Parameter::ALL`].

@@ -80,6 +80,7 @@ pub struct Plot {
 /// #     half_gap_rmse_n: None,
 /// #     without_state: None,
 /// #     fit: None,
+/// #     held: Vec::new(),
 /// # };
 /// # let data = DataSummary {
 /// #     rows: 2,
