@@ -115,7 +115,7 @@ class Page(Browser):
         self.do(f"/element/{self.find(selector)}/click", {})
 
     def choose(self, selector, path):
-        self.do(f"/element/{self.find(selector)}/value", {"text": str(path)})
+        self.do(f"/element/{self.find(selector)}/value", {"text": str(Path(path).resolve())})
 
     def text(self, selector):
         return self.run(f"return (document.querySelector({json.dumps(selector)}) || {{}}).textContent || ''")
