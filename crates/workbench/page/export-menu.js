@@ -10,6 +10,7 @@ const DOCUMENTS = [
   ["Report (HTML)", "api/report", null],
   ["Report of the diagnosis", "api/diagnosis-report", null],
   ["Muscle with what was learnt (TOML)", "api/learnt.toml", "learnt.toml"],
+  ["Rows with residuals (CSV)", "api/rows.csv", "rows.csv"],
   ["Comparison (JSON)", "api/comparison.json", "comparison.json"],
   ["Diagnosis (JSON)", "api/diagnosis.json", "diagnosis.json"],
 ];

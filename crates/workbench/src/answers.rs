@@ -4,9 +4,11 @@ use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use bulge_effects::{CardDocument, Catalogue, Effect, Known, known};
 use bulge_inference::{Comparison, Diagnosis, fit_effects};
+use bulge_measurements::written;
 use bulge_muscles::{Muscle, PRESETS, from_toml};
 use bulge_report::Learnt;
 use serde::Serialize;
+use std::path::Path;
 use std::sync::{Arc, PoisonError};
 use tokio::sync::oneshot;
 
@@ -59,6 +61,14 @@ pub(crate) async fn rows(workbench: &Workbench) -> Result<Response, Refusal> {
     let asked = asked(workbench)?;
     let found = ask(&workbench.quick, &asked, asked.effects.clone(), Question::Rows).await?;
     let bytes = rows::bytes(&asked.inputs, &found, asked.revision).map_err(Refusal::at(Place::Request))?;
+    Ok(([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
+}
+
+/// The same as a file that Bulge reads again; its name says of which kind.
+pub(crate) async fn rows_file(workbench: &Workbench, name: &'static str) -> Result<Response, Refusal> {
+    let asked = asked(workbench)?;
+    let found = ask(&workbench.quick, &asked, asked.effects.clone(), Question::Rows).await?;
+    let bytes = written(Path::new(name), &found.columns()).map_err(Refusal::at(Place::Request))?;
     Ok(([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
 }
 

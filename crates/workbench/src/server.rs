@@ -136,6 +136,8 @@ async fn api(workbench: Arc<Workbench>, call: &str, parts: &Parts, body: Body) -
             json(&*answers::comparison(&workbench, held_out).await?)
         }
         ("GET", "rows") => answers::rows(&workbench).await,
+        ("GET", "rows.csv") => answers::rows_file(&workbench, "rows.csv").await,
+        ("GET", "rows.parquet") => answers::rows_file(&workbench, "rows.parquet").await,
         ("GET", "effects") => json(&answers::effects(&workbench).await?),
         ("POST", "effects/check") => json(&answers::checked_effects(&text(body).await?)?),
         ("GET", "muscles") => json(&answers::muscles()),

@@ -291,6 +291,14 @@ fn rows_have_the_error_of_the_ladder_and_can_be_excluded() {
     assert!(rmse(&after).1 == 747 && column(&after, "state")[10..13] == [-1.0; 3]);
     let left_out = page.get("comparison?held_out=0").json()["data"]["left_out"].to_string();
     assert!(left_out.contains("excluded by hand"), "{left_out}");
+    // As a file they are measurements again, with the same error.
+    let file =
+        Data::from_bytes(&page.get("rows.csv").body, "rows.csv", &bulge_measurements::ReadOptions::default())
+            .unwrap();
+    assert!(
+        file.len() == 750
+            && file.force()[100].to_bits() == Data::from_csv(DATA, "a").unwrap().force()[100].to_bits()
+    );
     let (place, error) = page.put(&json!({"excluded": (0..750).collect::<Vec<_>>()})).refusal();
     assert!(place == "excluded" && error.contains("all rows"), "{error}");
 }
