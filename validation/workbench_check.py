@@ -260,6 +260,8 @@ class Story:
         page.choose("#file", file)
         page.wait("!document.querySelector('#columns-error').hidden && document.querySelector('#columns tr[data-column=five]')", "it is asked which column is which")
         self.expect("what was drawn stays, and is shown to be older", page.run("return document.body.dataset.stale") == "true")
+        self.expect("no number of the older data stands in the headline", page.text("#error-ladder") == "–" and page.text("#floor") == "–", page.text("#error-ladder"))
+        self.expect("the reason stands above the plots", page.run("return !document.querySelector('#problem').hidden") and "pressure" in page.text("#problem"), page.text("#problem"))
         for heading, quantity in (("one", "time"), ("two", "sweep"), ("three", "pressure"), ("four", "contraction"), ("five", "force")):
             page.run(f"document.querySelector('#columns tr[data-column={heading}] .link').click()")
             page.run(f"const s = document.querySelector('#columns .editor select'); s.value = '{quantity}'; s.dispatchEvent(new Event('change'))")
@@ -271,6 +273,20 @@ class Story:
         for _ in range(6):
             page.click("#undo")
             page.wait("document.body.dataset.state !== 'busy'", "a step back")
+        page.wait("document.querySelector('#data-name').textContent === 'braid-loops.csv'", "undo brings the old file back")
+        page.settle()
+
+    def specimens(self):
+        """Specimens whose sweeps have the same names are drawn, each in its own colour."""
+        page = self.page
+        head, *rows = [line for line in (self.tour / "braid-loops.csv").read_text().splitlines() if not line.startswith("#")]
+        file = self.folder / "specimens.csv"
+        file.write_text("\n".join(["specimen," + head, *(f"{name},{row}" for name in "AB" for row in rows[:300])]) + "\n")
+        page.choose("#file", file)
+        page.wait("document.querySelector('#data-name').textContent === 'specimens.csv'", "the file is taken")
+        page.settle()
+        self.expect("several specimens are drawn", page.run("return document.querySelector('#banner').hidden && !document.body.dataset.stale") and page.error() > 0, page.text("#banner"))
+        page.click("#undo")
         page.wait("document.querySelector('#data-name').textContent === 'braid-loops.csv'", "undo brings the old file back")
         page.settle()
 
@@ -339,11 +355,10 @@ class Story:
         page.wait("document.querySelector('#excluded')", "rows are excluded")
         page.settle()
         self.expect("excluded rows stand beside the data", "excluded" in page.text("#excluded"), rows)
-        page.click("#bring-back")
+        page.click("#excluded button")
         page.wait("!document.querySelector('#excluded')", "rows are back")
         page.settle()
         self.expect("brought back, the error is the same", abs(page.error() - before) < 1e-6 * before, (before, page.error()))
-        page.click("#clear-selection")
         page.click("[data-tool=pan]")
 
     def diagnose(self):
@@ -369,8 +384,12 @@ class Story:
         page.wait("!document.querySelector('#preview')", "the preview is gone")
         page.settle()
         self.expect("a discarded preview leaves nothing", page.error() == base, page.error())
+        # Accepted out of a preview, the claim stays and the preview goes.
+        page.click("#show-all, [data-show]")
+        page.wait("document.querySelector('#preview')", "the claim is shown again")
+        page.settle()
         page.click("#accept-all, [data-accept]")
-        page.wait("document.querySelectorAll('#ladder .rung').length > 1", "the claim is accepted")
+        page.wait("!document.querySelector('#preview') && document.querySelectorAll('#ladder .rung').length > 1", "the claim is accepted")
         page.settle()
         self.expect("with what was found the error is near the noise", page.error() < 0.05 * base, page.error())
 
@@ -450,7 +469,7 @@ def play(page, checks, arguments, address, folder):
     story.part("it starts over", story.start_over)
     for what, part in (
         ("hostile names", story.hostile), ("a file is read", story.drop), ("a column is mapped", story.map_column),
-        ("columns are assigned", story.assign), ("another tab", story.elsewhere), ("effects are switched", story.switch), ("a number is held", story.hold),
+        ("columns are assigned", story.assign), ("specimens", story.specimens), ("another tab", story.elsewhere), ("effects are switched", story.switch), ("a number is held", story.hold),
         ("rows are brushed", story.look_closely), ("it is diagnosed", story.diagnose), ("undo, redo, reload", story.undo), ("bad input", story.bad_input),
     ):
         story.part(what, part)

@@ -43,7 +43,8 @@ export function bySweep(rows) {
   /** @type {number[][]} */
   const lists = Array.from({ length: colours }, () => []);
   for (let i = 0; i < rows.count; i += 1) if (state[i] === 1) lists[bucket(sweep[i])].push(i);
-  const groups = lists.map((list, i) => ({ name: `sweep ${rows.sweeps[i] ?? i + 1}`, colour: sweepColour(i, colours), rows: Uint32Array.from(list) }));
+  // By number: sweeps of several files or specimens may have the same name.
+  const groups = lists.map((list, i) => ({ name: `sweep ${i}`, colour: sweepColour(i, colours), rows: Uint32Array.from(list) }));
   return [...groups, ...aside(rows)].filter((group) => group.rows.length);
 }
 

@@ -68,6 +68,7 @@ export function startDataPanel() {
     if (why !== "refused") draw();
   });
   on("documents", draw);
+  on("outdated", draw);
   input("file").addEventListener("change", () => {
     const file = input("file").files?.[0];
     if (file) void take(file);

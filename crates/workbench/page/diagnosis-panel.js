@@ -116,7 +116,7 @@ function fillPanel() {
   fill(
     panel, isStale ? h("p", { class: "remark" }, "Data or muscle have changed since this diagnosis.") : null,
     preview ? previewBox(preview) : null,
-    ...verdict(found, { has: (name) => state.effects.some((effect) => effect.name === name), accept, tryInstead, showMe }),
+    ...verdict(found, { has: isKept, accept, tryInstead, showMe }),
     h("div", { class: "row end" }, h("button", { type: "button", id: "diagnose-again", class: "primary", onclick: () => void run() }, "Go on: diagnose again with what is on"), h("a", { href: "api/diagnosis-report", target: "_blank", rel: "noopener", class: "button small" }, "Report")),
   );
 }
@@ -141,6 +141,9 @@ function cancel() {
 
 /** @param {ChosenEffect[]} effects @param {string[]} names those that it lacks, behind it */
 const withNames = (effects, names) => [...effects, ...names.filter((name) => !effects.some((effect) => effect.name === name)).map((name) => ({ name }))];
+
+/** Whether the model has an effect beyond a preview. @param {string} name */
+const isKept = (name) => (preview?.before ?? state.effects).some((effect) => effect.name === name);
 
 /** @param {string[]} names */
 async function accept(names) {
@@ -183,6 +186,8 @@ async function endPreview(isKept) {
 export function startDiagnosis() {
   button("diagnose").addEventListener("click", () => (running ? showTab("diagnosis") : void run()));
   on("session", () => {
+    // An undo, or a switch, may take a preview away.
+    if (preview && !preview.names.every((name) => state.effects.some((effect) => effect.name === name))) preview = null;
     draw();
     if (state.session) void restore(state.session);
   });

@@ -4,6 +4,7 @@
 import { byId, download, fill, h } from "./dom.js";
 import { named } from "./plots.js";
 import { asPng, asSvg } from "./save-plot.js";
+import { on, state } from "./store.js";
 
 /** @type {[string, string, string | null][]} */
 const DOCUMENTS = [
@@ -44,7 +45,17 @@ export function startExport() {
     leave();
     savePlots(kind);
   } }, `All plots (${kind.toUpperCase()})`));
-  fill(menu, ...links, ...plots);
+  // What the printed command names.
+  const own = /** @type {[string, string, () => string | null | undefined][]} */ ([
+    ["Muscle as it stands (TOML)", "muscle.toml", () => state.session?.muscle.toml], ["Effects of your own (TOML)", "effects.toml", () => state.session?.own_effects],
+  ]).map(([says, file, text]) => h("button", { type: "button", role: "menuitem", tabindex: -1, "data-export": file, onclick: () => {
+    leave();
+    download(new Blob([text() ?? ""], { type: "text/plain" }), file);
+  } }, says));
+  on("session", () => {
+    own[1].hidden = !state.session?.own_effects;
+  });
+  fill(menu, ...links, ...own, ...plots);
   opener.addEventListener("click", () => setOpen(Boolean(menu.hidden)));
   menu.addEventListener("keydown", (event) => {
     const items = /** @type {HTMLElement[]} */ ([...menu.children]).filter((one) => one.offsetParent);

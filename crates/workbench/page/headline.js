@@ -18,7 +18,12 @@ function draw() {
     button("undo").disabled = !session.can_undo;
     button("redo").disabled = !session.can_redo;
   }
-  if (!comparison) return;
+  if (!comparison) {
+    fill(byId("error-ladder"), "–");
+    byId("floor").textContent = "–";
+    byId("held-out").textContent = "–";
+    return;
+  }
   const rungs = comparison.ladder.filter((rung) => Number.isFinite(rung.rmse_n));
   const shown = rungs.length > MOST ? [rungs[0], null, ...rungs.slice(-3)] : rungs;
   const parts = shown.flatMap((rung, i) => {
@@ -48,6 +53,7 @@ function drawHeldOut() {
 export function startHeadline() {
   on("session", draw);
   on("documents", draw);
+  on("outdated", draw);
   on("held-out", draw);
   byId("undo").addEventListener("click", () => void step("undo"));
   byId("redo").addEventListener("click", () => void step("redo"));

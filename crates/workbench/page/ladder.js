@@ -10,7 +10,11 @@ const MOST_DECADES = 4;
 
 function draw() {
   const comparison = state.comparison;
-  if (!comparison) return;
+  if (!comparison) {
+    fill(byId("ladder"));
+    fill(byId("warnings"));
+    return;
+  }
   const { ladder } = comparison;
   const floor = comparison.noise_floor?.sd_n ?? null;
   const values = ladder.flatMap((rung) => [rung.rmse_n, rung.held_out_rmse_n]).concat(floor).filter((v) => v !== null && Number.isFinite(v) && v > 0);
@@ -66,6 +70,7 @@ function goTo(rung) {
 
 export function startLadder() {
   const again = () => keepingFocus(byId("ladder"), draw);
+  on("outdated", draw);
   on("documents", again);
   on("held-out", again);
 }

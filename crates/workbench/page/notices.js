@@ -43,9 +43,17 @@ export function startNotices() {
     broken();
   });
   addEventListener("unhandledrejection", broken);
-  on("refused", ({ says, where }) => {
+  on("refused", ({ says, where, blocks }) => {
+    // Where nothing can be computed the reason stands above the plots, whatever part of the page is in front.
+    if (blocks) {
+      byId("problem").textContent = withoutExcerpt(says);
+      byId("problem").hidden = false;
+    }
     if (PLACES[where]) showAt(where, says);
     else if (where !== "own_effects") notice(says, 10_000);
+  });
+  on("documents", () => {
+    byId("problem").hidden = true;
   });
   on("session", (why) => {
     if (why !== "refused") for (const where of Object.keys(PLACES)) showAt(where, "");

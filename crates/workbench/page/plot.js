@@ -73,9 +73,12 @@ export class Plot {
   /** @param {Content} content @param {boolean} [isNew] whether a zoom into what was there before is left */
   show(content, isNew = false) {
     this.content = content;
+    // Rows that don't count, such as spikes, would make all others small.
+    const counting = content.groups.filter((group) => !group.isAside).map((group) => group.rows);
+    const of = (/** @type {ArrayLike<number>} */ values) => (counting.length ? counting.map((rows) => at(values, rows)) : [values]);
     this.home = {
-      x: around([content.x.values, content.extraX ?? []], content.x.isLog),
-      y: around([content.y.values, ...(content.extra ?? [])], content.y.isLog),
+      x: around([...of(content.x.values), content.extraX ?? []], content.x.isLog),
+      y: around([...of(content.y.values), ...(content.extra ?? []).flatMap(of)], content.y.isLog),
     };
     if (content.zero && !content.y.isLog) {
       const { low, high } = this.home.y;
@@ -261,6 +264,9 @@ export class Plot {
     this.marker.setAttribute("cy", py.toFixed(1));
   }
 }
+
+/** @param {ArrayLike<number>} values @param {ArrayLike<number>} rows */
+const at = (values, rows) => Float64Array.from(rows, (row) => values[row]);
 
 /** @param {ArrayLike<number>} values */
 function hasNoLog(values) {

@@ -86,11 +86,18 @@ function drawAgainst() {
   choice.value = against;
 }
 
+/** Each plot by itself: one that fails leaves the others as they should be. */
 function drawAll() {
-  drawForce();
-  drawMap();
-  drawAgainst();
-  drawSweeps();
+  /** @type {unknown} */
+  let failure = null;
+  for (const one of [drawForce, drawMap, drawAgainst, drawSweeps]) {
+    try {
+      one();
+    } catch (error) {
+      failure ??= error;
+    }
+  }
+  if (failure) throw failure;
 }
 
 /** What was measured changes with the data and the rows that count, not with the model. */

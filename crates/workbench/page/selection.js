@@ -70,7 +70,11 @@ function showBox() {
 
 export function startSelection() {
   byId("exclude").addEventListener("click", () => {
-    void change((now) => ({ excluded: [...new Set([...now.excluded, ...selected])].sort((a, b) => a - b) }));
+    const those = selected;
+    void change((now) => ({ excluded: [...new Set([...now.excluded, ...those])].sort((a, b) => a - b) })).then((isTaken) => {
+      // Marked rows would hide that they are out.
+      if (isTaken) selectRows([]);
+    });
   });
   byId("bring-back").addEventListener("click", () => {
     const those = new Set(selected);

@@ -7,7 +7,7 @@ import { get, getRows, isAborted, Lost, post, putSession, Refusal } from "./api.
 /** @typedef {import("./types.js").Rows} Rows */
 /** @typedef {import("./types.js").Comparison} Comparison */
 /** @typedef {import("./types.js").Card} Card */
-/** @typedef {"session" | "documents" | "held-out" | "cards" | "selection" | "hover" | "theme" | "view" | "refused" | "lost" | "found" | "busy" | "numbers"} Topic */
+/** @typedef {"session" | "documents" | "held-out" | "cards" | "selection" | "hover" | "theme" | "view" | "refused" | "lost" | "outdated" | "found" | "busy" | "numbers"} Topic */
 
 /** @type {Session | null} */
 let session = null;
@@ -105,15 +105,22 @@ function take(next, again = false) {
   else if (again || content(next) !== computedFor) void compute(content(next));
 }
 
-/** Nothing can be computed with these choices: what is drawn belongs to older ones. @param {{error: string, where: string}} problem */
+/** What is drawn belongs to older choices: plots are shown as such, and no number stands under a name that it wasn't computed for. */
+function isOutdated() {
+  document.body.dataset.stale = "true";
+  comparison = null;
+  tell("outdated");
+}
+
+/** Nothing can be computed with these choices. @param {{error: string, where: string}} problem */
 function refuseAll(problem) {
   computing.abort();
   runs += 1;
   computedFor = "";
   heldOutIsPending = false;
   document.body.dataset.heldOut = "done";
-  if (comparison) document.body.dataset.stale = "true";
-  tell("refused", { says: problem.error, where: problem.where });
+  isOutdated();
+  tell("refused", { says: problem.error, where: problem.where, blocks: true });
   void loadCards();
 }
 
@@ -148,9 +155,12 @@ async function compute(key) {
   } catch (error) {
     if (mine === runs) {
       computedFor = "";
-      // What is drawn belongs to something older; it is shown as such.
-      if (!isAborted(error)) document.body.dataset.stale = "true";
-      report(error);
+      if (error instanceof Refusal) {
+        isOutdated();
+        tell("refused", { says: error.message, where: error.where, blocks: true });
+        // The same choices may be possible with what is changed next.
+        void loadCards();
+      } else report(error);
     }
   }
   if (mine === runs) {

@@ -31,6 +31,8 @@ pub(crate) struct Kept {
     pub(crate) past: Vec<Choices>,
     pub(crate) future: Vec<Choices>,
     pub(crate) view: Value,
+    /// The word that ends the address: a page that is open finds the session again when it is served anew at the same port.
+    pub(crate) token: String,
     /// What the last diagnosis was about.
     #[serde(default)]
     pub(crate) diagnosed: Option<Choices>,
@@ -44,13 +46,14 @@ pub(crate) struct Diagnosed {
 }
 
 impl Kept {
-    pub(crate) fn new(choices: Choices) -> Self {
+    pub(crate) fn new(choices: Choices, token: String) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
             choices,
             past: Vec::new(),
             future: Vec::new(),
             view: Value::Null,
+            token,
             diagnosed: None,
         }
     }
@@ -146,6 +149,19 @@ impl Folder {
         }
         Err(io::Error::other("all names are taken"))
     }
+}
+
+/// The file holds the token: other users of the machine must not read it.
+#[cfg(unix)]
+fn only_for_its_owner(path: &Path) -> io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    fs::set_permissions(path, fs::Permissions::from_mode(0o600))
+}
+
+/// Where files belong to their owner's folder, nothing is to be done.
+#[cfg(not(unix))]
+fn only_for_its_owner(_: &Path) -> io::Result<()> {
+    Ok(())
 }
 
 /// Whether two files hold the same bytes.

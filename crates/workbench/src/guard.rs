@@ -13,11 +13,9 @@ pub(crate) struct Guard {
 }
 
 impl Guard {
-    /// With a new token.
-    pub(crate) fn new(port: u16) -> Result<Self, getrandom::Error> {
-        let mut bytes = [0; size_of::<u128>()];
-        getrandom::fill(&mut bytes)?;
-        Ok(Self { token: format!("{:032x}", u128::from_le_bytes(bytes)), port })
+    /// With a token of [`new_token`].
+    pub(crate) fn new(port: u16, token: String) -> Self {
+        Self { token, port }
     }
 
     /// The address to open.
@@ -50,6 +48,13 @@ impl Guard {
     }
 }
 
+/// A token that nobody can guess: 128 random bits.
+pub(crate) fn new_token() -> Result<String, getrandom::Error> {
+    let mut bytes = [0; size_of::<u128>()];
+    getrandom::fill(&mut bytes)?;
+    Ok(format!("{:032x}", u128::from_le_bytes(bytes)))
+}
+
 /// Compares in a time that doesn't tell how much is right.
 fn is_equal(given: &[u8], right: &[u8]) -> bool {
     given.len() == right.len() && given.iter().zip(right).fold(0, |differ, (a, b)| differ | (a ^ b)) == 0
@@ -65,7 +70,7 @@ mod tests {
 
     #[test]
     fn only_the_page_of_this_run_is_admitted() {
-        let guard = Guard::new(4711).unwrap();
+        let guard = Guard::new(4711, new_token().unwrap());
         let path = format!("/{}/api/session", guard.token);
         let asks = |method: &Method, path: &str, pairs: &[(&'static str, &str)]| {
             guard.admit(method, path, &headers(pairs)).map(str::to_owned)
@@ -87,6 +92,6 @@ mod tests {
         assert_eq!(asks(&Method::GET, &path, &[]), None);
         assert_eq!(asks(&Method::GET, &format!("/{}/api/session", "0".repeat(32)), &[here]), None);
         assert_eq!(asks(&Method::GET, "/api/session", &[here]), None);
-        assert_ne!(guard.token, Guard::new(4711).unwrap().token);
+        assert_ne!(guard.token, new_token().unwrap());
     }
 }

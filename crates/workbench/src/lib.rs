@@ -37,7 +37,7 @@ use tokio::net::TcpListener;
 pub use choices::{Choices, ChosenEffect, DataFile, MuscleFile};
 
 use folder::Folder;
-use guard::Guard;
+use guard::{Guard, new_token};
 use server::{Workbench, router};
 use session::Session;
 
@@ -92,14 +92,15 @@ pub fn serve(start: Start, ready: impl FnOnce(&str)) -> Result<(), WorkbenchErro
     let path = start.session.clone().unwrap_or_else(std::env::temp_dir);
     let folder =
         Folder::open(start.session.as_deref()).map_err(|source| WorkbenchError::Folder { path, source })?;
-    let session = Session::open(folder, start.choices, start.is_stated)
+    let session = Session::open(folder, start.choices, start.is_stated, new_token()?)
         .map_err(|refusal| WorkbenchError::Session(refusal.error))?;
     let runtime =
         tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(WorkbenchError::Ended)?;
     let outcome = runtime.block_on(async {
         let of_port = |source| WorkbenchError::Port { port: start.port, source };
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, start.port)).await.map_err(of_port)?;
-        let guard = Guard::new(listener.local_addr().map_err(of_port)?.port())?;
+        let port = listener.local_addr().map_err(of_port)?.port();
+        let guard = Guard::new(port, session.token().to_owned());
         let address = guard.address();
         let served = axum::serve(listener, router(Arc::new(Workbench::new(guard, session))));
         ready(&address);

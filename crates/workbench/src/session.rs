@@ -75,7 +75,12 @@ pub(crate) struct Session {
 
 impl Session {
     /// Goes on with what the folder holds, or begins with these choices.
-    pub(crate) fn open(folder: Folder, begin: Choices, is_stated: bool) -> Result<Self, Refusal> {
+    pub(crate) fn open(
+        folder: Folder,
+        begin: Choices,
+        is_stated: bool,
+        token: String,
+    ) -> Result<Self, Refusal> {
         let kept = match folder.kept()? {
             // What is stated on the command line is a step more of what was there.
             Some(mut kept) if is_stated => {
@@ -83,12 +88,17 @@ impl Session {
                 kept
             }
             Some(kept) => kept,
-            None => Kept::new(begin),
+            None => Kept::new(begin, token),
         };
         let inputs = Inputs::read(&kept.choices, None).map(Arc::new);
         let session = Self { folder, kept, revision: 1, inputs };
         session.folder.keep(&session.kept)?;
         Ok(session)
+    }
+
+    /// The word that ends the address.
+    pub(crate) fn token(&self) -> &str {
+        &self.kept.token
     }
 
     pub(crate) fn revision(&self) -> u64 {
@@ -137,7 +147,10 @@ impl Session {
     /// Takes files of measurements, in the place of those that are there or beside them.
     pub(crate) fn take(&mut self, name: String, path: PathBuf, beside: bool) -> Result<(), Refusal> {
         let mut next = self.kept.choices.clone();
-        let file = DataFile { name, path };
+        // Two files of one analysis need two names.
+        let is_taken = beside && next.data.iter().any(|file| file.name == name);
+        let own = path.file_name().map(|name| name.to_string_lossy().into_owned()).filter(|_| is_taken);
+        let file = DataFile { name: own.unwrap_or(name), path };
         if beside {
             next.data.push(file);
         } else {

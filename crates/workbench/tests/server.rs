@@ -366,6 +366,12 @@ fn a_file_that_is_none_takes_nothing_away() {
     assert_eq!(page.get("comparison").refusal().0, "data");
     assert!(page.get("effects").json()["effects"].as_array().unwrap().len() > 40);
     assert!(page.ask("POST", "api/undo", b"").json()["problem"].is_null());
+    // Two files of the same name beside each other keep their rows apart.
+    page.ask("POST", "api/data?name=twin.csv", DATA.as_bytes());
+    let session =
+        page.ask("POST", "api/data?name=twin.csv&add=1", DATA.replace("2.0000", "2.0001").as_bytes()).json();
+    assert_eq!(session["data"]["names"], json!(["twin.csv", "twin-2.csv"]));
+    assert_eq!(session["data"]["rows"], 1500);
     assert_eq!(page.ask("POST", "api/data?name=", b"x").refusal().0, "data");
     // Refused before it is read: nothing of it is sent.
     let (host, token) = (&page.host, &page.token);
@@ -416,6 +422,8 @@ fn a_session_is_found_again() {
     first.ask("POST", "api/data?name=more.csv", DATA.replace("2.0000", "2.0001").as_bytes());
     let left = first.put(&json!({"view": {"theme": "dark"}})).json();
     let second = Page::open(tour(folder.path()), Some(session.clone()), false);
+    // A page that is still open needs no other address.
+    assert_eq!(second.token, first.token);
     let found = second.get("session").json();
     for field in ["data", "effects", "muscle", "command", "can_undo", "view"] {
         assert_eq!(found[field], left[field], "{field}");

@@ -537,3 +537,29 @@ fn files_of_real_tests_are_answered_as_they_are() {
         assert!(kinds.iter().any(|found| found == kind), "{kind}");
     }
 }
+
+/// A row that lies 300 N off is left out by its line, and the error is that of the others.
+#[test]
+fn rows_are_left_out_by_their_lines() {
+    let folder = Folder::new("exclude");
+    let text = loops(TRUTH);
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let (row, force) = lines[30].rsplit_once(',').unwrap();
+    lines[30] = format!("{row},{}", force.parse::<f64>().unwrap() + 30.0);
+    let data = folder.write("data.csv", &(lines.join("\n") + "\n"));
+    let muscle = folder.write("muscle.toml", MUSCLE);
+    let with = ["--muscle", &muscle, "--with", "fibre-stretch,coulomb-friction", "--json"];
+    let of = |more: &[&str]| json(&[&["compare", data.as_str()], with.as_slice(), more].concat());
+    let (all, some) = (of(&[]), of(&["--exclude", "31"]));
+    assert!(rmse(&all, 2) > 1.5 && rmse(&some, 2) < 0.01, "{} {}", rmse(&all, 2), rmse(&some, 2));
+    let left = some["data"]["left_out"].as_array().unwrap();
+    assert!(left.iter().any(|one| one["why"] == "excluded by hand" && one["lines"] == "31"), "{left:?}");
+    for (lines, part) in [("0-1", "no row"), ("x", "no line"), ("2-9999", "all rows")] {
+        let (status, message) = failure(&["compare", &data, "--muscle", &muscle, "--exclude", lines]);
+        assert!(status == 1 && message.contains(part), "{message}");
+    }
+    // What a diagnosis proposes takes it over.
+    let command = ["diagnose", &data, "--muscle", &muscle, "--with", "fibre-stretch", "--exclude", "31"];
+    let said = String::from_utf8(bulge(&command).stdout).unwrap();
+    assert!(said.contains("--exclude 31") && said.contains("coulomb-friction"), "{said}");
+}
