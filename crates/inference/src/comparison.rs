@@ -12,6 +12,7 @@ pub(crate) mod isotonic;
 pub(crate) mod levels;
 pub(crate) mod loops;
 pub(crate) mod mismatch;
+pub(crate) mod options;
 pub(crate) mod requirements;
 pub(crate) mod residuals;
 pub(crate) mod rivals;

@@ -26,12 +26,12 @@ mod protocol;
 
 pub use bulge_model::{NumberName, Restriction, Says};
 pub use bulge_numerics::Random;
-pub use comparison::analysis::Options;
 pub use comparison::compare::{Comparing, Fitting, compare, fit_effects};
 pub use comparison::document::{
     Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, HeldLoad, HeldLoadPoint, LeftOut, LoopGap,
     Mismatch, NoiseFloor, Part, ResidualMap, Rival, Rung, Stack,
 };
+pub use comparison::options::Options;
 pub use comparison::row_by_row::Rows;
 pub use comparison::rows::UNPRESSURISED;
 pub use diagnosis::confidence::Confidence;

@@ -6,6 +6,7 @@ use crate::reading::{ReadOptions, Reading, SetApart};
 use crate::resolution::{Resolution, bounds};
 use crate::source::{Source, SourceFile, fingerprint};
 use crate::stretch::{self, DeadBand, Stretch};
+use crate::structure::Structure;
 use crate::sweep::{self, Contradiction, Sweep, SweepKind};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -58,22 +59,6 @@ pub struct Data {
     pub(crate) contradictions: Vec<(usize, Contradiction)>,
     reading: Reading,
     pub(crate) structure: Structure,
-}
-
-/// What follows from columns and sweeps.
-#[derive(Debug, Clone)]
-pub(crate) struct Structure {
-    /// The monotone stretches of the length in each sweep, one rest where the length is held; none in a static map.
-    pub(crate) stretches: Vec<Vec<Stretch>>,
-    /// Those of the pressure; none in sweeps in which it is held.
-    pub(crate) pressure_stretches: Vec<Vec<Stretch>>,
-    /// How large a change of the pressure is no noise.
-    pub(crate) pressure_band: DeadBand,
-    /// Of the motion.
-    pub(crate) resolution: Resolution,
-    pub(crate) band: DeadBand,
-    /// 1 for contractions, the longest length for lengths: what a share of the muscle is, where l0 isn't known.
-    pub(crate) scale: f64,
 }
 
 impl Data {

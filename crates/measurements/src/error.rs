@@ -2,6 +2,7 @@
 
 use crate::cell_error::CellError;
 use crate::reading::ColumnUse;
+use crate::wording::{bulleted, of_unit, ragged_cure};
 use bulge_muscles::units::UnitError;
 use thiserror::Error;
 
@@ -484,45 +485,5 @@ impl MeasurementError {
             Self::ColumnMap { .. } => true,
             _ => false,
         }
-    }
-}
-
-/// Complaints, each on a line of its own.
-fn bulleted(complaints: &[MeasurementError], more: usize) -> String {
-    let mut lines: Vec<String> = complaints.iter().map(|complaint| format!("\n  {complaint}")).collect();
-    if more > 0 {
-        lines.push(format!("\n  and {more} more"));
-    }
-    lines.concat()
-}
-
-/// What is wrong with the unit of a heading, after "column `..`".
-fn of_unit(problem: &UnitError) -> String {
-    let symbols = |units: &[(&'static str, f64)]| {
-        let named: Vec<_> =
-            units.iter().map(|(symbol, _)| *symbol).filter(|symbol| !symbol.is_empty()).collect();
-        named.join(", ")
-    };
-    match problem {
-        UnitError::NoUnit { known, .. } => format!("has no unit (known: {})", symbols(known)),
-        UnitError::UnknownUnit { unit, suggestion, known, .. } => {
-            let question =
-                suggestion.map_or_else(String::new, |symbol| format!(": did you mean `{symbol}`?"));
-            format!("has the unknown unit `{unit}`{question} (known: {})", symbols(known))
-        }
-        UnitError::OtherDimension { found, quantity, .. } => {
-            format!("has a unit of {found} where one of {quantity} is needed")
-        }
-        other => format!("has a unit that can't be read ({other})"),
-    }
-}
-
-fn ragged_cure(found: usize, expected: usize) -> &'static str {
-    if found >= 2 * expected - 1 && expected > 1 {
-        "if its numbers have decimal commas, write decimal points; else remove the surplus separators"
-    } else if found > expected {
-        "remove the surplus separators, or quote a text that holds one"
-    } else {
-        "write every field of the row, or remove the row"
     }
 }

@@ -41,6 +41,7 @@ mod slot;
 mod source;
 mod spreadsheet;
 mod stretch;
+mod structure;
 mod sweep;
 mod table;
 #[cfg(test)]
@@ -51,6 +52,7 @@ mod tests {
 mod turning;
 mod unit;
 mod window;
+mod wording;
 mod written;
 
 pub use cell_error::CellError;

@@ -13,6 +13,8 @@ import { verdict } from "./verdict.js";
 
 /** @type {Diagnosis | null} */
 let found = null;
+/** How often there was another one, or none. */
+let founds = 0;
 /** The effects that the model had when it was diagnosed. @type {ChosenEffect[]} */
 let askedWith = [];
 let askedFor = "";
@@ -35,6 +37,7 @@ async function run() {
   askedWith = state.effects;
   askedFor = subject();
   found = null;
+  founds += 1;
   await endPreview(true);
   document.body.dataset.diagnosis = "running";
   draw();
@@ -46,6 +49,7 @@ async function run() {
     });
     if (mine !== running) return;
     found = result;
+    founds += 1;
     document.body.dataset.diagnosis = "done";
   } catch (error) {
     if (mine !== running) return;
@@ -70,6 +74,7 @@ async function restore(session) {
     const result = await get("diagnosis.json");
     if (running || found) return;
     found = result;
+    founds += 1;
     askedWith = session.diagnosis.effects;
     askedFor = session.diagnosis.is_current ? subject() : "";
     document.body.dataset.diagnosis = "done";
@@ -88,7 +93,14 @@ function drawProgress() {
   byId("diagnosis-what").textContent = `${Math.round(100 * progress.share)} %${progress.what ? `: ${progress.what}` : ""}`;
 }
 
+/** What the panel shows: it is filled anew only when this has changed, so that no button goes away below a click. */
+let shown = "";
+
 function draw() {
+  const isStale = askedFor !== subject();
+  const key = JSON.stringify([Boolean(running), founds, failure, isStale, preview?.names, state.effects]);
+  if (key === shown) return;
+  shown = key;
   keepingFocus(byId("diagnosis-panel"), fillPanel);
 }
 

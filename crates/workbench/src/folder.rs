@@ -107,7 +107,8 @@ impl Folder {
     pub(crate) fn keep(&self, kept: &Kept) -> Result<(), Refusal> {
         let text = serde_json::to_string(kept).map_err(Refusal::at(Place::Request))?;
         let path = self.path.join(STATE);
-        output::write(&path, text.as_bytes()).map_err(|error| {
+        // It holds the token.
+        private(&path).and_then(|()| output::write(&path, text.as_bytes())).map_err(|error| {
             Refusal::new(Place::Request, format!("cannot write {}: {error}", path.display()))
         })
     }
@@ -151,17 +152,16 @@ impl Folder {
     }
 }
 
-/// The file holds the token: other users of the machine must not read it.
-#[cfg(unix)]
-fn only_for_its_owner(path: &Path) -> io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    fs::set_permissions(path, fs::Permissions::from_mode(0o600))
-}
-
-/// Where files belong to their owner's folder, nothing is to be done.
-#[cfg(not(unix))]
-fn only_for_its_owner(_: &Path) -> io::Result<()> {
-    Ok(())
+/// Makes a file that other users of the machine can't read, if it isn't there: what replaces it keeps that.
+fn private(path: &Path) -> io::Result<()> {
+    let mut options = fs::OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    match options.open(path) {
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(error),
+        _ => Ok(()),
+    }
 }
 
 /// Whether two files hold the same bytes.

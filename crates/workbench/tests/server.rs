@@ -422,6 +422,12 @@ fn a_session_is_found_again() {
     first.ask("POST", "api/data?name=more.csv", DATA.replace("2.0000", "2.0001").as_bytes());
     let left = first.put(&json!({"view": {"theme": "dark"}})).json();
     let second = Page::open(tour(folder.path()), Some(session.clone()), false);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let mode = std::fs::metadata(session.join("session.json")).unwrap().permissions().mode();
+        assert_eq!(mode & 0o077, 0, "others could read the token");
+    }
     // A page that is still open needs no other address.
     assert_eq!(second.token, first.token);
     let found = second.get("session").json();

@@ -1,9 +1,8 @@
 //! A comparison under way: the record, which of its rows count, and the rungs of the ladder one by one.
 
-use bulge_effects::law::Law;
-use bulge_effects::{Catalogue, Effect};
+use bulge_effects::Effect;
 use bulge_measurements::{Data, PureError};
-use bulge_model::{Model, ModelError, Partly, Record, Restriction, Wanted, Warm};
+use bulge_model::{Model, ModelError, Partly, Record, Wanted, Warm};
 use bulge_muscles::{Muscle, Quantity};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -15,6 +14,7 @@ use crate::comparison::doubt::doubtful_sd;
 use crate::comparison::levels::{Folds, Levels};
 use crate::comparison::loops::branches;
 use crate::comparison::mismatch::questions;
+use crate::comparison::options::Options;
 use crate::comparison::requirements::{check_needs, check_size};
 use crate::comparison::rows::{Used, full_scale, lines, used};
 use crate::comparison::specimens::of_specimens;
@@ -31,44 +31,6 @@ use crate::fit::weights::Noise;
 
 /// Rows on which held-out errors and contributions are computed.
 pub(crate) const FEWER_ROWS: usize = 4000;
-
-/// What is compared, besides muscle and data.
-#[derive(Debug, Clone)]
-pub struct Options {
-    /// Effects to add, in this order.
-    pub effects: Vec<Arc<dyn Effect>>,
-    /// Effects that a muscle file states, with their numbers.
-    pub known: Vec<(Arc<dyn Effect>, Vec<f64>)>,
-    /// Where nuisances are looked up.
-    pub catalogue: Catalogue,
-    /// Numbers held, bounded or tied. Those of effects that aren't in the model say nothing, see [`crate::check_restrictions`].
-    pub restrictions: Vec<Restriction>,
-    /// A force law as the base instead of the equilibrium: with these coefficients, fitted if so asked.
-    pub law: Option<(&'static Law, Vec<f64>, bool)>,
-    /// Rows that are left out by hand.
-    pub excluded: Vec<usize>,
-    /// Whether errors on held-out data are computed.
-    pub held_out: bool,
-    /// Whether the papers' force laws are fitted to the same data.
-    pub rivals: bool,
-}
-
-impl Options {
-    /// The equilibrium with some effects, held-out errors, no rivals.
-    #[must_use]
-    pub fn new(catalogue: Catalogue, effects: Vec<Arc<dyn Effect>>) -> Self {
-        Self {
-            effects,
-            known: Vec::new(),
-            catalogue,
-            restrictions: Vec::new(),
-            law: None,
-            excluded: Vec::new(),
-            held_out: true,
-            rivals: false,
-        }
-    }
-}
 
 /// One rung with what it predicts.
 pub(crate) struct Climbed {

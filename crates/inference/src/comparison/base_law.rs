@@ -5,7 +5,7 @@ use bulge_effects::{Effect, Stage};
 use bulge_muscles::Muscle;
 use std::sync::Arc;
 
-use crate::comparison::analysis::Options;
+use crate::comparison::options::Options;
 
 impl Options {
     /// The same with a force law of the papers as the base instead of the equilibrium; its coefficients are fitted, or those printed for this

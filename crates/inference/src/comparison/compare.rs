@@ -7,8 +7,9 @@ use bulge_muscles::{Muscle, Quantity};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::comparison::analysis::{Analysis, Climbed, Options};
+use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::document::{Comparison, DataSummary, NoiseFloor, Rung};
+use crate::comparison::options::Options;
 use crate::comparison::row_by_row::Rows;
 use crate::comparison::specimens::note;
 use crate::comparison::warnings::without_state;

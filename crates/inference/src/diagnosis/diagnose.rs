@@ -6,9 +6,10 @@ use bulge_muscles::Muscle;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-use crate::comparison::analysis::{Analysis, Climbed, Options};
+use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::compare::{compare, compare_near};
 use crate::comparison::document::Comparison;
+use crate::comparison::options::Options;
 use crate::comparison::rows::lines;
 use crate::comparison::specimens::of_specimens;
 use crate::diagnosis::classes::Class;

@@ -13,7 +13,8 @@ use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use std::sync::Arc;
 
-use crate::comparison::analysis::{Analysis, Options};
+use crate::comparison::analysis::Analysis;
+use crate::comparison::options::Options;
 use crate::diagnosis::as_set::as_set;
 use crate::diagnosis::claim::form_error;
 use crate::diagnosis::diagnose::{DiagnoseOptions, where_it_has_a_state};

@@ -7,7 +7,8 @@ use bulge_muscles::Muscle;
 use bulge_muscles::settings::nearest;
 use std::sync::Arc;
 
-use crate::comparison::analysis::{Analysis, Options};
+use crate::comparison::analysis::Analysis;
+use crate::comparison::options::Options;
 use crate::error::InferenceError;
 
 /// A number of an effect by its name, before and after its value.

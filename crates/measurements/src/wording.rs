@@ -1,0 +1,45 @@
+//! Parts of the sentences that say why a file is no set of measurements.
+
+use crate::error::MeasurementError;
+use bulge_muscles::units::UnitError;
+
+/// Complaints, each on a line of its own.
+pub(crate) fn bulleted(complaints: &[MeasurementError], more: usize) -> String {
+    let mut lines: Vec<String> = complaints.iter().map(|complaint| format!("\n  {complaint}")).collect();
+    if more > 0 {
+        lines.push(format!("\n  and {more} more"));
+    }
+    lines.concat()
+}
+
+/// What is wrong with the unit of a heading, after "column `..`".
+pub(crate) fn of_unit(problem: &UnitError) -> String {
+    let symbols = |units: &[(&'static str, f64)]| {
+        let named: Vec<_> =
+            units.iter().map(|(symbol, _)| *symbol).filter(|symbol| !symbol.is_empty()).collect();
+        named.join(", ")
+    };
+    match problem {
+        UnitError::NoUnit { known, .. } => format!("has no unit (known: {})", symbols(known)),
+        UnitError::UnknownUnit { unit, suggestion, known, .. } => {
+            let question =
+                suggestion.map_or_else(String::new, |symbol| format!(": did you mean `{symbol}`?"));
+            format!("has the unknown unit `{unit}`{question} (known: {})", symbols(known))
+        }
+        UnitError::OtherDimension { found, quantity, .. } => {
+            format!("has a unit of {found} where one of {quantity} is needed")
+        }
+        other => format!("has a unit that can't be read ({other})"),
+    }
+}
+
+/// What to do about a row of another number of fields than the header.
+pub(crate) fn ragged_cure(found: usize, expected: usize) -> &'static str {
+    if found >= 2 * expected - 1 && expected > 1 {
+        "if its numbers have decimal commas, write decimal points; else remove the surplus separators"
+    } else if found > expected {
+        "remove the surplus separators, or quote a text that holds one"
+    } else {
+        "write every field of the row, or remove the row"
+    }
+}
