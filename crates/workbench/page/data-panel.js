@@ -24,7 +24,7 @@ function draw() {
 /** @param {any[]} found */
 function remarks(found) {
   const texts = found.map((item) => [sentence(item), typeof item === "object" && item?.instead ? String(item.instead) : ""]).filter(([text]) => text);
-  return texts.map(([text, instead]) => h("p", { class: "remark" }, text, instead ? h("code", null, ` ${instead}`) : null));
+  return texts.map(([text, instead]) => h("p", { class: "remark" }, instead && !/[.?:]$/.test(text) ? `${text}: ` : `${text} `, instead ? h("span", { class: "instead" }, instead) : null));
 }
 
 /** Rows that the reading set apart or the check left out, by reason. @param {import("./types.js").Reading} reading @param {any[]} left */
