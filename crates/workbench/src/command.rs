@@ -63,10 +63,17 @@ pub(crate) fn python(choices: &Choices, inputs: Option<&Arc<Inputs>>) -> String 
     let own = choices.own_effects.as_ref().map_or_else(String::new, |_| format!(", own={}", text(EFFECTS)));
     let with =
         if choices.effects.is_empty() { String::new() } else { format!(", {}", list(&names(choices))) };
-    let exclude =
-        excluded(choices, inputs).map_or_else(String::new, |lines| format!(", exclude={}", text(&lines)));
+    // What the package doesn't take yet is said, not left out.
+    let lines = excluded(choices, inputs).map(|lines| format!("--exclude {lines}"));
+    let held = held(choices).into_iter().map(|text| format!("--hold \"{text}\""));
+    let untaken: Vec<String> = lines.into_iter().chain(held).collect();
+    let untaken = if untaken.is_empty() {
+        String::new()
+    } else {
+        format!("  # without {}: only the command has it", untaken.join(" "))
+    };
     format!(
-        "import bulge\nmuscle = {muscle}\ndata = bulge.read({}{columns}, muscle=muscle)\nprint(bulge.compare(data, muscle{with}{own}{exclude}))",
+        "import bulge\nmuscle = {muscle}\ndata = bulge.read({}{columns}, muscle=muscle)\nprint(bulge.compare(data, muscle{with}{own})){untaken}",
         list(&files)
     )
 }
