@@ -245,6 +245,20 @@ fn the_shape_follows_what_was_learnt() {
         narrowest(&learnt)
     );
     assert!(learnt["force_n"].as_f64().unwrap() < stated["force_n"].as_f64().unwrap());
+    let number = |name: &str| learnt[name].as_f64().unwrap();
+    assert!(
+        (number("length_m") - 0.225).abs() < 1e-9 && number("radius_m") > 12e-3 && number("radius_m") < 16e-3
+    );
+    // The surface has the extent that the numbers say.
+    let points: Vec<f64> =
+        learnt["points"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
+    let widest = points.chunks(3).map(|point| point[1].hypot(point[2])).fold(0.0, f64::max);
+    let ends = points.chunks(3).map(|point| point[0]);
+    let length = ends.clone().fold(f64::MIN, f64::max) - ends.fold(f64::MAX, f64::min);
+    assert!(
+        (widest / number("radius_m") - 1.0).abs() < 1e-3 && (length / 0.225 - 1.0).abs() < 1e-3,
+        "{widest} {length}"
+    );
     let file = page.get("shape.vtp?pressure_pa=3e5&contraction=0.1").body;
     assert!(file.starts_with(b"<?xml") && file.len() > 10_000);
 }
@@ -284,6 +298,9 @@ fn rows_have_the_error_of_the_ladder_and_can_be_excluded() {
     let (error, all) = rmse(&before);
     assert!((error / page.errors()[1] - 1.0).abs() < 1e-4 && all == 750, "{error}, {all}");
     let lines = column(&before, "line");
+    // The first row of the file, in the units of the header.
+    let first = ["time", "pressure", "contraction", "measured"].map(|name| column(&before, name)[0]);
+    assert_eq!(first.map(f32::to_bits), [0.0_f32, 2.0, 1.01, 501.6].map(f32::to_bits));
     let session = page.put(&json!({"excluded": [10, 11, 12]})).json();
     let says = format!("--exclude {}-{}", lines[10], lines[12]);
     assert!(session["command"].as_str().unwrap().contains(&says), "{session}");
