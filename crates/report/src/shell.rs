@@ -1,10 +1,18 @@
 //! Words of a command line that a reader may copy.
 
 /// A word of a command line, in quotes if a shell would take it for more than one.
+///
+/// Names of files and headings are anybody's: one that a shell would run within double quotes, such as `$(..)`, stands in single ones.
 #[must_use]
 pub fn shell_word(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_./,:=+@\\".contains(c);
-    if !word.is_empty() && word.chars().all(plain) { word.to_owned() } else { format!("\"{word}\"") }
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else if word.contains(['$', '`', '"', '!']) {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    } else {
+        format!("\"{word}\"")
+    }
 }
 
 /// What a command line says of an analysis: `compare`, `diagnose` and `fit` take the same words.
@@ -68,5 +76,8 @@ mod tests {
     #[test]
     fn words_of_a_shell_are_quoted() {
         assert_eq!(["a.csv", "my file", ""].map(shell_word), ["a.csv", "\"my file\"", "\"\""]);
+        // Nothing in a name is run.
+        let names = ["$(reboot).csv", "`x`", "a\"; x", "it's $x"].map(shell_word);
+        assert_eq!(names, ["'$(reboot).csv'", "'`x`'", "'a\"; x'", r"'it'\''s $x'"]);
     }
 }
