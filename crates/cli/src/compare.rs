@@ -71,11 +71,11 @@ impl CompareCommand {
         }
         // Rungs that the comparison has climbed aren't climbed again for its rows.
         let comparing = Comparing::new(&data, &muscle, &options)?;
-        let comparison = comparing.with(&options.effects)?;
+        let comparison = comparing.with(&options.effects, &[])?;
         let document = serde_json::to_string_pretty(&comparison)? + "\n";
         let mut wrote = String::new();
         if let Some(path) = &self.rows {
-            let rows = comparing.rows(&options.effects)?;
+            let rows = comparing.rows(&options.effects, &[])?;
             files::write(path, &written(path, &rows.columns())?)?;
             let _ = writeln!(wrote, "  wrote {}", path.display());
         }

@@ -92,9 +92,32 @@ fn asked_again_with_other_effects_the_answer_is_the_same() {
         &["coulomb-friction"],
     ] {
         let effects: Vec<_> = with.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect();
-        let found = comparing.with(&effects).unwrap();
+        let found = comparing.with(&effects, &[]).unwrap();
         assert_eq!(found.ladder.len(), 1 + with.len());
         assert_eq!(json(&found), json(&climbed(&data, &muscle, with)), "{with:?}");
+    }
+    // Numbers held: of an effect, differently, not any more; and of an error of the rig that the base fits along.
+    let names = ["end-taper", "coulomb-friction"];
+    let effects: Vec<_> = names.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect();
+    let values =
+        ["coulomb-friction.force=3 N", "coulomb-friction.force=9 N", "", "force-offset.offset=0.5 N"];
+    for held in values {
+        let mut options = Options::new(catalogue.clone(), effects.clone());
+        if !held.is_empty() {
+            options = options.hold(held, &muscle).unwrap();
+        }
+        comparing.prepare(&effects, &options.restrictions).unwrap();
+        let found = comparing.with(&effects, &options.restrictions).unwrap();
+        assert_eq!(json(&found), json(&compare(&data, &muscle, &options).unwrap()), "{held}");
+        let number = |p: &bulge_inference::HeldNumber| p.value.to_string();
+        let shown: Vec<String> = found.ladder[2].held.iter().map(number).collect();
+        let stated = held.split(['=', ' ']).nth(1).unwrap_or_default();
+        assert!(shown.iter().any(|value| value == stated) != held.is_empty(), "{held}: {shown:?}");
+        let rows = comparing.rows(&effects, &options.restrictions).unwrap();
+        let square = |row: usize| (rows.measured_n[row] - rows.model_n[row]).powi(2);
+        let counted = (0..rows.len()).filter(|row| rows.counts[*row]);
+        let rmse = (counted.clone().map(square).sum::<f64>() / counted.count() as f64).sqrt();
+        assert!((rmse / found.ladder[2].rmse_n - 1.0).abs() < 1e-12, "{held}");
     }
 }
 
@@ -418,7 +441,7 @@ fn rows_are_those_of_the_ladder() {
     let options = Options::new(catalogue.clone(), Vec::new());
     let comparing = Comparing::new(&data, &muscle, &options).unwrap();
     let effects = [Arc::clone(catalogue.find("coulomb-friction").unwrap())];
-    let (comparison, rows) = (comparing.with(&effects).unwrap(), comparing.rows(&effects).unwrap());
+    let (comparison, rows) = (comparing.with(&effects, &[]).unwrap(), comparing.rows(&effects, &[]).unwrap());
     assert_eq!((rows.len(), rows.effects.as_slice()), (120, &["coulomb-friction".to_owned()][..]));
     let rmse = |residuals: &[f64]| {
         let counted = || (0..rows.len()).filter(|row| rows.counts[*row]);

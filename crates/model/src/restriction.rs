@@ -77,6 +77,12 @@ impl Model {
         self
     }
 
+    /// Whether a statement is about one of this model's numbers.
+    #[must_use]
+    pub fn mentions(&self, restriction: &Restriction) -> bool {
+        self.parameters().iter().any(|p| restriction.number.is_of(p))
+    }
+
     /// Whether a statement says something of one of this model's numbers.
     #[must_use]
     pub fn has(&self, restriction: &Restriction) -> bool {

@@ -4,7 +4,7 @@
 import { details } from "./effect-card.js";
 import { byId, fill, h, input, keepingFocus } from "./dom.js";
 import { numbersOfEffect } from "./numbers.js";
-import { change, on, state } from "./store.js";
+import { change, on, prepare, state } from "./store.js";
 
 /** @typedef {import("./types.js").Card} Card */
 
@@ -24,15 +24,20 @@ export function setEffect(name, wanted) {
   return change((now) => {
     const isThere = now.effects.some((effect) => effect.name === name);
     if (isThere === wanted) return null;
-    return { effects: wanted ? [...now.effects, { name }] : now.effects.filter((effect) => effect.name !== name) };
+    return { effects: switched(now, name, wanted) };
   }, "effects");
 }
+
+/** The effects once this one is switched. @param {import("./types.js").Session} now @param {string} name @param {boolean} wanted */
+const switched = (now, name, wanted) => wanted ? [...now.effects, { name }] : now.effects.filter((effect) => effect.name !== name);
 
 /** @param {string} name @param {string} title @param {boolean} isUsable */
 function switchOf(name, title, isUsable) {
   const checked = isOn(name);
+  // Whoever points at a switch will often press it.
+  const onpoint = () => prepare((now) => switched(now, name, !isOn(name)));
   return h("button", {
-    type: "button", role: "switch", class: "switch", "aria-checked": checked, "aria-label": title, "data-effect": name, disabled: !isUsable && !checked, onclick: () => void setEffect(name, !isOn(name)),
+    type: "button", role: "switch", class: "switch", "aria-checked": checked, "aria-label": title, "data-effect": name, disabled: !isUsable && !checked, onclick: () => void setEffect(name, !isOn(name)), onpointerenter: onpoint, onfocus: onpoint,
   }, h("span", { class: "knob" }));
 }
 

@@ -212,6 +212,18 @@ export function change(make, where) {
   return mine;
 }
 
+let preparing = new AbortController();
+
+/** Has the server get ready for effects that may be switched on next: an older wish is given up. @param {(session: Session) => import("./types.js").ChosenEffect[]} make */
+export function prepare(make) {
+  preparing.abort();
+  // Whatever runs now comes first, and a muscle that can't be compared has nothing to get ready for.
+  if (!session || session.problem || isLost) return;
+  preparing = new AbortController();
+  // It is a wish: an answer that fails says so when the effect is switched on.
+  post("prepare", JSON.stringify(make(session)), preparing.signal).catch(() => undefined);
+}
+
 let sliding = false;
 /** @type {(() => void) | null} */
 let slideNext = null;

@@ -12,10 +12,10 @@ use std::path::Path;
 use std::sync::{Arc, PoisonError};
 use tokio::sync::oneshot;
 
-use crate::choices::Choices;
+use crate::choices::{Choices, ChosenEffect};
 use crate::diagnosis::{self, Listener};
 use crate::folder::Diagnosed;
-use crate::inputs::{Inputs, MUSCLE, catalogue};
+use crate::inputs::{Inputs, MUSCLE, With, catalogue};
 use crate::refusal::{Place, Refusal};
 use crate::rows;
 use crate::server::Workbench;
@@ -26,25 +26,25 @@ use crate::worker::{Question, Worker};
 struct Asked {
     revision: u64,
     inputs: Arc<Inputs>,
-    effects: Vec<Arc<dyn Effect>>,
+    with: With,
 }
 
 fn asked(workbench: &Workbench) -> Result<Asked, Refusal> {
     let session = workbench.session();
     let inputs = session.inputs()?;
-    let effects = inputs.effects(session.choices())?;
-    Ok(Asked { revision: session.revision(), inputs, effects })
+    let with = inputs.with(&session.choices().effects)?;
+    Ok(Asked { revision: session.revision(), inputs, with })
 }
 
 /// Asks a worker and waits.
 async fn ask<T>(
     worker: &Worker,
     asked: &Asked,
-    effects: Vec<Arc<dyn Effect>>,
+    with: With,
     question: impl FnOnce(oneshot::Sender<Result<T, Refusal>>) -> Question,
 ) -> Result<T, Refusal> {
     let (answer, waiting) = oneshot::channel();
-    worker.ask(Arc::clone(&asked.inputs), effects, question(answer));
+    worker.ask(Arc::clone(&asked.inputs), with, question(answer));
     let gone = || Refusal::new(Place::Request, "the computation has ended: start `bulge open` again");
     waiting.await.unwrap_or_else(|_| Err(gone()))
 }
@@ -53,13 +53,20 @@ async fn ask<T>(
 pub(crate) async fn comparison(workbench: &Workbench, held_out: bool) -> Result<Box<Comparison>, Refusal> {
     let asked = asked(workbench)?;
     let worker = if held_out { &workbench.held_out } else { &workbench.quick };
-    ask(worker, &asked, asked.effects.clone(), Question::Comparison).await
+    ask(worker, &asked, asked.with.clone(), Question::Comparison).await
+}
+
+/// Gets ready for these effects, which may be switched on next.
+pub(crate) async fn prepare(workbench: &Workbench, effects: &[ChosenEffect]) -> Result<(), Refusal> {
+    let asked = asked(workbench)?;
+    let with = asked.inputs.with(effects)?;
+    ask(&workbench.quick, &asked, with, Question::Prepared).await
 }
 
 /// All rows.
 pub(crate) async fn rows(workbench: &Workbench) -> Result<Response, Refusal> {
     let asked = asked(workbench)?;
-    let found = ask(&workbench.quick, &asked, asked.effects.clone(), Question::Rows).await?;
+    let found = ask(&workbench.quick, &asked, asked.with.clone(), Question::Rows).await?;
     let bytes = rows::bytes(&asked.inputs, &found, asked.revision).map_err(Refusal::at(Place::Request))?;
     Ok(([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
 }
@@ -67,7 +74,7 @@ pub(crate) async fn rows(workbench: &Workbench) -> Result<Response, Refusal> {
 /// The same as a file that Bulge reads again; its name says of which kind.
 pub(crate) async fn rows_file(workbench: &Workbench, name: &'static str) -> Result<Response, Refusal> {
     let asked = asked(workbench)?;
-    let found = ask(&workbench.quick, &asked, asked.effects.clone(), Question::Rows).await?;
+    let found = ask(&workbench.quick, &asked, asked.with.clone(), Question::Rows).await?;
     let bytes = written(Path::new(name), &found.columns()).map_err(Refusal::at(Place::Request))?;
     Ok(([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
 }
@@ -103,7 +110,8 @@ pub(crate) async fn effects(workbench: &Workbench) -> Result<Effects, Refusal> {
         let none = catalogue.iter().map(|_| None).collect();
         return Ok(cards(&catalogue, none));
     };
-    let all: Vec<Arc<dyn Effect>> = asked.inputs.catalogue.iter().map(Arc::clone).collect();
+    let all =
+        With { effects: asked.inputs.catalogue.iter().map(Arc::clone).collect(), restrictions: Vec::new() };
     let unsuitable = ask(&workbench.quick, &asked, all, Question::Unsuitable).await;
     // A muscle that can't be compared at all says so where it is compared.
     let unsuitable = unsuitable.unwrap_or_else(|_| asked.inputs.catalogue.iter().map(|_| None).collect());

@@ -33,6 +33,13 @@ pub struct ChosenEffect {
     pub hold: BTreeMap<String, f64>,
 }
 
+impl ChosenEffect {
+    /// Each number that is held: effect, number, value in the unit that the card shows.
+    pub(crate) fn held(&self) -> impl Iterator<Item = (&str, &str, f64)> {
+        self.hold.iter().map(|(number, value)| (self.name.as_str(), number.as_str(), *value))
+    }
+}
+
 /// All choices of a session at one time: undo goes back from one to the one before.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Choices {
@@ -53,19 +60,12 @@ pub struct Choices {
 impl Choices {
     /// Whether the rows, the muscle or the catalogue differ: more than the effects that are switched on.
     pub(crate) fn needs_other_inputs(&self, other: &Self) -> bool {
-        self.needs_other_rows(other) || self.own_effects != other.own_effects || !self.held().eq(other.held())
+        self.needs_other_rows(other) || self.own_effects != other.own_effects
     }
 
     /// Whether the rows that count, or the muscle, differ.
     pub(crate) fn needs_other_rows(&self, other: &Self) -> bool {
         self.needs_other_data(other) || self.excluded != other.excluded
-    }
-
-    /// Every number that is held: effect, number, value in the unit that the card shows.
-    pub(crate) fn held(&self) -> impl Iterator<Item = (&str, &str, f64)> {
-        self.effects.iter().flat_map(|effect| {
-            effect.hold.iter().map(|(number, value)| (effect.name.as_str(), number.as_str(), *value))
-        })
     }
 
     /// Whether the files must be read anew: how they are read depends on the muscle.

@@ -29,7 +29,7 @@ fn excluded(choices: &Choices, inputs: Option<&Arc<Inputs>>) -> Option<String> {
 fn held(choices: &Choices) -> Vec<String> {
     // Choices that name what there isn't were refused.
     let catalogue = inputs::catalogue(choices.own_effects.as_deref());
-    catalogue.and_then(|catalogue| inputs::held(choices, &catalogue)).unwrap_or_default()
+    catalogue.and_then(|catalogue| inputs::held(&choices.effects, &catalogue)).unwrap_or_default()
 }
 
 /// `bulge compare ...`

@@ -7,7 +7,7 @@ use bulge_model::{Restriction, read_options};
 use bulge_muscles::{Muscle, from_toml};
 use std::sync::Arc;
 
-use crate::choices::Choices;
+use crate::choices::{Choices, ChosenEffect};
 use crate::refusal::{Place, Refusal};
 
 /// The name that messages give the muscle's file.
@@ -15,14 +15,20 @@ pub(crate) const MUSCLE: &str = "the muscle";
 /// The name that messages give the user's own effects.
 const OWN: &str = "your effects";
 
-/// Rows, muscle and catalogue of some choices. Two analyses of the same `Arc` of it differ in their effects alone.
+/// What stands beside the muscle as stated: effects, and what is stated of their numbers.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct With {
+    pub(crate) effects: Vec<Arc<dyn Effect>>,
+    pub(crate) restrictions: Vec<Restriction>,
+}
+
+/// Rows, muscle and catalogue of some choices. Two analyses of the same `Arc` of it differ in their model alone.
 #[derive(Debug)]
 pub(crate) struct Inputs {
     pub(crate) data: Arc<Data>,
     pub(crate) muscle: Muscle,
     pub(crate) catalogue: Catalogue,
     known: Vec<Known>,
-    restrictions: Vec<Restriction>,
     excluded: Vec<usize>,
 }
 
@@ -37,25 +43,27 @@ impl Inputs {
             None => Arc::new(read_rows(choices, &muscle)?),
         };
         let excluded: Vec<usize> = choices.excluded.iter().copied().filter(|row| *row < data.len()).collect();
-        let restrictions = restrictions(choices, &catalogue, &muscle)?;
-        Ok(Self { data, muscle, catalogue, known, restrictions, excluded })
+        Ok(Self { data, muscle, catalogue, known, excluded })
     }
 
     /// What is compared, with these effects.
-    pub(crate) fn options(&self, effects: Vec<Arc<dyn Effect>>, held_out: bool) -> Options {
-        let mut options = Options::new(self.catalogue.clone(), effects);
+    pub(crate) fn options(&self, with: With, held_out: bool) -> Options {
+        let mut options = Options::new(self.catalogue.clone(), with.effects);
+        options.restrictions = with.restrictions;
         options.known.clone_from(&self.known);
-        options.restrictions.clone_from(&self.restrictions);
         options.excluded.clone_from(&self.excluded);
         options.held_out = held_out;
         options
     }
 
-    /// The chosen effects, from the catalogue.
-    pub(crate) fn effects(&self, choices: &Choices) -> Result<Vec<Arc<dyn Effect>>, Refusal> {
+    /// Effects from the catalogue, with the numbers that are held.
+    pub(crate) fn with(&self, effects: &[ChosenEffect]) -> Result<With, Refusal> {
         let find = |name: &str| self.catalogue.find(name).map(Arc::clone);
-        let found: Result<Vec<_>, _> = choices.effects.iter().map(|chosen| find(&chosen.name)).collect();
-        found.map_err(Refusal::at(Place::Effects))
+        let found: Result<Vec<_>, _> = effects.iter().map(|chosen| find(&chosen.name)).collect();
+        Ok(With {
+            effects: found.map_err(Refusal::at(Place::Effects))?,
+            restrictions: restrictions(effects, &self.catalogue, &self.muscle)?,
+        })
     }
 
     /// Whether a row was excluded by hand.
@@ -77,7 +85,7 @@ fn read_rows(choices: &Choices, muscle: &Muscle) -> Result<Data, Refusal> {
 }
 
 /// Each number that is held as the command line states it: `coulomb-friction.force=14 N`.
-pub(crate) fn held(choices: &Choices, catalogue: &Catalogue) -> Result<Vec<String>, Refusal> {
+pub(crate) fn held(effects: &[ChosenEffect], catalogue: &Catalogue) -> Result<Vec<String>, Refusal> {
     let one = |(effect, number, value): (&str, &str, f64)| {
         let found = catalogue.find(effect).map_err(Refusal::at(Place::Effects))?;
         let unit =
@@ -86,17 +94,17 @@ pub(crate) fn held(choices: &Choices, catalogue: &Catalogue) -> Result<Vec<Strin
         let unit = unit.filter(|unit| unit != "1").map_or_else(String::new, |unit| format!(" {unit}"));
         Ok(format!("{effect}.{number}={value}{unit}"))
     };
-    choices.held().map(one).collect()
+    effects.iter().flat_map(ChosenEffect::held).map(one).collect()
 }
 
 /// The same for a fit.
 pub(crate) fn restrictions(
-    choices: &Choices,
+    effects: &[ChosenEffect],
     catalogue: &Catalogue,
     muscle: &Muscle,
 ) -> Result<Vec<Restriction>, Refusal> {
     let mut options = Options::new(catalogue.clone(), Vec::new());
-    for text in held(choices, catalogue)? {
+    for text in held(effects, catalogue)? {
         options = options.hold(&text, muscle).map_err(Refusal::at(Place::Effects))?;
     }
     Ok(options.restrictions)

@@ -19,6 +19,7 @@ use tokio::sync::watch;
 
 use crate::answers;
 use crate::assets::asset;
+use crate::choices::ChosenEffect;
 use crate::folder::file_name;
 use crate::guard::Guard;
 use crate::refusal::{Place, Refusal};
@@ -134,6 +135,10 @@ async fn api(workbench: Arc<Workbench>, call: &str, parts: &Parts, body: Body) -
         ("GET", "comparison" | "comparison.json") => {
             let held_out = asked.get("held_out").is_none_or(|value| value != "0");
             json(&*answers::comparison(&workbench, held_out).await?)
+        }
+        ("POST", "prepare") => {
+            let effects: Vec<ChosenEffect> = parsed(body).await?;
+            json(&answers::prepare(&workbench, &effects).await?)
         }
         ("GET", "rows") => answers::rows(&workbench).await,
         ("GET", "rows.csv") => answers::rows_file(&workbench, "rows.csv").await,

@@ -216,7 +216,7 @@ impl Session {
         }
         // Values have bounds that the muscle knows; a muscle that can't be read says so itself.
         match from_toml(&next.muscle.toml, MUSCLE) {
-            Ok(muscle) => restrictions(next, &catalogue, &muscle).map(drop),
+            Ok(muscle) => restrictions(&next.effects, &catalogue, &muscle).map(drop),
             Err(_) => Ok(()),
         }
     }
@@ -303,8 +303,8 @@ impl Session {
     /// What is compared with the chosen effects.
     pub(crate) fn options(&self, held_out: bool) -> Result<(Arc<Inputs>, Options), Refusal> {
         let inputs = self.inputs()?;
-        let effects = inputs.effects(&self.kept.choices)?;
-        let options = inputs.options(effects, held_out);
+        let with = inputs.with(&self.kept.choices.effects)?;
+        let options = inputs.options(with, held_out);
         Ok((inputs, options))
     }
 }

@@ -2,7 +2,6 @@
 //!
 //! A question that nobody waits for any more is passed over, so that the last one asked is answered first.
 
-use bulge_effects::Effect;
 use bulge_inference::{Comparing, Comparison, Rows};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -10,7 +9,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use tokio::sync::oneshot;
 
-use crate::inputs::Inputs;
+use crate::inputs::{Inputs, With};
 use crate::refusal::{Place, Refusal};
 
 /// What is asked of a comparison.
@@ -19,8 +18,10 @@ pub(crate) enum Question {
     Comparison(oneshot::Sender<Result<Box<Comparison>, Refusal>>),
     /// The forces row by row.
     Rows(oneshot::Sender<Result<Rows, Refusal>>),
-    /// Why each of some effects can't be added.
+    /// Why each of the effects can't be added.
     Unsuitable(oneshot::Sender<Result<Vec<Option<String>>, Refusal>>),
+    /// To be ready for the questions that may follow.
+    Prepared(oneshot::Sender<Result<(), Refusal>>),
 }
 
 impl Question {
@@ -29,6 +30,7 @@ impl Question {
             Self::Comparison(to) => to.is_closed(),
             Self::Rows(to) => to.is_closed(),
             Self::Unsuitable(to) => to.is_closed(),
+            Self::Prepared(to) => to.is_closed(),
         }
     }
 
@@ -39,17 +41,23 @@ impl Question {
             Self::Comparison(to) => drop(to.send(Err(refusal))),
             Self::Rows(to) => drop(to.send(Err(refusal))),
             Self::Unsuitable(to) => drop(to.send(Err(refusal))),
+            Self::Prepared(to) => drop(to.send(Err(refusal))),
         }
     }
 
-    fn answer(self, comparing: &Comparing<'_>, effects: &[Arc<dyn Effect>]) {
+    fn answer(self, comparing: &Comparing<'_>, With { effects, restrictions }: &With) {
         let refused = Refusal::at(Place::Effects);
         match self {
             Self::Comparison(to) => {
-                let found = of_all(|| comparing.with(effects).map(Box::new).map_err(&refused));
+                let found = of_all(|| comparing.with(effects, restrictions).map(Box::new).map_err(&refused));
                 drop(to.send(found));
             }
-            Self::Rows(to) => drop(to.send(of_all(|| comparing.rows(effects).map_err(&refused)))),
+            Self::Rows(to) => {
+                drop(to.send(of_all(|| comparing.rows(effects, restrictions).map_err(&refused))));
+            }
+            Self::Prepared(to) => {
+                drop(to.send(of_all(|| comparing.prepare(effects, restrictions).map_err(&refused))));
+            }
             Self::Unsuitable(to) => {
                 drop(to.send(of_all(|| {
                     Ok(effects.iter().map(|effect| comparing.unsuitable(effect)).collect())
@@ -67,10 +75,10 @@ pub(crate) fn of_all<T>(compute: impl FnOnce() -> Result<T, Refusal>) -> Result<
     })
 }
 
-/// A question about some inputs with some effects.
+/// A question about some inputs and a model.
 struct Task {
     inputs: Arc<Inputs>,
-    effects: Vec<Arc<dyn Effect>>,
+    with: With,
     question: Question,
 }
 
@@ -86,9 +94,9 @@ impl Worker {
     }
 
     /// Asks; the answer comes through the channel of the question.
-    pub(crate) fn ask(&self, inputs: Arc<Inputs>, effects: Vec<Arc<dyn Effect>>, question: Question) {
+    pub(crate) fn ask(&self, inputs: Arc<Inputs>, with: With, question: Question) {
         // Without its thread the question is dropped, and whoever waits for the answer hears that.
-        drop(self.0.send(Task { inputs, effects, question }));
+        drop(self.0.send(Task { inputs, with, question }));
     }
 }
 
@@ -104,7 +112,7 @@ fn work(waiting: &Receiver<Task>, held_out: bool) {
 /// Answers as long as the questions are about the same inputs; returns the first that isn't.
 fn work_on(task: Task, waiting: &Receiver<Task>, held_out: bool) -> Option<Task> {
     let inputs = Arc::clone(&task.inputs);
-    let options = inputs.options(Vec::new(), held_out);
+    let options = inputs.options(With::default(), held_out);
     let begun =
         of_all(|| Comparing::new(&inputs.data, &inputs.muscle, &options).map_err(Refusal::at(Place::Data)));
     let comparing = match begun {
@@ -114,7 +122,7 @@ fn work_on(task: Task, waiting: &Receiver<Task>, held_out: bool) -> Option<Task>
             return None;
         }
     };
-    task.question.answer(&comparing, &task.effects);
+    task.question.answer(&comparing, &task.with);
     while let Ok(task) = waiting.recv() {
         if task.question.is_given_up() {
             continue;
@@ -122,7 +130,7 @@ fn work_on(task: Task, waiting: &Receiver<Task>, held_out: bool) -> Option<Task>
         if !Arc::ptr_eq(&task.inputs, &inputs) {
             return Some(task);
         }
-        task.question.answer(&comparing, &task.effects);
+        task.question.answer(&comparing, &task.with);
     }
     None
 }

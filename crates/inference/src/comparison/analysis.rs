@@ -2,7 +2,7 @@
 
 use bulge_effects::Effect;
 use bulge_measurements::{Data, PureError};
-use bulge_model::{Model, ModelError, Partly, Record, Wanted, Warm};
+use bulge_model::{Model, ModelError, Partly, Record, Restriction, Wanted, Warm};
 use bulge_muscles::{Muscle, Quantity};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -276,15 +276,19 @@ impl<'a> Analysis<'a> {
         Ok(Analysis { noise, near: Some(near), ..self.sharing(Cow::Borrowed(options)) })
     }
 
-    /// The same with other effects: noise, weights and rows stay.
+    /// The same with other effects, and more that is stated of their numbers: noise, weights and rows stay.
     pub(crate) fn with_effects<'b>(
         &'b self,
         effects: &[Arc<dyn Effect>],
+        restrictions: &[Restriction],
     ) -> Result<Analysis<'b>, InferenceError> {
         for effect in effects {
             check_needs(effect, &self.record)?;
         }
-        Ok(self.sharing(Cow::Owned(Options { effects: effects.to_vec(), ..Options::clone(&self.options) })))
+        let mut options = Options { effects: effects.to_vec(), ..Options::clone(&self.options) };
+        options.restrictions.extend_from_slice(restrictions);
+        let root = self.root.clone().restricted(&options.restrictions);
+        Ok(Analysis { root, ..self.sharing(Cow::Owned(options)) })
     }
 
     /// The same with other options: data, record and solved equilibria are shared.

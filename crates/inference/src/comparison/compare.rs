@@ -2,7 +2,7 @@
 
 use bulge_effects::Effect;
 use bulge_measurements::{Data, Finding, QualityOptions};
-use bulge_model::{Model, ModelError};
+use bulge_model::{Model, ModelError, Restriction};
 use bulge_muscles::{Muscle, Quantity};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -36,15 +36,16 @@ pub(crate) fn compare_near(
     Comparing::of(other.with_options(options, near)?)?.asked()
 }
 
-/// A comparison that is asked again with other effects: what the base says is computed once, and each rung of the ladder once.
+/// A comparison that is asked again with other effects and other restrictions of their numbers: what the base says is computed once, and each rung of the
+/// ladder once.
 ///
-/// An answer is the one of [`compare`] with these effects: it doesn't depend on what was asked before.
+/// An answer is the one of [`compare`] with these effects and restrictions: it doesn't depend on what was asked before.
 pub struct Comparing<'a> {
     analysis: Analysis<'a>,
     floor: Option<NoiseFloor>,
     quality: Vec<Finding>,
     base: Arc<Step>,
-    /// By the effects up to each, in their order.
+    /// By the effects up to each, in their order, with what is stated of their numbers.
     steps: Mutex<HashMap<Vec<String>, Arc<Step>>>,
 }
 
@@ -96,18 +97,57 @@ impl<'a> Comparing<'a> {
         Ok(Self { analysis, floor, quality, base, steps: Mutex::default() })
     }
 
-    /// Compares with these effects, in this order, instead of those of the options.
+    /// Compares with these effects, in this order, instead of those of the options; numbers are restricted by these statements beside those of the options.
     ///
     /// # Errors
     /// As [`compare`].
-    pub fn with(&self, effects: &[Arc<dyn Effect>]) -> Result<Comparison, InferenceError> {
-        rayon::scope(|_| self.compared(&self.analysis.with_effects(effects)?, true))
+    pub fn with(
+        &self,
+        effects: &[Arc<dyn Effect>],
+        restrictions: &[Restriction],
+    ) -> Result<Comparison, InferenceError> {
+        rayon::scope(|_| match self.of_other_base(effects, restrictions) {
+            Some(options) => self.begun_with(&options)?.asked(),
+            None => self.compared(&self.analysis.with_effects(effects, restrictions)?, restrictions, true),
+        })
+    }
+
+    /// Climbs the ladder and keeps its rungs, so that [`Comparing::with`] and [`Comparing::rows`] answer sooner.
+    ///
+    /// # Errors
+    /// As [`compare`].
+    pub fn prepare(
+        &self,
+        effects: &[Arc<dyn Effect>],
+        restrictions: &[Restriction],
+    ) -> Result<(), InferenceError> {
+        rayon::scope(|_| match self.of_other_base(effects, restrictions) {
+            Some(_) => Ok(()),
+            None => {
+                self.ladder(&self.analysis.with_effects(effects, restrictions)?, restrictions, true).map(drop)
+            }
+        })
+    }
+
+    /// The options of a comparison whose base isn't this one's: a statement is about one of its numbers, say an error of the rig that is fitted along.
+    fn of_other_base(&self, effects: &[Arc<dyn Effect>], restrictions: &[Restriction]) -> Option<Options> {
+        let base = &self.base.climbed.prepared.model;
+        restrictions.iter().any(|restriction| base.mentions(restriction)).then(|| {
+            let mut options = Options { effects: effects.to_vec(), ..Options::clone(&self.analysis.options) };
+            options.restrictions.extend_from_slice(restrictions);
+            options
+        })
+    }
+
+    /// The same data and muscle, with other options from the start.
+    fn begun_with<'b>(&'b self, options: &'b Options) -> Result<Comparing<'b>, InferenceError> {
+        Comparing::of(Analysis::new(&self.analysis.data, self.analysis.muscle, options)?)
     }
 
     /// Why an effect can't be added to this muscle with these data; none if it can.
     #[must_use]
     pub fn unsuitable(&self, effect: &Arc<dyn Effect>) -> Option<String> {
-        let with_it = || self.analysis.with_effects(std::slice::from_ref(effect))?.model(1);
+        let with_it = || self.analysis.with_effects(std::slice::from_ref(effect), &[])?.model(1);
         with_it().err().map(|error: InferenceError| error.to_string())
     }
 
@@ -117,55 +157,85 @@ impl<'a> Comparing<'a> {
     ///
     /// # Errors
     /// As [`compare`].
-    pub fn rows(&self, effects: &[Arc<dyn Effect>]) -> Result<Rows, InferenceError> {
-        rayon::scope(|_| {
-            let analysis = self.analysis.with_effects(effects)?;
-            let ladder = self.ladder(&analysis, true)?;
-            let rung = last_that_says_something(&analysis, &ladder);
-            Rows::of(&analysis, [&ladder[0].climbed, &ladder[rung].climbed], rung)
+    pub fn rows(
+        &self,
+        effects: &[Arc<dyn Effect>],
+        restrictions: &[Restriction],
+    ) -> Result<Rows, InferenceError> {
+        rayon::scope(|_| match self.of_other_base(effects, restrictions) {
+            Some(options) => {
+                let other = self.begun_with(&options)?;
+                other.rows_of(&other.analysis, &[])
+            }
+            None => self.rows_of(&self.analysis.with_effects(effects, restrictions)?, restrictions),
         })
+    }
+
+    fn rows_of(&self, analysis: &Analysis<'_>, restrictions: &[Restriction]) -> Result<Rows, InferenceError> {
+        let ladder = self.ladder(analysis, restrictions, true)?;
+        let rung = last_that_says_something(analysis, &ladder);
+        Rows::of(analysis, [&ladder[0].climbed, &ladder[rung].climbed], rung)
     }
 
     /// With the effects of the options, once.
     fn asked(self) -> Result<Comparison, InferenceError> {
-        self.compared(&self.analysis, false)
+        self.compared(&self.analysis, &[], false)
     }
 
     /// The rungs from the base to the last effect; they are kept if others will be asked for.
-    fn ladder(&self, analysis: &Analysis<'_>, again: bool) -> Result<Vec<Arc<Step>>, InferenceError> {
+    fn ladder(
+        &self,
+        analysis: &Analysis<'_>,
+        restrictions: &[Restriction],
+        again: bool,
+    ) -> Result<Vec<Arc<Step>>, InferenceError> {
         let mut ladder = vec![Arc::clone(&self.base)];
-        let mut names = Vec::new();
+        let mut key = Vec::new();
         for (place, effect) in analysis.options.effects.iter().enumerate() {
-            names.push(effect.card().name.to_owned());
-            let known = self.lock().get(&names).map(Arc::clone);
+            let name = effect.card().name;
+            let own: Vec<&Restriction> =
+                restrictions.iter().filter(|one| one.number.effect == name).collect();
+            key.push(if own.is_empty() { name.to_owned() } else { format!("{name} {own:?}") });
             if place > 0
                 && let Some(below) = Arc::get_mut(&mut ladder[place])
             {
                 // Of many rows forces are large, and what the rungs between say is in the ladder.
                 below.climbed.force = Vec::new();
             }
-            let step = if let Some(known) = known {
-                known
-            } else {
+            let step = self.step(&key, again, || {
                 let climbed = analysis.climb(place + 1, Some(&ladder[place].climbed))?;
-                let step = Arc::new(Step { rung: analysis.rung(place + 1, &climbed), climbed });
-                if again {
-                    self.keep(&names, &step);
-                }
-                step
-            };
+                Ok(Step { rung: analysis.rung(place + 1, &climbed), climbed })
+            })?;
             ladder.push(step);
         }
         Ok(ladder)
     }
 
+    /// The rung that is kept under a key, or a new one, which is kept if others will be asked for.
+    fn step(
+        &self,
+        key: &[String],
+        again: bool,
+        climb: impl FnOnce() -> Result<Step, InferenceError>,
+    ) -> Result<Arc<Step>, InferenceError> {
+        let known = self.lock().get(key).map(Arc::clone);
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        let step = Arc::new(climb()?);
+        if again {
+            self.keep(key, &step);
+        }
+        Ok(step)
+    }
+
     /// Keeps a rung for the next question. Of those that lead elsewhere some go when there are too many: memory doesn't grow with the number of questions.
-    fn keep(&self, names: &[String], step: &Arc<Step>) {
+    fn keep(&self, key: &[String], step: &Arc<Step>) {
         let mut steps = self.lock();
         if steps.len() >= MOST_STEPS {
-            steps.retain(|other, _| names.starts_with(other));
+            steps.retain(|other, _| key.starts_with(other));
         }
-        steps.insert(names.to_vec(), Arc::clone(step));
+        steps.insert(key.to_vec(), Arc::clone(step));
     }
 
     fn lock(&self) -> MutexGuard<'_, HashMap<Vec<String>, Arc<Step>>> {
@@ -173,8 +243,13 @@ impl<'a> Comparing<'a> {
         self.steps.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn compared(&self, analysis: &Analysis<'_>, again: bool) -> Result<Comparison, InferenceError> {
-        let mut ladder = self.ladder(analysis, again)?;
+    fn compared(
+        &self,
+        analysis: &Analysis<'_>,
+        restrictions: &[Restriction],
+        again: bool,
+    ) -> Result<Comparison, InferenceError> {
+        let mut ladder = self.ladder(analysis, restrictions, again)?;
         let place = last_that_says_something(analysis, &ladder);
         if let Some(Step { climbed, .. }) = Arc::get_mut(&mut ladder[place])
             && climbed.force.is_empty()

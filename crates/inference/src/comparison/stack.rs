@@ -2,12 +2,11 @@
 
 use bulge_model::{Wanted, Warm};
 
-use crate::comparison::analysis::{Analysis, Climbed};
+use crate::comparison::analysis::{Analysis, Climbed, FEWER_ROWS};
 use crate::comparison::document::{Part, Stack};
 use crate::comparison::residuals::{bin, contractions};
 use crate::error::InferenceError;
 use crate::fit::carry_over::carry_over;
-use crate::fit::search::some_of_long;
 
 /// Bins of contraction.
 const BINS: usize = 25;
@@ -18,11 +17,9 @@ pub(crate) fn contributions(analysis: &Analysis<'_>, last: &Climbed) -> Result<V
     if effects.is_empty() {
         return Ok(Vec::new());
     }
-    let whole = &*analysis.record;
-    // Of a long record those rows that a fit takes.
-    let some = some_of_long(whole);
-    let record = some.as_ref().map_or(whole, |(record, _)| record);
-    let row_of = |place: usize| some.as_ref().map_or(place, |(_, kept)| kept[place]);
+    // Bins of some rows say as much.
+    let (record, kept) = &analysis.record.thinned(FEWER_ROWS);
+    let row_of = |place: usize| kept[place];
     let counts: Vec<bool> = (0..record.len()).map(|place| analysis.used.mask[row_of(place)]).collect();
     let counting = Warm::of_rows(&counts);
     let mut forces: Vec<Vec<f64>> = Vec::new();
