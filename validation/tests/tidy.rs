@@ -38,7 +38,25 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "sweep",
         ],
     ),
-    ("workbench", EVERYTHING),
+    ("workbench", &["muscles", "fibre", "measurements", "effects", "model", "inference", "vtk", "report"]),
+    (
+        "bulge",
+        &[
+            "numerics",
+            "table",
+            "muscles",
+            "fibre",
+            "membrane",
+            "measurements",
+            "effects",
+            "model",
+            "inference",
+            "design",
+            "sweep",
+            "vtk",
+            "report",
+        ],
+    ),
     ("cli", EVERYTHING),
     ("python", EVERYTHING),
     ("validation", EVERYTHING),
@@ -83,7 +101,7 @@ fn forbidden_imports(folder: &str, manifest: &str) -> Vec<String> {
     };
     let mut complaints = Vec::new();
     for (section, name) in dependencies(manifest) {
-        let ours = name.strip_prefix("bulge-").or_else(|| (name == "bulge").then_some("cli"));
+        let ours = name.strip_prefix("bulge-").or_else(|| (name == "bulge").then_some("bulge"));
         if let Some(ours) = ours
             && *allowed != EVERYTHING
             && !allowed.contains(&ours)
@@ -92,6 +110,9 @@ fn forbidden_imports(folder: &str, manifest: &str) -> Vec<String> {
         }
         if name == "pyo3" && folder != "python" {
             complaints.push(format!("`{folder}` names pyo3: only `python` may"));
+        }
+        if name == "clap" && folder != "cli" {
+            complaints.push(format!("`{folder}` names clap: only `cli` may"));
         }
         if folder == "table" && section == "dependencies" {
             complaints.push(format!("`table` depends on `{name}`: it must stand alone"));

@@ -62,17 +62,17 @@ fn main() -> Result<(), Failure> {
             let mut times = Vec::new();
             for _ in 0..ROUNDS {
                 let comparing = Comparing::new(data, muscle, &options)?;
-                comparing.with(&before)?;
+                comparing.with(&before, &[])?;
                 let start = Instant::now();
-                comparing.with(&after)?;
+                comparing.with(&after, &[])?;
                 times.push(start.elapsed().as_secs_f64());
             }
             times.sort_by(f64::total_cmp);
             println!("{name}: {on} on, with {} before\t{:.4}", from.join(" and "), times[ROUNDS / 2]);
         }
         let comparing = Comparing::new(data, muscle, &options)?;
-        comparing.with(&both)?;
-        let time = median(|| Ok(comparing.with(&both[..1])?))?;
+        comparing.with(&both, &[])?;
+        let time = median(|| Ok(comparing.with(&both[..1], &[])?))?;
         println!("{name}: {friction} off\t{time:.4}");
         let options = DiagnoseOptions::new(options.clone());
         let time = median(|| Ok(diagnose(data, muscle, &options)?))?;

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use crate::arguments;
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
-use crate::files::{self, Named};
+use crate::files;
 use crate::restricted::RestrictedArguments;
 use crate::text::{significant, with_interval};
 
@@ -67,7 +67,7 @@ impl CompareCommand {
         }
         let options = self.restricted.apply(options, &data, &muscle)?;
         if let Some(path) = &self.rows {
-            self.can_be_written(path)?;
+            self.data.can_write(("--rows", path), &self.muscle, self.effects.as_deref())?;
         }
         // Rungs that the comparison has climbed aren't climbed again for its rows.
         let comparing = Comparing::new(&data, &muscle, &options)?;
@@ -85,21 +85,6 @@ impl CompareCommand {
             }
         }
         if self.json { Ok(document) } else { Ok(text(&comparison, &options.effects) + &wrote) }
-    }
-
-    /// Refuses a file of rows that would be written over what is read, before anything is computed.
-    fn can_be_written(&self, rows: &Path) -> Result<(), Failure> {
-        let muscle = ("the muscle file", Path::new(&self.muscle));
-        let read: Vec<Named<'_>> = self
-            .data
-            .data
-            .iter()
-            .map(|path| ("the data file", path.as_path()))
-            .chain(self.effects.as_deref().map(|path| ("the file of --effects", path)))
-            .chain([muscle])
-            .collect();
-        files::are_apart(&[("--rows", rows)], &read)?;
-        files::can_be_written(rows)
     }
 }
 

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::failure::Failure;
+use crate::files;
 use crate::text::table;
 
 /// Rows set apart and columns that are shown to people.
@@ -35,6 +36,28 @@ pub(crate) struct DataArguments {
 }
 
 impl DataArguments {
+    /// Refuses a file that could not be written, or that would be written over what is read: before anything is computed.
+    pub(crate) fn can_write(
+        &self,
+        written: files::Named<'_>,
+        muscle: &str,
+        effects: Option<&Path>,
+    ) -> Result<(), Failure> {
+        let read: Vec<files::Named<'_>> =
+            self.read_with(effects).chain([("the muscle file", Path::new(muscle))]).collect();
+        files::are_apart(&[written], &read)?;
+        files::can_be_written(written.1)
+    }
+
+    /// The files of measurements, and that of the user's own effects.
+    pub(crate) fn read_with<'a>(
+        &'a self,
+        effects: Option<&'a Path>,
+    ) -> impl Iterator<Item = files::Named<'a>> {
+        let data = self.data.iter().map(|path| ("the data file", path.as_path()));
+        data.chain(effects.map(|path| ("the file of --effects", path)))
+    }
+
     /// What is compared: these effects beside those that the muscle's file states, without the rows that are left out.
     pub(crate) fn options(
         &self,

@@ -85,9 +85,7 @@ impl FitCommand {
     /// Refuses files that could not be written, or that would be written over: before hours of work, and before one of two is written. A learnt muscle may take the
     /// place of the muscle that was read.
     fn check_files(&self) -> Result<(), Failure> {
-        let read: Vec<Named<'_>> = (self.data.data.iter().map(|path| ("the data file", path.as_path())))
-            .chain(self.effects.as_deref().map(|path| ("the file of --effects", path)))
-            .collect();
+        let read: Vec<Named<'_>> = self.data.read_with(self.effects.as_deref()).collect();
         let form_error: Vec<Named<'_>> =
             self.form_error.as_deref().map(|path| ("--form-error", path)).into_iter().collect();
         files::are_apart(&form_error, &[("the muscle file", Path::new(&self.muscle))])?;

@@ -15,6 +15,7 @@ use crate::diagnose::progress::Bar;
 use crate::diagnose::text::untested;
 use crate::diagnose::untested::reasons;
 use crate::failure::Failure;
+use crate::files;
 
 const PRESSURE: &str = "--pressure";
 const CONTRACTION: &str = "--contraction";
@@ -41,6 +42,9 @@ pub(crate) struct NextCommand {
     /// Contractions that it may use: "0 %..20 %" [default: those of the data]
     #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
     contraction: Option<String>,
+    /// Writes the test as a protocol file, for `bulge plan` and `bulge simulate`
+    #[arg(long, value_name = "PROTOCOL.toml")]
+    out: Option<PathBuf>,
     /// Seed of the random numbers: the same seed gives the same answer
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -52,6 +56,9 @@ pub(crate) struct NextCommand {
 impl NextCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         let limits = self.limits()?;
+        if let Some(out) = &self.out {
+            self.data.can_write(("--out", out), &self.muscle, self.effects.as_deref())?;
+        }
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
         let effects = arguments::effects(&catalogue, &self.with)?;
@@ -63,10 +70,21 @@ impl NextCommand {
         let found = diagnose(&data, &muscle, &options)?;
         drop(bar);
         let step = NextStep::after(&found, &catalogue, limits);
+        let wrote = self.write(&step)?;
         if self.json {
             return Ok(serde_json::to_string_pretty(&step.document())? + "\n");
         }
-        Ok(self.text(&found, &step))
+        Ok(self.text(&found, &step) + &wrote)
+    }
+
+    /// Writes the protocol, if there is a place for it and a test to make.
+    fn write(&self, step: &NextStep<'_>) -> Result<String, Failure> {
+        let Some(path) = &self.out else { return Ok(String::new()) };
+        let Some(protocol) = step.next.and_then(|next| next.protocol.as_ref()) else {
+            return Ok(format!("  nothing is written to {}: there is no test to make\n", path.display()));
+        };
+        files::write(path, protocol.to_toml().as_bytes())?;
+        Ok(format!("  wrote {}\n", path.display()))
     }
 
     /// What the next test may use.

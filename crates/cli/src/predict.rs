@@ -4,12 +4,12 @@ use bulge_inference::{Predicted, predict};
 use bulge_measurements::written;
 use clap::Args;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::arguments;
 use crate::data::{DataArguments, told};
 use crate::failure::Failure;
-use crate::files::{self, Named};
+use crate::files;
 use crate::text::significant;
 
 /// The force of new rows: the muscle with the effects that its file states (`bulge fit` writes one), with intervals, and with residuals where a force was measured.
@@ -33,7 +33,9 @@ pub(crate) struct PredictCommand {
 
 impl PredictCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
-        self.check_files()?;
+        if let Some(out) = &self.out {
+            self.data.can_write(("--out", out), &self.muscle, self.effects.as_deref())?;
+        }
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
         let data = self.data.read_with_or_without_force(&muscle)?;
@@ -47,17 +49,6 @@ impl PredictCommand {
             return Ok(serde_json::to_string_pretty(&found)? + "\n");
         }
         Ok(format!("{}{}{wrote}", told(data.reading()), text(&found)))
-    }
-
-    /// Refuses a file that could not be written, or that would be written over what is read.
-    fn check_files(&self) -> Result<(), Failure> {
-        let Some(out) = &self.out else { return Ok(()) };
-        let muscle = ("the muscle file", Path::new(&self.muscle));
-        let data = self.data.data.iter().map(|path| ("the data file", path.as_path()));
-        let own = self.effects.as_deref().map(|path| ("the file of --effects", path));
-        let read: Vec<Named<'_>> = data.chain(own).chain([muscle]).collect();
-        files::are_apart(&[("--out", out)], &read)?;
-        files::can_be_written(out)
     }
 }
 

@@ -6,3 +6,4 @@ pub(crate) mod hidden;
 pub(crate) mod planned;
 pub(crate) mod simulation;
 pub(crate) mod truth;
+pub(crate) mod write;

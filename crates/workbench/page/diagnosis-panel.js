@@ -4,7 +4,8 @@
 import { diagnose, get, isAborted } from "./api.js";
 import { byId, button, fill, h, keepingFocus } from "./dom.js";
 import { notice } from "./notices.js";
-import { change, on, report, state, step } from "./store.js";
+import { drawInPlan } from "./plan-panel.js";
+import { change, on, report, state, step, tell } from "./store.js";
 import { showTab } from "./tabs.js";
 import { verdict } from "./verdict.js";
 
@@ -24,6 +25,14 @@ let running = null;
 let preview = null;
 /** @type {{share: number, what: string}} */
 let progress = { share: 0, what: "" };
+
+/** Takes what a diagnosis has found. @param {Diagnosis} result */
+function take(result) {
+  found = result;
+  founds += 1;
+  document.body.dataset.diagnosis = "done";
+  tell("diagnosed", [...result.missing, ...(result.nearest ?? [])].flatMap((claim) => [claim.effect, ...(claim.class ?? []), ...(claim.rivals ?? []).slice(0, 3).map((rival) => rival.effect)]));
+}
 
 /** What a diagnosis is about, beside the effects. */
 const subject = () => JSON.stringify([state.session?.data, state.session?.columns, state.session?.muscle.toml, state.session?.excluded]);
@@ -48,9 +57,7 @@ async function run() {
       drawProgress();
     });
     if (mine !== running) return;
-    found = result;
-    founds += 1;
-    document.body.dataset.diagnosis = "done";
+    take(result);
   } catch (error) {
     if (mine !== running) return;
     document.body.dataset.diagnosis = "failed";
@@ -73,11 +80,9 @@ async function restore(session) {
   try {
     const result = await get("diagnosis.json");
     if (running || found) return;
-    found = result;
-    founds += 1;
     askedWith = session.diagnosis.effects;
     askedFor = session.diagnosis.is_current ? subject() : "";
-    document.body.dataset.diagnosis = "done";
+    take(result);
     draw();
   } catch (error) {
     report(error, "diagnosis");
@@ -128,7 +133,7 @@ function fillPanel() {
   fill(
     panel, isStale ? h("p", { class: "remark" }, "Data or muscle have changed since this diagnosis.") : null,
     preview ? previewBox(preview) : null,
-    ...verdict(found, { has: isKept, accept, tryInstead, showMe }),
+    ...verdict(found, { has: isKept, accept, tryInstead, showMe, plan: drawInPlan }),
     h("div", { class: "row end" }, h("button", { type: "button", id: "diagnose-again", class: "primary", onclick: () => void run() }, "Go on: diagnose again with what is on"), h("a", { href: "api/diagnosis-report", target: "_blank", rel: "noopener", class: "button small" }, "Report")),
   );
 }

@@ -7,7 +7,7 @@ import { get, getRows, isAborted, Lost, post, putSession, Refusal } from "./api.
 /** @typedef {import("./types.js").Rows} Rows */
 /** @typedef {import("./types.js").Comparison} Comparison */
 /** @typedef {import("./types.js").Card} Card */
-/** @typedef {"session" | "documents" | "held-out" | "cards" | "selection" | "hover" | "theme" | "view" | "refused" | "lost" | "outdated" | "found" | "busy" | "numbers"} Topic */
+/** @typedef {"session" | "documents" | "held-out" | "cards" | "selection" | "hover" | "theme" | "view" | "refused" | "lost" | "outdated" | "found" | "busy" | "numbers" | "tab" | "diagnosed"} Topic */
 
 /** @type {Session | null} */
 let session = null;

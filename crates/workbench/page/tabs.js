@@ -1,9 +1,10 @@
 // @ts-check
-// Effects or diagnosis, in one column.
+// Effects, diagnosis or plan, in one column.
 
 import { byId } from "./dom.js";
+import { tell } from "./store.js";
 
-const NAMES = ["effects", "diagnosis"];
+const NAMES = ["effects", "diagnosis", "plan"];
 
 /** @param {string} wanted */
 export function showTab(wanted) {
@@ -13,6 +14,7 @@ export function showTab(wanted) {
     tab.tabIndex = name === wanted ? 0 : -1;
     byId(`${name}-panel`).hidden = name !== wanted;
   }
+  tell("tab", wanted);
 }
 
 export function startTabs() {
@@ -21,7 +23,7 @@ export function startTabs() {
     tab.addEventListener("click", () => showTab(name));
     tab.addEventListener("keydown", (event) => {
       if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
-      const other = NAMES[1 - NAMES.indexOf(name)];
+      const other = NAMES[(NAMES.indexOf(name) + (event.key === "ArrowRight" ? 1 : NAMES.length - 1)) % NAMES.length];
       showTab(other);
       byId(`tab-${other}`).focus();
     });

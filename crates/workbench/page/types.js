@@ -49,7 +49,7 @@
  * @property {string} python
  */
 
-/** @typedef {{against?: string, residual?: string, log?: boolean, cells?: boolean, theme?: string}} View */
+/** @typedef {{against?: string, residual?: string, log?: boolean, cells?: boolean, theme?: string, plan?: {blocks: import("./protocol.js").Block[], noise_n: number | null}}} View */
 
 /**
  * @typedef {object} Fitted
@@ -152,7 +152,7 @@
  * @property {{structured: boolean, misfit_n: number, misfit_interval_n: [number, number] | null, hints: any[]}} remaining
  * @property {{says: string}} geometry
  * @property {any[]} not_looked_for
- * @property {any} next_experiment
+ * @property {{says: string, separates: string[], protocol?: import("./protocol.js").Protocol | null} | null} next_experiment
  * @property {string[]} warnings
  */
 

@@ -12,6 +12,7 @@ import { interval as intervalOf, newtons, number, percent, quantity, sentence } 
  * @property {(names: string[]) => void} accept
  * @property {(claim: string, rival: string) => void} tryInstead
  * @property {(names: string[]) => void} showMe
+ * @property {(protocol: import("./protocol.js").Protocol) => void} plan
  */
 
 /** Rivals that are offered. */
@@ -35,7 +36,7 @@ export function verdict(found, does) {
     ladder(found),
     where(found),
     ...asides(found),
-    next(found),
+    next(found, does),
   ];
 }
 
@@ -110,8 +111,12 @@ function asides(found) {
   ];
 }
 
-/** @param {Diagnosis} found */
-function next(found) {
+/** @param {Diagnosis} found @param {Does} does */
+function next(found, does) {
   const says = sentence(found.next_experiment);
-  return says ? h("div", { class: "next", id: "next-experiment" }, h("h4", null, "next experiment"), h("p", null, says)) : null;
+  const protocol = found.next_experiment?.protocol;
+  return says ? h(
+    "div", { class: "next", id: "next-experiment" }, h("h4", null, "next experiment"), h("p", null, says),
+    protocol ? h("div", { class: "row" }, h("button", { type: "button", class: "small", id: "plan-next", onclick: () => does.plan(protocol) }, "Draw it in the plan")) : null,
+  ) : null;
 }

@@ -3,7 +3,7 @@
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
 use bulge_effects::{CardDocument, Catalogue, Effect, Known, known};
-use bulge_inference::{Comparison, Diagnosis, fit_effects};
+use bulge_inference::{Comparison, Diagnosis, Plan, Protocol, fit_effects};
 use bulge_measurements::written;
 use bulge_muscles::{Muscle, PRESETS, from_toml};
 use bulge_report::Learnt;
@@ -191,6 +191,24 @@ pub(crate) fn learnt(workbench: &Workbench) -> Result<String, Refusal> {
     }
     let fitting = fit_effects(&inputs.data, &inputs.muscle, &options).map_err(Refusal::at(Place::Effects))?;
     Ok(Learnt::of(fitting).map_err(Refusal::at(Place::Effects))?.model)
+}
+
+/// A protocol as a file, and what it would show of the muscle with what was learnt.
+#[derive(Debug, Serialize)]
+pub(crate) struct Planned {
+    toml: String,
+    plan: Plan,
+}
+
+/// Before measuring: what a protocol would show.
+pub(crate) fn plan(workbench: &Workbench, protocol: &Protocol) -> Result<Planned, Refusal> {
+    let toml = protocol.to_toml();
+    // A file's reader says what is wrong, and what to write instead.
+    let protocol = Protocol::from_toml(&toml, "the protocol").map_err(Refusal::at(Place::Plan))?;
+    let found = muscle(workbench)?;
+    let catalogue = catalogue(workbench.session().choices().own_effects.as_deref())?;
+    let plan = bulge_inference::plan(&found.0, &found.1, &catalogue, &protocol);
+    Ok(Planned { toml, plan: plan.map_err(Refusal::at(Place::Plan))? })
 }
 
 /// Begins a diagnosis.

@@ -19,6 +19,8 @@ pub(crate) enum Place {
     OwnEffects,
     /// The rows that were excluded by hand.
     Excluded,
+    /// The test that is planned.
+    Plan,
     /// The shape in 3D.
     Shape,
     /// The request itself.

@@ -7,6 +7,7 @@ use axum::http::request::Parts;
 use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use bulge_effects::Known;
+use bulge_inference::Protocol;
 use bulge_muscles::Muscle;
 use futures_util::StreamExt;
 use serde::Serialize;
@@ -166,6 +167,10 @@ async fn api(workbench: Arc<Workbench>, call: &str, parts: &Parts, body: Body) -
         }
         ("GET", "diagnosis.json") => {
             blocking(workbench, |w| w.session().diagnosis().map(|found| as_json(found.document))).await
+        }
+        ("POST", "plan") => {
+            let protocol: Protocol = parsed(body).await?;
+            blocking(workbench, move |w| json(&answers::plan(&w, &protocol)?)).await
         }
         ("POST", "diagnose") => {
             let about = workbench.session().choices().clone();

@@ -7,10 +7,10 @@
     reason = "a test that can't be set up fails"
 )]
 
-use bulge_effects::Catalogue;
-use bulge_inference::{Options, compare};
+use bulge_effects::{Catalogue, known};
+use bulge_inference::{Options, Protocol, compare};
 use bulge_measurements::Data;
-use bulge_muscles::from_toml;
+use bulge_muscles::{Muscle, from_toml};
 use bulge_workbench::{Choices, DataFile, MuscleFile, Start, serve};
 use serde_json::{Value, json};
 use std::io::{Read, Write};
@@ -261,6 +261,61 @@ fn the_shape_follows_what_was_learnt() {
     );
     let file = page.get("shape.vtp?pressure_pa=3e5&contraction=0.1").body;
     assert!(file.starts_with(b"<?xml") && file.len() > 10_000);
+}
+
+/// A test that isn't made yet is looked at with the muscle as learnt, and what is saved as a file is the same test.
+#[test]
+fn a_plan_is_that_of_the_library() {
+    let (_folder, page) = opened();
+    let asked = json!({
+        "blocks": [
+            {"pressures_pa": [2e5, 4e5], "contraction": [0.01, 0.15], "path": "triangle", "cycles": 2, "period_s": 50.0,
+             "rows": 40, "repeats": 1, "specimens": 1},
+            {"pressures_pa": [1e5, 5e5], "contraction": [0.05, 0.1], "held": [0.05, 0.1], "path": "sine", "cycles": 1,
+             "period_s": 20.0, "rows": 30, "repeats": 1, "specimens": 1}
+        ],
+        "noise": {"force_n": 2.0}, "steps": {}, "rig": "none", "pause_s": 10.0, "warming_k": 0.0
+    });
+    let plan = |asked: &Value| page.ask("POST", "api/plan", asked.to_string().as_bytes());
+    let stated = plan(&asked).json();
+    let protocol = Protocol::from_toml(stated["toml"].as_str().unwrap(), "p.toml").unwrap();
+    assert_eq!(protocol, serde_json::from_value::<Protocol>(asked.clone()).unwrap());
+    let muscle = from_toml(MUSCLE, "braid.toml").unwrap();
+    let by_library = |muscle: &Muscle| {
+        let catalogue = Catalogue::builtin();
+        let known = known(muscle, &catalogue).unwrap();
+        serde_json::to_value(bulge_inference::plan(muscle, &known, &catalogue, &protocol).unwrap()).unwrap()
+    };
+    assert_eq!(stated["plan"], by_library(&muscle));
+    assert_eq!(stated["plan"]["rows"], 2 * 80 + 2 * 30);
+    page.put(&effects(&["coulomb-friction"]));
+    let learnt = String::from_utf8(page.get("learnt.toml").body).unwrap();
+    let found = plan(&asked).json();
+    assert_eq!(found["plan"], by_library(&from_toml(&learnt, "learnt.toml").unwrap()));
+    assert_ne!(found["plan"], stated["plan"]);
+    let mut wrong = asked.clone();
+    wrong["blocks"][0]["period_s"] = json!(0.0);
+    let (place, says) = plan(&wrong).refusal();
+    assert!(place == "plan" && says.contains("a period of 0 s is not possible"), "{place}: {says}");
+    wrong["blocks"][0]["periode"] = json!(1.0);
+    assert_eq!(plan(&wrong).refusal().0, "request");
+}
+
+/// Getting ready for an effect changes no answer, and nothing that was chosen.
+#[test]
+fn getting_ready_changes_nothing() {
+    let (_folder, page) = opened();
+    let before = page.get("session").json();
+    let ready = page.ask("POST", "api/prepare", br#"[{"name": "end-taper"}]"#);
+    assert_eq!(ready.status, 200);
+    assert_eq!(page.get("session").json(), before);
+    page.put(&effects(&["end-taper"]));
+    let prepared = page.get("comparison?held_out=0").body;
+    let (_other, fresh) = opened();
+    fresh.put(&effects(&["end-taper"]));
+    assert_eq!(prepared, fresh.get("comparison?held_out=0").body);
+    let unknown = page.ask("POST", "api/prepare", br#"[{"name": "end-tapper"}]"#);
+    assert_eq!(unknown.refusal().0, "effects");
 }
 
 /// A column of 32-bit numbers from the bytes of the rows.

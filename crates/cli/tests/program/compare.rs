@@ -1,9 +1,9 @@
 //! `compare` and `fit` as a user sees them: ladders on data with a known truth, files that lead on, and messages for bad input.
 
 use crate::support::{Folder, bulge, failure, json};
-use bulge::effects::{Catalogue, Moment};
-use bulge::model::{Model, Record, Wanted};
-use bulge::muscles::from_toml;
+use bulge_effects::{Catalogue, Moment};
+use bulge_model::{Model, Record, Wanted};
+use bulge_muscles::from_toml;
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;

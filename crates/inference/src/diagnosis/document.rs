@@ -12,6 +12,7 @@ use crate::diagnosis::geometry::Geometry;
 use crate::diagnosis::not_looked_for::NotLookedFor;
 use crate::diagnosis::rungs::TOGETHER;
 use crate::noise::law::NoiseLaw;
+use crate::protocol::bench::Protocol;
 
 /// What is missing in the model of a muscle, by the data.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -401,4 +402,6 @@ pub struct NextExperiment {
     pub sigma: f64,
     /// How often to repeat it.
     pub repeats: usize,
+    /// The test once, with the noise of the data at hand; none if no test within the limits tells them apart.
+    pub protocol: Option<Protocol>,
 }

@@ -17,9 +17,9 @@ use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::NextExperiment;
 use crate::diagnosis::linearised_model::Given;
 use crate::fit::weights::Noise;
-use crate::noise::law::NoiseLaw;
+use crate::noise::law::{CorrelationTime, NoiseLaw};
 use crate::noise::whitening::Whitening;
-use crate::protocol::bench::{Block, Path, Protocol};
+use crate::protocol::bench::{Block, Path, Protocol, ReadingNoise};
 
 /// Most repeats that anybody is asked for.
 const MOST_REPEATS: usize = 20;
@@ -271,15 +271,15 @@ pub(crate) fn next_experiment(
     let tests = proposals(limits).into_iter().filter(|proposal| !(is_friction && proposal.holds()));
     let tried = tests.filter_map(|test| {
         let sigmas = separations(given, with, without, (&named, &names), &test.protocol)?;
-        Told::by(test.says, &rivals, &sigmas)
+        Some((Told::by(test.says, &rivals, &sigmas)?, test.protocol))
     });
     // Of tests that tell the same the first stands.
-    let best = tried.reduce(|best, other| if other.is_better(&best) { other } else { best });
+    let best = tried.reduce(|best, other| if other.0.is_better(&best.0) { other } else { best });
     let separate = open.class.effect.card().separate;
     let nearest = |rivals: &[&(String, f64)]| {
         rivals.iter().min_by(|a, b| a.1.total_cmp(&b.1)).map(|rival| (rival.0.clone(), rival.1))
     };
-    let Some(best) = best else {
+    let Some((best, protocol)) = best else {
         let (nearest, at_hand) = nearest(&rivals.iter().collect::<Vec<_>>())?;
         return Some(NextExperiment {
             says: format!(
@@ -288,6 +288,7 @@ pub(crate) fn next_experiment(
             separates: vec![named, nearest],
             sigma: at_hand,
             repeats: 0,
+            protocol: None,
         });
     };
     let (nearest, _) = nearest(&best.rivals)?;
@@ -314,7 +315,24 @@ pub(crate) fn next_experiment(
         separates: vec![named, nearest],
         sigma: best.after,
         repeats,
+        protocol: Some(Protocol { noise: noise_of(given, &protocol), ..protocol }),
     })
+}
+
+/// The noise of the data at hand, as far as another test has it: a correlation over rows means nothing there.
+fn noise_of(given: &Given<'_>, protocol: &Protocol) -> ReadingNoise {
+    let seconds = match given.law.time {
+        Some(CorrelationTime::Seconds(time)) if !protocol.is_static() => Some(time),
+        _ => None,
+    };
+    let correlated_n = seconds.map_or(0.0, |_| given.law.correlated_n);
+    ReadingNoise {
+        force_n: if seconds.is_some() { given.row_n } else { given.row_n.hypot(given.law.correlated_n) },
+        correlated_n,
+        correlation_time_s: seconds.filter(|_| correlated_n > 0.0).unwrap_or(0.0),
+        offset_n: given.law.offset_n,
+        ..ReadingNoise::default()
+    }
 }
 
 /// What a proposed test tells from the named effect.
@@ -375,13 +393,12 @@ fn separations(
     let slopes = prediction.by_pressure.iter().zip(&prediction.by_contraction);
     let variances: Vec<f64> =
         slopes.map(|(p, e)| (p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)).collect();
-    // The noise of the data at hand; a correlation over rows means nothing in another test.
-    let timed =
-        record.has_time() && matches!(given.law.time, Some(crate::noise::law::CorrelationTime::Seconds(_)));
+    let reading = noise_of(given, protocol);
+    let timed = reading.correlated_n > 0.0;
     let law = NoiseLaw {
-        correlated_n: if timed { given.law.correlated_n } else { 0.0 },
+        correlated_n: reading.correlated_n,
         time: given.law.time.filter(|_| timed),
-        white_n: if timed { given.row_n } else { given.row_n.hypot(given.law.correlated_n) },
+        white_n: reading.force_n,
         ..given.law.clone()
     };
     let record = record.with_force(prediction.force);

@@ -34,7 +34,7 @@ const MORE_ROWS: usize = 4000;
 /// Rows from which that saves time: several minima, and one.
 const MANY_ROWS: [usize; 2] = [8000, 20_000];
 /// Rows from which a fit takes some of them: its numbers are then known to a hundredth of what the formulas are right to, and passes over all rows are many.
-const LONG: usize = 100_000;
+const LONG: usize = 60_000;
 /// How many it takes.
 const OF_LONG: usize = 40_000;
 /// Rows of each cycle that it takes at least, so that the path keeps its shape.

@@ -1,6 +1,6 @@
 //! What a test bench does and how it reads: pressures, motion, cycles, repeats, noise; made ready for models before anything is measured.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 use bulge_muscles::Muscle;
@@ -34,7 +34,8 @@ const LEAST_TAILS: f64 = 2.1;
 /// assert_eq!((record.len(), record.sweeps().len(), record.moments()[10].direction), (300, 2, 1.0));
 /// # Ok::<(), bulge_inference::InferenceError>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct Protocol {
     /// The blocks in the order of the test: all of them static maps, or none.
     pub blocks: Vec<Block>,
@@ -53,14 +54,15 @@ pub struct Protocol {
 /// The same motion at several pressures, or the same filling and venting at several lengths.
 ///
 /// Each specimen goes through all repeats, each repeat through all pressures (or lengths); each is one sweep.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
 pub struct Block {
     /// Gauge pressures \[Pa\], > 0. At held lengths the lowest and the highest of them are the range.
     pub pressures_pa: Vec<f64>,
     /// Lowest and highest contraction; at held lengths those of [`Block::held`].
     pub contraction: [f64; 2],
     /// Contractions that are held one after the other while the pressure goes up and down; none where the pressures are held.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub held: Vec<f64>,
     /// How length or pressure moves between the ends of its range.
     pub path: Path,
@@ -77,7 +79,7 @@ pub struct Block {
 }
 
 /// How a muscle moves.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Path {
     /// Up and down at constant speed.
@@ -96,7 +98,8 @@ pub enum Path {
 }
 
 /// Noise of single readings, one standard deviation each.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ReadingNoise {
     /// White noise of the force \[N\].
     pub force_n: f64,
@@ -115,7 +118,8 @@ pub struct ReadingNoise {
 }
 
 /// The smallest differences that the sensors show; 0: none.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ReadingSteps {
     /// Of the force \[N\].
     pub force_n: f64,
@@ -126,7 +130,7 @@ pub struct ReadingSteps {
 }
 
 /// Zero and gain errors of the sensors.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RigErrors {
     /// None.
@@ -184,7 +188,7 @@ impl Block {
         isobaric.take(if self.held.is_empty() { usize::MAX } else { 0 }).chain(isometric)
     }
 
-    fn pressure_range(&self) -> [f64; 2] {
+    pub(crate) fn pressure_range(&self) -> [f64; 2] {
         self.pressures_pa
             .iter()
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(*p), high.max(*p)])

@@ -64,6 +64,7 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
             separates: vec!["bladder-elasticity".to_owned(), "wall-thickness".to_owned()],
             sigma: 4.9,
             repeats: 2,
+            protocol: None,
         }),
         warnings: vec!["one warning".to_owned()],
         comparison,

@@ -10,7 +10,7 @@ use bulge::effects::{Catalogue, Moment};
 use bulge::model::{Model, Record, Wanted};
 use bulge::muscles::from_toml;
 
-const MUSCLE: &str = include_str!("../data/braid.toml");
+const MUSCLE: &str = include_str!("../../cli/data/braid.toml");
 /// What the muscle file doesn't say: each effect with its numbers in SI.
 const HIDDEN: [(&str, &[f64]); 3] =
     [("end-taper", &[]), ("bladder-elasticity", &[0.31e6]), ("coulomb-friction", &[14.0])];
@@ -58,7 +58,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let force = model.evaluate(&record, &model.start(), &Wanted::default())?.force;
 
     println!(
-        "# Simulated, not measured: a 20 mm braid on a test bench, written by crates/cli/examples/ex5_simulated_measurements.rs,"
+        "# Simulated, not measured: a 20 mm braid on a test bench, written by crates/bulge/examples/ex5_simulated_measurements.rs,"
     );
     println!(
         "# which says what is hidden in it. Three loops of 50 s at each of five pressures; noise 2 N and 100 Pa."

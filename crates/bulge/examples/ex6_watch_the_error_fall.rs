@@ -12,8 +12,8 @@ use bulge::muscles::from_toml;
 use std::sync::Arc;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let muscle = from_toml(include_str!("../data/braid.toml"), "braid.toml")?;
-    let data = Data::from_csv(include_str!("../data/braid-loops.csv"), "braid-loops.csv")?;
+    let muscle = from_toml(include_str!("../../cli/data/braid.toml"), "braid.toml")?;
+    let data = Data::from_csv(include_str!("../../cli/data/braid-loops.csv"), "braid-loops.csv")?;
     let catalogue = Catalogue::builtin();
     let mut effects = Vec::new();
     for name in ["end-taper", "bladder-elasticity", "coulomb-friction"] {
