@@ -13,6 +13,8 @@ import argparse
 import base64
 import contextlib
 import json
+import os
+import random
 import shutil
 import signal
 import statistics
@@ -20,6 +22,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import urllib.request
 from pathlib import Path
 
 from report_check import FLAGS, OVERFLOW, Browser, Checks, Trouble, complaints_of
@@ -114,8 +117,8 @@ class Page(Browser):
     def click(self, selector):
         self.do(f"/element/{self.find(selector)}/click", {})
 
-    def choose(self, selector, path):
-        self.do(f"/element/{self.find(selector)}/value", {"text": str(Path(path).resolve())})
+    def choose(self, selector, *paths):
+        self.do(f"/element/{self.find(selector)}/value", {"text": "\n".join(str(Path(path).resolve()) for path in paths)})
 
     def text(self, selector):
         return self.run(f"return (document.querySelector({json.dumps(selector)}) || {{}}).textContent || ''")
@@ -131,6 +134,16 @@ class Page(Browser):
         steps = [move(at[0], 0), {"type": "pointerDown", "button": 0}, move(((at[0][0] + at[1][0]) // 2, at[1][1]), 60), move(at[1], 60), {"type": "pointerUp", "button": 0}]
         self.do("/actions", {"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": steps}]})
 
+    def press(self, selector, rest=0.25):
+        """As a hand does: the pointer comes, rests, and presses."""
+        self.run(f"document.querySelector({json.dumps(selector)}).scrollIntoView({{block: 'center'}})")
+        x, y, width, height = self.run(f"const b = document.querySelector({json.dumps(selector)}).getBoundingClientRect(); return [b.left, b.top, b.width, b.height]")
+        steps = [
+            {"type": "pointerMove", "duration": 30, "x": round(x + width / 2), "y": round(y + height / 2), "origin": "viewport"},
+            {"type": "pause", "duration": round(1000 * rest)}, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0},
+        ]
+        self.do("/actions", {"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": steps}]})
+
     def shade(self, name):
         self.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": name}])
 
@@ -142,13 +155,14 @@ class Page(Browser):
 class Server:
     """`bulge open`, which the test starts and kills."""
 
-    def __init__(self, program, tour):
+    def __init__(self, program, tour, session=None):
         self.program, self.tour = program, tour
+        self.session = ["--session", str(session)] if session else []
 
     def __enter__(self):
         self.process = subprocess.Popen(
             # In the folder of the tour: screenshots show the command line.
-            [Path(self.program).resolve(), "open", "braid-loops.csv", "--muscle", "braid.toml", "--no-browser"],
+            [Path(self.program).resolve(), "open", "braid-loops.csv", "--muscle", "braid.toml", "--no-browser", *self.session],
             cwd=self.tour, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         )
         for line in self.process.stdout:
@@ -160,6 +174,16 @@ class Server:
     def kill(self):
         self.process.send_signal(signal.SIGKILL)
         self.process.wait()
+
+    def memory(self):
+        """Resident set [MiB]."""
+        pages = int(Path(f"/proc/{self.process.pid}/statm").read_text().split()[1])
+        return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+    def ask(self, method, call, body=None):
+        request = urllib.request.Request(self.address + "api/" + call, json.dumps(body).encode() if body is not None else None, {"Content-Type": "application/json"}, method=method)
+        with urllib.request.urlopen(request, timeout=120) as answer:
+            return answer.read()
 
     def __exit__(self, *_):
         if self.process.poll() is None:
@@ -332,11 +356,15 @@ class Story:
         self.expect("the numbers of the effects are shown", len(shown) >= 2, shown)
 
     def time_switches(self, name, times, limit):
+        """Effects are switched on for the first time and off again, by a hand that rests on each switch for a quarter of a second."""
         page = self.page
         page.run("performance.clearMeasures('switch'); performance.clearMeasures('draw')")
-        for i in range(times):
+        usable = page.run("return [...document.querySelectorAll('#catalogue [role=switch]:not(:disabled)[aria-checked=false]')].map((s) => s.dataset.effect)")
+        # Of all stages, and not those alone that stand first.
+        some = usable[:: max(1, len(usable) // max(1, times // 2))][: times // 2]
+        for effect in [effect for effect in some for _ in ("on", "off")]:
             before = page.run("return performance.getEntriesByName('switch').length")
-            page.run("document.querySelector('[role=switch][data-effect=coulomb-friction]').click()")
+            page.press(f"#catalogue [role=switch][data-effect={effect}]")
             page.wait(f"performance.getEntriesByName('switch').length > {before}", "the plots are redrawn")
             page.is_ready()
         self.measured(name, page.run("return performance.getEntriesByName('switch').map((m) => m.duration)"), limit)
@@ -392,6 +420,39 @@ class Story:
         page.wait("!document.querySelector('#preview') && document.querySelectorAll('#ladder .rung').length > 1", "the claim is accepted")
         page.settle()
         self.expect("with what was found the error is near the noise", page.error() < 0.05 * base, page.error())
+
+    def plan(self):
+        """A test is drawn, and what it would show is told; a wrong number is told at its field, an impossible one in the library's words."""
+        page = self.page
+        page.click("#tab-plan")
+        page.wait("document.querySelector('#plan-facts')", "the test of the data is looked at")
+        self.expect("the test of the data is taken over", len(page.run("return document.querySelector('#block-0-pressures').value").split(",")) > 1)
+        page.click("#clear-plan")
+        page.run("document.querySelector('#plan-panel').scrollIntoView()")
+        start = time.monotonic()
+        page.drag("#plan-plane", (0.35, 0.75), (0.75, 0.3))
+        page.wait("document.querySelectorAll('[data-block]').length === 1 && document.querySelector('#plan-facts') && !document.querySelector('#plan-answer.pending')", "a drawn test is looked at")
+        self.measured("a test is drawn and looked at", [1000 * (time.monotonic() - start)])
+        self.expect("a rectangle is three sweeps", "in 3 sweeps" in page.text("#plan-facts"), page.text("#plan-facts"))
+        page.drag("#plan-plane", (0.5, 0.8), (0.5, 0.3))
+        page.wait("document.querySelectorAll('[data-block]').length === 2 && document.querySelector('#plan-facts')?.textContent.includes('in 4 sweeps')", "a held length is added")
+        self.expect("an upright line holds the length", page.run("return document.querySelector('#block-1-motion').value") == "held")
+        wrong = "const b = document.querySelector('#block-0-{}'); b.value = '{}'; b.dispatchEvent(new Event('change'))"
+        page.run(wrong.format("pressures", "2 bar"))
+        self.expect("a wrong number is told at its field", "numbers such as" in page.text("[data-block='0'] .field-error"), page.text("[data-block='0']"))
+        page.run(wrong.format("pressures", "2, 4"))
+        page.run(wrong.format("period_s", "0"))
+        page.wait("document.querySelector('#plan-error').textContent.includes('a period of 0 s is not possible')", "an impossible test is refused in the library's words")
+        page.run(wrong.format("period_s", "60"))
+        page.wait("!document.querySelector('#plan-error').textContent && document.querySelector('#plan-facts')?.textContent.includes('in 3 sweeps')", "a right one is looked at again")
+        here = page.run("return location.href")
+        # What was drawn is with the session a moment later.
+        time.sleep(1)
+        page.visit(here)
+        page.settle()
+        page.click("#tab-plan")
+        page.wait("document.querySelectorAll('[data-block]').length === 2", "a reload keeps the plan")
+        page.click("#tab-effects")
 
     def undo(self):
         page = self.page
@@ -460,6 +521,54 @@ class Story:
         print()
 
 
+def killed_while_diagnosing(page, checks, arguments, folder):
+    """A server that is killed in the middle of a diagnosis is started again: the session is what it was, and the page goes on."""
+    session = folder / "session"
+    with Server(arguments.bulge, arguments.tour, session) as server:
+        page.visit(server.address)
+        page.settle()
+        page.press("#catalogue [role=switch][data-effect=end-taper]")
+        page.wait("document.querySelectorAll('#ladder .rung').length === 2", "an effect is on")
+        page.settle()
+        error, address = page.error(), server.address
+        page.click("#diagnose")
+        page.wait("document.querySelector('#diagnosis-progress') && document.querySelector('#diagnosis-progress').value > 0.05", "the diagnosis is under way")
+        server.kill()
+        page.wait("document.querySelector('#banner').textContent.includes('has ended')", "the page says that the server has ended", 20)
+    with Server(arguments.bulge, arguments.tour, session) as server:
+        page.visit(server.address)
+        page.settle()
+        same = server.address.rsplit("/", 2)[1] == address.rsplit("/", 2)[1]
+        checks.check("killed while diagnosing, nothing is lost", [] if page.error() == error and same else [f"{error} became {page.error()}, {address} {server.address}"])
+        page.click("#diagnose")
+        page.wait("document.body.dataset.diagnosis === 'done'", "the diagnosis is made again", 300)
+        checks.check("the diagnosis is made again", [])
+
+
+def stays_small(checks, arguments, times):
+    """Memory of the server over many switches and held numbers: it is flat once what is kept is full."""
+    names = ["end-taper", "bladder-elasticity", "coulomb-friction", "pressure-offset", "force-offset", "thread-elasticity", "viscoelasticity", "specimen-spread"]
+    chance = random.Random(5)
+    with Server(arguments.bulge, arguments.tour) as server:
+        usable = {card["name"] for card in json.loads(server.ask("GET", "effects"))["effects"] if not card["unsuitable"]}
+        names = [name for name in names if name in usable]
+        sizes = []
+        for i in range(times):
+            on = [{"name": name} for name in chance.sample(names, chance.randint(0, 3))]
+            for effect in on:
+                if effect["name"] == "coulomb-friction" and chance.random() < 0.5:
+                    effect["hold"] = {"force": round(chance.uniform(1, 20), 2)}
+            server.ask("PUT", "session", {"effects": on})
+            server.ask("GET", "comparison?held_out=0")
+            server.ask("GET", "rows")
+            if i % 10 == 0:
+                server.ask("GET", "comparison?held_out=1")
+            sizes.append(server.memory())
+        early, late = statistics.mean(sizes[times // 4 : times // 2]), statistics.mean(sizes[-times // 4 :])
+        print(f"memory over {times} switches [MiB]: {sizes[0]:.1f} at first, {early:.1f} in the second quarter, {late:.1f} in the last, {max(sizes):.1f} at most")
+        checks.check("the memory of the server is flat", [] if late < 1.1 * early + 4 else [f"{early:.1f} MiB became {late:.1f} MiB"])
+
+
 def play(page, checks, arguments, address, folder):
     story = Story(page, checks, arguments.tour, folder)
     story.wide()
@@ -470,7 +579,7 @@ def play(page, checks, arguments, address, folder):
     for what, part in (
         ("hostile names", story.hostile), ("a file is read", story.drop), ("a column is mapped", story.map_column),
         ("columns are assigned", story.assign), ("specimens", story.specimens), ("another tab", story.elsewhere), ("effects are switched", story.switch), ("a number is held", story.hold),
-        ("rows are brushed", story.look_closely), ("it is diagnosed", story.diagnose), ("undo, redo, reload", story.undo), ("bad input", story.bad_input),
+        ("rows are brushed", story.look_closely), ("it is diagnosed", story.diagnose), ("a test is planned", story.plan), ("undo, redo, reload", story.undo), ("bad input", story.bad_input),
     ):
         story.part(what, part)
     story.part("switches are timed", lambda: story.time_switches("a switch", arguments.switches, 100))
@@ -492,6 +601,7 @@ def main():
     parser.add_argument("--tour", type=Path, required=True, help="folder with braid-loops.csv and braid.toml")
     parser.add_argument("--big", type=Path, help="a CSV of 1e5 rows")
     parser.add_argument("--pictures", type=Path, help="folder for screenshots")
+    parser.add_argument("--memory", type=int, default=0, help="number of switches over which the memory of the server is watched")
     parser.add_argument("--switches", type=int, default=20, help="how often a switch is timed")
     arguments = parser.parse_args()
     if bool(arguments.address) == bool(arguments.bulge):
@@ -511,7 +621,11 @@ def main():
                 server.kill()
                 story.part("the server is killed", lambda: page.wait("document.querySelector('#banner').textContent.includes('has ended')", "the page says so", 20))
                 story.expect("what was drawn stays", page.run("return document.querySelectorAll('#ladder .rung').length > 0"))
+            if server:
+                story.part("the server is killed in a diagnosis", lambda: killed_while_diagnosing(page, checks, arguments, folder))
             story.table()
+        if arguments.memory:
+            stays_small(checks, arguments, arguments.memory)
     except Trouble as trouble:
         checks.check("the browser can look at it", [str(trouble)])
     finally:

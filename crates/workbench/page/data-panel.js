@@ -52,12 +52,12 @@ function mapping(columns) {
   return h("p", { class: "remark", id: "mapping" }, "columns as said: ", h("code", null, columns), " ", h("button", { type: "button", class: "small", id: "forget-columns", onclick: () => void change(() => ({ columns: null }), "columns") }, "forget"));
 }
 
-/** @param {File} file */
-async function take(file) {
+/** Takes files as one analysis; the first one in the place of those that are there, unless it is added to them. @param {File[]} files */
+async function take(files) {
   showAt("data", "");
   showAt("columns", "");
   try {
-    await sendFile(file, file.name, { add: input("add-file").checked });
+    for (const [i, file] of files.entries()) await sendFile(file, file.name, { add: i > 0 || input("add-file").checked });
   } catch (error) {
     report(error, "data");
   }
@@ -70,9 +70,9 @@ export function startDataPanel() {
   on("documents", draw);
   on("outdated", draw);
   input("file").addEventListener("change", () => {
-    const file = input("file").files?.[0];
-    if (file) void take(file);
+    const files = [...(input("file").files ?? [])];
     input("file").value = "";
+    if (files.length) void take(files);
   });
 
   // A file may be dropped anywhere: whoever misses the box would otherwise leave the page.
@@ -89,9 +89,10 @@ export function startDataPanel() {
     event.preventDefault();
     depth = 0;
     document.body.classList.remove("dropping");
-    const file = event.dataTransfer?.files[0];
-    if (!file) return;
-    if (file.name.endsWith(".toml")) dispatchEvent(new CustomEvent("muscle-file", { detail: file }));
-    else void take(file);
+    const dropped = [...(event.dataTransfer?.files ?? [])];
+    const muscle = dropped.find((file) => file.name.endsWith(".toml"));
+    const files = dropped.filter((file) => file !== muscle);
+    if (muscle) dispatchEvent(new CustomEvent("muscle-file", { detail: muscle }));
+    if (files.length) void take(files);
   });
 }

@@ -21,6 +21,7 @@ const [MOST_EFFECTS, MOST_PAIRS] = [12, 8];
 let planned = null;
 let failure = "";
 let isPlanning = false;
+let isAsking = false;
 let asking = new AbortController();
 let askedFor = "";
 /** Effects of the last diagnosis: pairs of them come first. @type {Set<string>} */
@@ -60,7 +61,13 @@ const edit = (i, part) => keepField(edited(i, part));
 const key = () => JSON.stringify([test().blocks, noise(), state.session?.muscle.toml, state.effects, state.session?.own_effects, state.session?.data, state.session?.excluded]);
 
 async function askNow() {
-  if (!isShown() || !state.session || key() === askedFor) return;
+  if (!isShown() || !state.session) return;
+  if (key() === askedFor) {
+    // Changed and changed back: what stands there, or is on its way, is right.
+    isPlanning = isAsking;
+    drawAnswer();
+    return;
+  }
   const { blocks } = test();
   asking.abort();
   asking = new AbortController();
@@ -69,10 +76,13 @@ async function askNow() {
   failure = "";
   if (!blocks.length) {
     planned = null;
+    isPlanning = false;
+    isAsking = false;
     drawAnswer();
     return;
   }
   isPlanning = true;
+  isAsking = true;
   drawAnswer();
   try {
     const found = await post("plan", JSON.stringify(protocol(blocks, noise() > 0 ? { force_n: noise() } : {})), mine.signal);
@@ -84,11 +94,21 @@ async function askNow() {
     if (error instanceof Refusal) failure = withoutExcerpt(error.message);
     else report(error);
   }
+  isAsking = false;
   isPlanning = false;
   drawAnswer();
 }
 
-const ask = afterRest(300, () => void askNow());
+const askSoon = afterRest(300, () => void askNow());
+
+function ask() {
+  // What stands there is about another test from now on.
+  if (isShown() && key() !== askedFor) {
+    isPlanning = true;
+    drawAnswer();
+  }
+  askSoon();
+}
 
 /** Draws a test in the plan, and shows it. @param {import("./protocol.js").Protocol} of */
 export function drawInPlan(of) {

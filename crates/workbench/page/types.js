@@ -150,7 +150,7 @@
  * @property {{variable: string, share: number, p: number, says: string}[]} where
  * @property {{law?: {says?: string}}} noise
  * @property {{structured: boolean, misfit_n: number, misfit_interval_n: [number, number] | null, hints: any[]}} remaining
- * @property {{says: string}} geometry
+ * @property {{says: string, as_stated_rmse_n: number | null}} geometry
  * @property {any[]} not_looked_for
  * @property {{says: string, separates: string[], protocol?: import("./protocol.js").Protocol | null} | null} next_experiment
  * @property {string[]} warnings

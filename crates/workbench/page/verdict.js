@@ -70,14 +70,22 @@ function claimBox(claim, names, does, isClaim) {
   );
 }
 
+/** How much less likely a rival is, by how far its log evidence lies behind. @param {number | null} behind */
+function odds(behind) {
+  if (behind === null || !Number.isFinite(behind)) return "";
+  if (behind < 0.7) return "as likely";
+  const times = behind < 7 ? number(Math.exp(behind), 2) : `10^${Math.round(behind / Math.LN10)}`;
+  return `${times} times less likely`;
+}
+
 /** @param {Claim} claim @param {string} name @param {Does} does */
 function rivals(claim, name, does) {
-  const near = [...(claim.rivals ?? [])].sort((a, b) => (a.separation ?? Infinity) - (b.separation ?? Infinity)).slice(0, MOST_RIVALS);
+  const near = [...(claim.rivals ?? [])].sort((a, b) => (a.behind ?? Infinity) - (b.behind ?? Infinity)).slice(0, MOST_RIVALS);
   if (!near.length) return null;
   return h(
     "details", { class: "rivals", "data-rivals": name }, h("summary", null, `Rivals: ${near.map((rival) => rival.effect).join(", ")}`),
     h("ul", null, ...near.map((rival) => h(
-      "li", null, h("span", { class: "rival" }, rival.effect), h("span", { class: "facts", title: `behind by ${number(rival.behind)} in log evidence` }, `${number(rival.separation)} σ apart`),
+      "li", null, h("span", { class: "rival" }, rival.effect), h("span", { class: "facts", title: `behind by ${number(rival.behind)} in log evidence; ${number(rival.separation)} standard deviations between the two` }, odds(rival.behind)),
       h("button", { type: "button", class: "small", "data-rival": rival.effect, title: `${rival.effect} instead of ${name}`, onclick: () => does.tryInstead(name, rival.effect) }, "try instead"),
     ))),
   );
@@ -85,8 +93,13 @@ function rivals(claim, name, does) {
 
 /** @param {Diagnosis} found */
 function ladder(found) {
-  return h("table", { class: "steps" }, h("caption", null, "steps"), h("thead", null, h("tr", null, h("th", null, "model"), h("th", { class: "n" }, "error"), h("th", { class: "n" }, "held out"), h("th", null, "adequate"))), h("tbody", null, ...found.ladder.map((rung) => h(
-    "tr", null, h("td", null, rung.added ? `+ ${rung.added}${rung.bent ? ", as the data want it" : ""}` : "as asked"), h("td", { class: "n" }, newtons(rung.rmse_n)), h("td", { class: "n" }, newtons(rung.held_out_rmse_n)), h("td", null, rung.adequate ? "yes" : "no"),
+  const stated = found.geometry?.as_stated_rmse_n ?? null;
+  const first = found.ladder[0]?.rmse_n ?? null;
+  // What its data sheets leave open is fitted along; the headline's error is that of the muscle as stated.
+  const isFitted = stated !== null && first !== null && Math.abs(stated - first) > 0.01 * stated;
+  const asked = isFitted ? "with what the files leave open fitted" : "as asked";
+  return h("table", { class: "steps" }, h("caption", null, "steps"), h("thead", null, h("tr", null, h("th", null, "model"), h("th", { class: "n" }, "error"), h("th", { class: "n" }, "held out"), h("th", null, "adequate"))), h("tbody", null, isFitted ? h("tr", null, h("td", null, "as stated"), h("td", { class: "n" }, newtons(stated)), h("td", { class: "n" }, ""), h("td", null, "")) : null, ...found.ladder.map((rung) => h(
+    "tr", null, h("td", null, rung.added ? `+ ${rung.added}${rung.bent ? ", as the data want it" : ""}` : asked), h("td", { class: "n" }, newtons(rung.rmse_n)), h("td", { class: "n" }, newtons(rung.held_out_rmse_n)), h("td", null, rung.adequate ? "yes" : "no"),
   ))));
 }
 

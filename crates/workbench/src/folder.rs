@@ -33,6 +33,9 @@ pub(crate) struct Kept {
     pub(crate) view: Value,
     /// The word that ends the address: a page that is open finds the session again when it is served anew at the same port.
     pub(crate) token: String,
+    /// What was stated when it was opened last: whoever states the same again goes on.
+    #[serde(default)]
+    pub(crate) stated: Option<Choices>,
     /// What the last diagnosis was about.
     #[serde(default)]
     pub(crate) diagnosed: Option<Choices>,
@@ -49,6 +52,7 @@ impl Kept {
     pub(crate) fn new(choices: Choices, token: String) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
+            stated: Some(choices.clone()),
             choices,
             past: Vec::new(),
             future: Vec::new(),

@@ -46,7 +46,8 @@ use session::Session;
 pub struct Start {
     /// Measurements, muscle and effects.
     pub choices: Choices,
-    /// Whether they were asked for: then a session that is there goes on with them, else it goes on with its own.
+    /// Whether they were asked for: then a session that is there goes on with them, unless they are those that it was opened with before; else it goes on with its
+    /// own.
     pub is_stated: bool,
     /// Port to listen on; 0: any that is free.
     pub port: u16,

