@@ -194,6 +194,8 @@ fn a_number_is_held_and_fitted_again() {
         "{}",
         session["command"]
     );
+    let says = "muscle, [\"end-taper\", \"bladder-elasticity\", \"coulomb-friction\"], hold={\"coulomb-friction.force\": \"5 N\"}))";
+    assert!(session["python"].as_str().unwrap().ends_with(says), "{}", session["python"]);
     let comparison = page.get("comparison?held_out=0").json();
     let rung = &comparison["ladder"][3];
     // What is left of the friction of 13.9 N has its sign: the error is their root of squares.
@@ -304,9 +306,9 @@ fn rows_have_the_error_of_the_ladder_and_can_be_excluded() {
     let session = page.put(&json!({"excluded": [10, 11, 12]})).json();
     let says = format!("--exclude {}-{}", lines[10], lines[12]);
     assert!(session["command"].as_str().unwrap().contains(&says), "{session}");
-    // The Python package doesn't take it yet, and the page says so.
-    let says = format!("# without --exclude {}-{}", lines[10], lines[12]);
-    assert!(session["python"].as_str().unwrap().contains(&says), "{}", session["python"]);
+    let says =
+        format!("print(bulge.compare(data, muscle, \"end-taper\", exclude=\"{}-{}\"))", lines[10], lines[12]);
+    assert!(session["python"].as_str().unwrap().ends_with(&says), "{}", session["python"]);
     let after = page.get("rows").body;
     assert!(rmse(&after).1 == 747 && column(&after, "state")[10..13] == [-1.0; 3]);
     let left_out = page.get("comparison?held_out=0").json()["data"]["left_out"].to_string();

@@ -1,2 +1,0 @@
-// What the bundle exports, for the check of types.
-export { init, use } from "echarts/core";
