@@ -297,7 +297,7 @@ fn three(value: f64) -> String {
 }
 
 #[cfg(test)]
-#[path = "../../../report/tests/diagnosed/mod.rs"]
+#[path = "../../../report/tests/all/diagnosed/mod.rs"]
 mod diagnosed;
 
 #[cfg(test)]
