@@ -37,7 +37,7 @@ const IN_PYTHON: [(&str, &str); 5] = [
     ("`--resume`", "`resume=True`"),
     ("`bulge effects`", "`bulge.effects()`"),
     ("`bulge effects --laws` lists them", "the cards of `bulge.effects()` name those that effects have"),
-    ("a file for `--effects`", "`own=`"),
+    ("its file: `--effects FILE`", "`own=`"),
 ];
 
 /// The exception of a fault, with its sentence.
