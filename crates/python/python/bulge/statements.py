@@ -24,11 +24,8 @@ def lines(exclude: Lines) -> str | None:
     """Lines as one text."""
     if exclude is None or isinstance(exclude, str):
         return exclude
-    try:
-        all_lines = list(exclude)  # type: ignore[arg-type]
-    except TypeError:
-        all_lines = [exclude]
-    return ",".join(one if isinstance(one, str) else str(count("exclude", one, 1)) for one in all_lines)
+    every: Iterable[int | str] = exclude if isinstance(exclude, Iterable) else [exclude]
+    return ",".join(one if isinstance(one, str) else str(count("exclude", one, 1)) for one in every)
 
 
 def said(exclude: Lines, hold: Held, bound: Bounded, tie: Tied) -> Any:
