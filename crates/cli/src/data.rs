@@ -1,7 +1,7 @@
 //! Measured rows on the command line: the files, which column is which, and how they were read.
 
 use bulge_effects::{Catalogue, Effect, known};
-use bulge_inference::Options;
+use bulge_inference::{Options, rows_to_exclude};
 use bulge_measurements::{ColumnMap, Data, ReadOptions, Reading};
 use bulge_model::read_options;
 use bulge_muscles::Muscle;
@@ -67,13 +67,17 @@ impl DataArguments {
         effects: Vec<Arc<dyn Effect>>,
     ) -> Result<Options, Failure> {
         let known = known(muscle, &catalogue)?;
-        let excluded = self.exclude.as_deref().map(|lines| data.rows_of_lines(lines)).transpose()?;
-        let excluded = excluded.unwrap_or_default();
-        if !data.is_empty() && excluded.len() == data.len() {
-            let what = "these are all rows: leave some to compare with".to_owned();
-            return Err(Failure::Value { option: "--exclude", what });
-        }
-        Ok(Options { known, excluded, ..Options::new(catalogue, effects) })
+        let options = Options { known, ..Options::new(catalogue, effects) };
+        Ok(match &self.exclude {
+            Some(lines) => options.excluding(lines, data)?,
+            None => options,
+        })
+    }
+
+    /// The rows that are left out.
+    pub(crate) fn excluded(&self, data: &Data) -> Result<Vec<usize>, Failure> {
+        let rows = self.exclude.as_deref().map(|lines| rows_to_exclude(lines, data)).transpose()?;
+        Ok(rows.unwrap_or_default())
     }
 
     /// Reads the files of a muscle's measurements.

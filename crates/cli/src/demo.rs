@@ -280,3 +280,39 @@ fn models(
         ("exact ends and rubber bladder", clamped.with_bladder(bladder?)?),
     ])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::holds;
+    use bulge_table::Table;
+
+    /// Muscles of the tour, and a shipped table; diagnoses as numbers, for they take long.
+    #[test]
+    fn the_document_holds_what_its_schema_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let (mut text, mut files) = (String::new(), Vec::new());
+        let (pleated, difference) = pleated(folder.path(), &mut text, &mut files).unwrap();
+        let braid = braid(folder.path(), &mut text, &mut files).unwrap();
+        let table = Table::from_bytes(include_bytes!("../../table/examples/data/ppam.table")).unwrap();
+        let found = || Found {
+            verdict: Verdict::Missing,
+            missing: vec!["lobes".to_owned()],
+            rmse_n: 11.0,
+            noise_floor_n: 11.2,
+        };
+        let document = Document {
+            schema: "bulge.demo/1",
+            pleated,
+            shooting_minus_closed_form: difference,
+            braid,
+            ladder: vec![("Constant friction".to_owned(), 2.1)],
+            hidden: [found(), found()],
+            own_form: [found(), found()],
+            table: TableDescription::of(&table).unwrap(),
+            files,
+        };
+        let (kind, fields) = holds(&serde_json::to_value(&document).unwrap());
+        assert!(kind == "demo" && fields > 60, "{fields}");
+    }
+}

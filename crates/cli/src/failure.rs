@@ -7,7 +7,7 @@ use bulge_design::size::SizeError;
 use bulge_effects::CatalogueError;
 use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
-use bulge_inference::{HideError, InferenceError};
+use bulge_inference::{HideError, InferenceError, Stated, StatementError};
 use bulge_measurements::{MeasurementError, WrittenError};
 use bulge_membrane::MembraneError;
 use bulge_membrane::case::CaseError;
@@ -164,6 +164,26 @@ impl From<HideError> for Failure {
             HideError::Model(error) => error.into(),
             HideError::Inference(error) => error.into(),
         }
+    }
+}
+
+impl From<StatementError> for Failure {
+    fn from(error: StatementError) -> Self {
+        match error {
+            StatementError::Text { about, what } => Self::Value { option: option(about), what },
+            StatementError::Lines(error) => Self::Measurement(error),
+            StatementError::Inference(error) => Self::Inference(error),
+        }
+    }
+}
+
+/// The option that states it.
+fn option(about: Stated) -> &'static str {
+    match about {
+        Stated::Exclude => "--exclude",
+        Stated::Hold => "--hold",
+        Stated::Bound => "--bound",
+        Stated::Tie => "--tie",
     }
 }
 

@@ -22,6 +22,9 @@ mod open;
 mod plan;
 mod predict;
 mod restricted;
+#[cfg(test)]
+#[path = "../tests/program/schema.rs"]
+mod schema;
 mod sense;
 mod shape;
 mod simulate;

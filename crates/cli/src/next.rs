@@ -16,6 +16,7 @@ use crate::diagnose::text::untested;
 use crate::diagnose::untested::reasons;
 use crate::failure::Failure;
 use crate::files;
+use crate::restricted::RestrictedArguments;
 
 const PRESSURE: &str = "--pressure";
 const CONTRACTION: &str = "--contraction";
@@ -33,6 +34,8 @@ pub(crate) struct NextCommand {
     /// Effects that the model has already: `--with end-taper,bladder-elasticity`
     #[arg(long, value_delimiter = ',', value_name = "EFFECT")]
     with: Vec<String>,
+    #[command(flatten)]
+    restricted: RestrictedArguments,
     /// Your own effects, as expressions in a TOML file: they are looked for too
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
@@ -64,6 +67,8 @@ impl NextCommand {
         let effects = arguments::effects(&catalogue, &self.with)?;
         let data = self.data.read(&muscle)?;
         let base = self.data.options(&data, &muscle, catalogue.clone(), effects)?;
+        // As a diagnosis has them.
+        let base = self.restricted.apply(base, &data, &muscle.clone().with_usual_widths().0)?;
         let bar = Bar::new(self.json);
         let progress = bar.progress();
         let options = DiagnoseOptions { seed: self.seed, limits, progress, ..DiagnoseOptions::new(base) };
@@ -132,11 +137,9 @@ impl NextCommand {
             paragraph(&mut out, "  ", "(--pressure and --contraction state them)");
         }
         if step.next.is_some_and(|next| next.repeats > 0) {
-            let _ = writeln!(
-                out,
-                "\n  and then, with both:\n    bulge diagnose {}",
-                self.data.call(&self.muscle, &self.with, self.effects.as_deref(), &["NEW.csv"]).arguments()
-            );
+            let mut call = self.data.call(&self.muscle, &self.with, self.effects.as_deref(), &["NEW.csv"]);
+            call.restrictions = self.restricted.stated();
+            let _ = writeln!(out, "\n  and then, with both:\n    bulge diagnose {}", call.arguments());
         }
         if step.open.is_none() {
             for line in reasons(&untested(diagnosis), UNTESTED.len()) {

@@ -39,7 +39,7 @@ impl PredictCommand {
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
         let data = self.data.read_with_or_without_force(&muscle)?;
-        let found = predict(&data, &muscle, &catalogue)?;
+        let found = predict(&data, &muscle, &catalogue, &self.data.excluded(&data)?)?;
         let mut wrote = String::new();
         if let Some(path) = &self.out {
             files::write(path, &written(path, &found.written_columns())?)?;

@@ -1,6 +1,6 @@
 //! Numbers held, bounded or tied on the command line.
 
-use bulge_inference::{Options, check_restrictions};
+use bulge_inference::{Options, Statements};
 use bulge_measurements::Data;
 use bulge_muscles::Muscle;
 use clap::Args;
@@ -23,24 +23,9 @@ pub(crate) struct RestrictedArguments {
 
 impl RestrictedArguments {
     /// The options of a fit with what is stated of its numbers. `muscle` is the one that is fitted: its widths say what is fitted along.
-    pub(crate) fn apply(
-        &self,
-        mut options: Options,
-        data: &Data,
-        muscle: &Muscle,
-    ) -> Result<Options, Failure> {
-        let wrong = |option| move |what| Failure::Value { option, what };
-        for text in &self.hold {
-            options = options.hold(text, muscle).map_err(wrong("--hold"))?;
-        }
-        for text in &self.bound {
-            options = options.bound(text, muscle).map_err(wrong("--bound"))?;
-        }
-        for text in &self.tie {
-            options = options.tie(text, muscle).map_err(wrong("--tie"))?;
-        }
-        check_restrictions(data, muscle, &options)?;
-        Ok(options)
+    pub(crate) fn apply(&self, options: Options, data: &Data, muscle: &Muscle) -> Result<Options, Failure> {
+        let Self { hold, bound, tie } = self.clone();
+        Ok(options.stating(&Statements { hold, bound, tie }, data, muscle)?)
     }
 
     /// Each option with its value, for a command line.

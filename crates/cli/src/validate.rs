@@ -64,3 +64,27 @@ fn table(checks: &[Check]) -> String {
     let _ = writeln!(text, "\n{passed} passed, {} failed", checks.len() - passed);
     text.trim_start().to_owned()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::holds;
+
+    #[test]
+    fn the_document_holds_what_its_schema_names() {
+        let check = |error| Check {
+            group: "group",
+            name: "name",
+            source: "source",
+            error,
+            tolerance: 1e-9,
+            cases: 3,
+            why: "why",
+            worst: String::new(),
+        };
+        let document = document(&[check(1e-12), check(1.0)]).unwrap();
+        let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+        assert_eq!([0, 1].map(|i| document["checks"][i]["passed"].as_bool().unwrap()), [true, false]);
+        assert_eq!(holds(&document), ("validation".to_owned(), 10));
+    }
+}

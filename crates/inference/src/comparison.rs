@@ -21,5 +21,6 @@ pub(crate) mod rows;
 mod shifted;
 pub(crate) mod specimens;
 pub(crate) mod stack;
+pub(crate) mod stated;
 pub(crate) mod tails;
 pub(crate) mod warnings;

@@ -168,6 +168,18 @@ impl MuscleError {
             Self::NoSpread => "instruments",
         }
     }
+
+    /// What would be in range, in words, where one number is out of it.
+    #[must_use]
+    pub(crate) fn range(&self) -> Option<&'static str> {
+        match self {
+            Self::NotPositive { .. } => Some("a value greater than 0"),
+            Self::Negative { .. } => Some("0 or more"),
+            Self::BraidAngle { .. } => Some("an angle between 0 deg and 90 deg"),
+            Self::Misalignment { .. } => Some("an angle between -90 deg and 90 deg"),
+            _ => None,
+        }
+    }
 }
 
 /// The ranges that several constructors share.

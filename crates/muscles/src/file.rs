@@ -140,7 +140,10 @@ impl<'a> Reader<'a> {
             }
             MuscleError::NoWall | MuscleError::NoGasWall => "add a line such as `wall = \"2 mm\"`".to_owned(),
             MuscleError::LobesOfContinuous => "write a number of fibres, such as `fibres = 40`".to_owned(),
-            _ => format!("write {}", keys::example(error.key())),
+            _ => match error.range() {
+                Some(range) => format!("write {range}, such as {}", keys::example(error.key())),
+                None => format!("write {}", keys::example(error.key())),
+            },
         };
         self.root.error(self.root.place(error.key()), error.to_string(), instead)
     }

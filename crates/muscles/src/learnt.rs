@@ -111,6 +111,9 @@ pub(crate) fn is_plain(name: &str) -> bool {
     !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_'))
 }
 
+/// Where the user's own effects are given.
+const OWN_FILE: &str = "`--effects FILE`";
+
 impl Learnt {
     /// An effect with its values, in their order.
     ///
@@ -213,11 +216,13 @@ impl Learnt {
         }
         let all: Vec<&'n str> = SHAPE_EFFECTS.into_iter().chain(known.iter().copied()).collect();
         let instead = match nearest(&self.name, all.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => "`bulge effects` lists the effects that are known; a file for `--effects` adds your own"
-                .to_owned(),
+            Some(near) => format!("did you mean `{near}`? An effect of your own needs its file: {OWN_FILE}"),
+            None => format!(
+                "`bulge effects` lists those that are; an effect of your own needs its file: {OWN_FILE}"
+            ),
         };
-        Err(self.error(format!("unknown effect `{}`", shortened(&self.name)), instead))
+        let name = shortened(&self.name);
+        Err(self.error(format!("unknown effect `{name}`: it is not in the catalogue"), instead))
     }
 }
 

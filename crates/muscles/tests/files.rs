@@ -170,6 +170,9 @@ fn values_that_are_no_quantities() {
 fn values_out_of_range() {
     refused(&with_line(PLEATED, 3, "length = \"-110 mm\""), (3, 10), &["-0.11 m", "length = \"110 mm\""]);
     refused(&with_line(PLEATED, 3, "length = \"0 mm\""), (3, 10), &["greater than 0"]);
+    // The range, and the line as an example: another length is no cure of a sign.
+    let hint = "write a value greater than 0, such as `length = \"110 mm\"`";
+    refused(&with_line(PLEATED, 3, "length = \"-5 mm\""), (3, 10), &["-0.005 m", hint]);
     refused(
         &with_line(PLEATED, 4, "radius = \"-1 mm\""),
         (4, 10),
@@ -407,6 +410,15 @@ fn learnt_effects() {
     let message = muscle.check_learnt(&["crepe", "end-taper", "coulomb-friction"]).unwrap_err().to_string();
     assert!(message.starts_with("m.toml:10:10: unknown effect `creep`"), "{message}");
     assert!(message.contains("did you mean `crepe`?"), "{message}");
+    // A learnt muscle with an effect of the user's own, without the file of that effect.
+    let own = from_toml(&format!("{PLEATED}[effects.hose]\nk = \"5 N\""), "m.toml").unwrap();
+    let message = own.check_learnt(&["creep"]).unwrap_err().to_string();
+    for part in
+        ["unknown effect `hose`: it is not in the catalogue", "effect of your own", "`--effects FILE`"]
+    {
+        assert!(message.contains(part), "{message}");
+    }
+    assert!(own.check_learnt(&["creep", "hose"]).is_ok());
     for (name, near) in
         [("bladder-elasticty", "bladder-elasticity"), ("end-radios", "end-radius"), ("lobe", "lobes")]
     {

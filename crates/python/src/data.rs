@@ -12,12 +12,13 @@ use crate::error::OrRaise;
 use crate::muscle::Muscle;
 
 /// How files are read.
-fn options(columns: Option<&str>, muscle: Option<&Muscle>) -> PyResult<ReadOptions> {
+fn options(columns: Option<&str>, muscle: Option<&Muscle>, force_may_lack: bool) -> PyResult<ReadOptions> {
     let columns = columns.map(str::parse::<ColumnMap>).transpose().or_raise()?;
-    match muscle {
-        Some(muscle) => read_options(&muscle.muscle, columns.as_ref()).or_raise(),
-        None => Ok(ReadOptions { columns: columns.unwrap_or_default(), ..ReadOptions::default() }),
-    }
+    let options = match muscle {
+        Some(muscle) => read_options(&muscle.muscle, columns.as_ref()).or_raise()?,
+        None => ReadOptions { columns: columns.unwrap_or_default(), ..ReadOptions::default() },
+    };
+    Ok(ReadOptions { force_may_lack, ..options })
 }
 
 /// A checked set of measurements.
@@ -34,8 +35,9 @@ impl Data {
         paths: Vec<PathBuf>,
         columns: Option<&str>,
         muscle: Option<PyRef<'_, Muscle>>,
+        force_may_lack: bool,
     ) -> PyResult<Self> {
-        let options = options(columns, muscle.as_deref())?;
+        let options = options(columns, muscle.as_deref(), force_may_lack)?;
         Ok(Self(Arc::new(py.detach(|| measurements::Data::read_with(&paths, &options)).or_raise()?)))
     }
 
@@ -47,8 +49,9 @@ impl Data {
         origin: &str,
         columns: Option<&str>,
         muscle: Option<PyRef<'_, Muscle>>,
+        force_may_lack: bool,
     ) -> PyResult<Self> {
-        let options = options(columns, muscle.as_deref())?;
+        let options = options(columns, muscle.as_deref(), force_may_lack)?;
         let read = || measurements::Data::from_bytes(text.as_bytes(), origin, &options);
         Ok(Self(Arc::new(py.detach(read).or_raise()?)))
     }
@@ -66,6 +69,12 @@ impl Data {
     #[getter]
     fn is_path(&self) -> bool {
         self.0.is_path()
+    }
+
+    /// Whether a force was measured.
+    #[getter]
+    fn has_force(&self) -> bool {
+        self.0.has_force()
     }
 
     #[getter]
@@ -93,7 +102,9 @@ impl Data {
             Motion::Contraction(values) => columns.set_item("contraction", number(values))?,
             Motion::Length(values) => columns.set_item("length_m", number(values))?,
         }
-        columns.set_item("force_n", number(data.force()))?;
+        if data.has_force() {
+            columns.set_item("force_n", number(data.force()))?;
+        }
         for (name, values) in [
             ("time_s", data.time()),
             ("temperature_k", data.temperature()),

@@ -3,7 +3,7 @@
 use bulge_effects::CatalogueError;
 use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
-use bulge_inference::{HideError, InferenceError};
+use bulge_inference::{HideError, InferenceError, StatementError};
 use bulge_measurements::MeasurementError;
 use bulge_model::{ExtendedError, ModelError};
 use bulge_muscles::{Fault, FileError, MuscleError, PresetError};
@@ -32,11 +32,12 @@ create_exception!(
 create_exception!(bulge, NotConvergedError, BulgeError, "The search did not converge (exit status 4).");
 
 /// What to write instead on the command line, and here.
-const IN_PYTHON: [(&str, &str); 4] = [
+const IN_PYTHON: [(&str, &str); 5] = [
+    ("in --with", "in `with_`"),
     ("`--resume`", "`resume=True`"),
     ("`bulge effects`", "`bulge.effects()`"),
     ("`bulge effects --laws` lists them", "the cards of `bulge.effects()` name those that effects have"),
-    ("a file for `--effects`", "`own=`"),
+    ("its file: `--effects FILE`", "`own=`"),
 ];
 
 /// The exception of a fault, with its sentence.
@@ -77,7 +78,7 @@ macro_rules! raised {
 raised!(
     FileError, PresetError, MuscleError, MeasurementError, CatalogueError, EffectFileError, SweepError, TableError,
     TabulateError, VtkError, PlotError, serde_json::Error, std::io::Error;
-    FibreError, ModelError, ExtendedError, FamilyError, InferenceError, HideError, LearningError
+    FibreError, ModelError, ExtendedError, FamilyError, InferenceError, HideError, LearningError, StatementError
 );
 
 /// `?` for errors of the crates.

@@ -2,7 +2,7 @@
 
 use bulge_effects::{Catalogue, Effect, describe, known};
 use bulge_inference as inference;
-use bulge_inference::{DiagnoseOptions, NextLimits, Options, Progress, Protocol};
+use bulge_inference::{DiagnoseOptions, NextLimits, Options, Progress, Protocol, rows_to_exclude};
 use bulge_report::diagnosis::NextStep;
 use bulge_report::{Learnt, comparison, diagnosis};
 use pyo3::prelude::*;
@@ -11,6 +11,7 @@ use std::sync::Arc;
 use crate::data::Data;
 use crate::error::{OrRaise, input};
 use crate::muscle::{Muscle, catalogue, own_effects};
+use crate::statements::Said;
 use crate::task::{Watch, beside, beside_on};
 
 /// Name, title and drawing of each plot of a report.
@@ -107,6 +108,7 @@ pub(crate) fn compare(
     law: Option<&str>,
     fit_law: bool,
     rivals: bool,
+    said: Said,
 ) -> PyResult<Comparison> {
     let mut options = options(muscle, own, &with_)?;
     options.rivals = rivals;
@@ -114,6 +116,7 @@ pub(crate) fn compare(
         options =
             options.with_law(name, &muscle.muscle, fit_law).map_err(|what| input(format!("law: {what}")))?;
     }
+    let options = said.apply(py, options, &data.0, &muscle.muscle)?;
     let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
     let found = beside(py, None, move |_| inference::compare(&data, &muscle, &options))?;
     Ok(Comparison(found.or_raise()?))
@@ -161,6 +164,7 @@ pub(crate) fn diagnose(
     tolerance: Option<f64>,
     seed: u64,
     threads: Option<usize>,
+    said: Said,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Diagnosis> {
     if tolerance.is_some_and(|tolerance| tolerance.is_nan() || tolerance < 0.0) {
@@ -170,6 +174,7 @@ pub(crate) fn diagnose(
     let named = |name: &String| base.catalogue.find(name.trim()).or_raise().map(|e| e.card().name.to_owned());
     let among = among.iter().map(named).collect::<PyResult<Vec<String>>>()?;
     let among = (!among.is_empty()).then_some(among);
+    let base = said.apply(py, base, &data.0, &muscle.muscle.clone().with_usual_widths().0)?;
     let asked = Asked { base, among, tolerance_n: tolerance, seed, limits: NextLimits::default() };
     Ok(Diagnosis(diagnosed(py, data, muscle, asked, threads, progress)?))
 }
@@ -186,11 +191,13 @@ pub(crate) fn next_experiment(
     pressure: Option<[f64; 2]>,
     contraction: Option<[f64; 2]>,
     seed: u64,
+    said: Said,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<String> {
     let limits = NextLimits { pressure_pa: pressure, contraction };
     limits.check().map_err(|(name, what)| input(format!("{name}: {what}")))?;
     let base = options(muscle, own, &with_)?;
+    let base = said.apply(py, base, &data.0, &muscle.muscle.clone().with_usual_widths().0)?;
     let catalogue = base.catalogue.clone();
     let asked = Asked { base, among: None, tolerance_n: None, seed, limits };
     let found = diagnosed(py, data, muscle, asked, None, progress)?;
@@ -206,8 +213,9 @@ pub(crate) fn fit(
     with_: Vec<String>,
     own: &str,
     form_error: bool,
+    said: Said,
 ) -> PyResult<String> {
-    let options = options(muscle, own, &with_)?;
+    let options = said.apply(py, options(muscle, own, &with_)?, &data.0, &muscle.muscle)?;
     let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
     let (of, on, with) = (Arc::clone(&data), muscle.clone(), options.clone());
     let fitting = beside(py, None, move |_| inference::fit_effects(&of, &on, &with))?;
@@ -219,6 +227,23 @@ pub(crate) fn fit(
         None
     };
     serde_json::to_string(&learnt.document().with_drawn(drawn.as_ref())).or_raise()
+}
+
+/// The document of a prediction; see `bulge.predict`.
+#[pyfunction]
+pub(crate) fn predict(
+    py: Python<'_>,
+    data: &Data,
+    muscle: &Muscle,
+    own: &str,
+    exclude: Option<&str>,
+) -> PyResult<String> {
+    let catalogue = all(muscle, own)?;
+    let excluded = exclude.map(|lines| rows_to_exclude(lines, &data.0)).transpose().or_raise()?;
+    let excluded = excluded.unwrap_or_default();
+    let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
+    let found = beside(py, None, move |_| inference::predict(&data, &muscle, &catalogue, &excluded))?;
+    serde_json::to_string(&found.or_raise()?).or_raise()
 }
 
 /// The document of a plan; see `bulge.plan`.

@@ -12,6 +12,7 @@ mod evaluate;
 mod inference;
 mod muscle;
 mod shape;
+mod statements;
 mod sweep;
 mod table;
 mod task;
@@ -34,7 +35,8 @@ mod bulge_module {
     use super::data::Data;
     #[pymodule_export]
     use super::inference::{
-        Comparison, Diagnosis, compare, diagnose, effect_names, effects, fit, next_experiment, plan, simulate,
+        Comparison, Diagnosis, compare, diagnose, effect_names, effects, fit, next_experiment, plan, predict,
+        simulate,
     };
     #[pymodule_export]
     use super::muscle::{Muscle, presets, si, unit_factor, units_of};

@@ -113,7 +113,7 @@ def test_an_effect_of_a_muscle(effect, ppam):
     other = pickle.loads(pickle.dumps(muscle))
     assert other == muscle and other.force(0.2, pressure=BAR) == muscle.force(0.2, pressure=BAR)
     assert bulge.Muscle.from_toml(muscle.to_toml(), own=effect) == muscle
-    with pytest.raises(bulge.InputError, match="unknown effect `hose-stiffness`"):
+    with pytest.raises(bulge.InputError, match=r"unknown effect `hose-stiffness`: it is not in the catalogue(.|\n)*an effect of your own needs `own=`"):
         bulge.Muscle.from_toml(muscle.to_toml())
 
 

@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p bulge-report --example comparison -- DIR [rich|bare|empty|crowded|hostile]`
 
-#[path = "../tests/sample/mod.rs"]
+#[path = "../tests/all/sample/mod.rs"]
 mod sample;
 
 use bulge_report::comparison::{html, plots};

@@ -2,9 +2,9 @@
 //!
 //! `cargo run -p bulge-report --example diagnosis -- DIR`
 
-#[path = "../tests/diagnosed/mod.rs"]
+#[path = "../tests/all/diagnosed/mod.rs"]
 mod diagnosed;
-#[path = "../tests/sample/mod.rs"]
+#[path = "../tests/all/sample/mod.rs"]
 mod sample;
 
 use bulge_report::diagnosis::{html, plots};

@@ -48,7 +48,6 @@ pub(crate) fn shell(choices: &Choices, inputs: Option<&Arc<Inputs>>) -> String {
 
 /// `bulge.compare(...)`
 pub(crate) fn python(choices: &Choices, inputs: Option<&Arc<Inputs>>) -> String {
-    let text = |value: &str| format!("{value:?}");
     let list = |values: &[&str]| match values {
         [one] => text(one),
         _ => format!("[{}]", values.iter().map(|value| text(value)).collect::<Vec<_>>().join(", ")),
@@ -58,22 +57,28 @@ pub(crate) fn python(choices: &Choices, inputs: Option<&Arc<Inputs>>) -> String 
         _ => format!("bulge.Muscle.from_toml({})", text(muscle(choices))),
     };
     let files: Vec<&str> = choices.data.iter().map(|file| file.name.as_str()).collect();
-    let columns =
-        choices.columns.as_ref().map_or_else(String::new, |columns| format!(", columns={}", text(columns)));
-    let own = choices.own_effects.as_ref().map_or_else(String::new, |_| format!(", own={}", text(EFFECTS)));
+    let columns = keyword("columns", choices.columns.as_deref().map(text));
     let with =
         if choices.effects.is_empty() { String::new() } else { format!(", {}", list(&names(choices))) };
-    // What the package doesn't take yet is said, not left out.
-    let lines = excluded(choices, inputs).map(|lines| format!("--exclude {lines}"));
-    let held = held(choices).into_iter().map(|text| format!("--hold \"{text}\""));
-    let untaken: Vec<String> = lines.into_iter().chain(held).collect();
-    let untaken = if untaken.is_empty() {
-        String::new()
-    } else {
-        format!("  # without {}: only the command has it", untaken.join(" "))
-    };
+    let own = keyword("own", choices.own_effects.as_ref().map(|_| text(EFFECTS)));
+    let exclude = keyword("exclude", excluded(choices, inputs).map(|lines| text(&lines)));
+    let held = held(choices);
+    let held: Vec<String> = (held.iter().filter_map(|stated| stated.split_once('=')))
+        .map(|(number, value)| format!("{}: {}", text(number), text(value)))
+        .collect();
+    let hold = keyword("hold", (!held.is_empty()).then(|| format!("{{{}}}", held.join(", "))));
     format!(
-        "import bulge\nmuscle = {muscle}\ndata = bulge.read({}{columns}, muscle=muscle)\nprint(bulge.compare(data, muscle{with}{own})){untaken}",
+        "import bulge\nmuscle = {muscle}\ndata = bulge.read({}{columns}, muscle=muscle)\nprint(bulge.compare(data, muscle{with}{own}{exclude}{hold}))",
         list(&files)
     )
+}
+
+/// A text as Python has it: JSON's escapes are among those of Python.
+fn text(value: &str) -> String {
+    serde_json::Value::from(value).to_string()
+}
+
+/// A keyword argument behind others, if it has a value.
+fn keyword(name: &str, value: Option<String>) -> String {
+    value.map_or_else(String::new, |value| format!(", {name}={value}"))
 }

@@ -7,12 +7,16 @@
     reason = "a test that can't be set up fails"
 )]
 
+#[path = "../../cli/tests/program/schema.rs"]
+mod schema;
+
 use bulge_effects::{Catalogue, known};
 use bulge_inference::{Options, Protocol, compare};
 use bulge_measurements::Data;
 use bulge_muscles::{Muscle, from_toml};
 use bulge_workbench::{Choices, DataFile, MuscleFile, Start, serve};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
@@ -194,6 +198,8 @@ fn a_number_is_held_and_fitted_again() {
         "{}",
         session["command"]
     );
+    let says = "muscle, [\"end-taper\", \"bladder-elasticity\", \"coulomb-friction\"], hold={\"coulomb-friction.force\": \"5 N\"}))";
+    assert!(session["python"].as_str().unwrap().ends_with(says), "{}", session["python"]);
     let comparison = page.get("comparison?held_out=0").json();
     let rung = &comparison["ladder"][3];
     // What is left of the friction of 13.9 N has its sign: the error is their root of squares.
@@ -359,9 +365,9 @@ fn rows_have_the_error_of_the_ladder_and_can_be_excluded() {
     let session = page.put(&json!({"excluded": [10, 11, 12]})).json();
     let says = format!("--exclude {}-{}", lines[10], lines[12]);
     assert!(session["command"].as_str().unwrap().contains(&says), "{session}");
-    // The Python package doesn't take it yet, and the page says so.
-    let says = format!("# without --exclude {}-{}", lines[10], lines[12]);
-    assert!(session["python"].as_str().unwrap().contains(&says), "{}", session["python"]);
+    let says =
+        format!("print(bulge.compare(data, muscle, \"end-taper\", exclude=\"{}-{}\"))", lines[10], lines[12]);
+    assert!(session["python"].as_str().unwrap().ends_with(&says), "{}", session["python"]);
     let after = page.get("rows").body;
     assert!(rmse(&after).1 == 747 && column(&after, "state")[10..13] == [-1.0; 3]);
     let left_out = page.get("comparison?held_out=0").json()["data"]["left_out"].to_string();
@@ -376,6 +382,37 @@ fn rows_have_the_error_of_the_ladder_and_can_be_excluded() {
     );
     let (place, error) = page.put(&json!({"excluded": (0..750).collect::<Vec<_>>()})).refusal();
     assert!(place == "excluded" && error.contains("all rows"), "{error}");
+}
+
+/// What the server sends and keeps, in every state: effects with held numbers, rows excluded, a diagnosis, columns that aren't there, steps to undo and redo.
+#[test]
+fn documents_hold_what_their_schemas_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let session = folder.path().join("session");
+    let page = Page::open(tour(folder.path()), Some(session.clone()), true);
+    let kept =
+        || serde_json::from_slice::<Value>(&std::fs::read(session.join("session.json")).unwrap()).unwrap();
+    let mut all = vec![page.get("session").json(), kept()];
+    for change in [
+        json!({"effects": [{"name": "coulomb-friction", "hold": {"force": 5.0}}], "excluded": [3, 4], "view": {"theme": "dark"}}),
+        json!({"muscle": {"shipped": "dmsp-20-250"}}),
+        json!({"columns": "force=there is none"}),
+    ] {
+        all.extend([page.put(&change).json(), kept()]);
+    }
+    assert!(all[6]["problem"].is_object() && all[7]["past"].as_array().unwrap().len() == 3, "{}", all[6]);
+    page.ask("POST", "api/undo", b"");
+    page.ask("POST", "api/undo", b"");
+    page.ask("POST", "api/diagnose", b"");
+    all.extend([page.get("session").json(), kept()]);
+    assert!(all[8]["diagnosis"].is_object() && all[9]["diagnosed"].is_object(), "{}", all[8]);
+    all.extend(
+        ["shape?pressure_pa=2e5&contraction=0.1", "effects", "comparison?held_out=0", "diagnosis.json"]
+            .map(|call| page.get(call).json()),
+    );
+    let kinds: BTreeSet<String> = all.iter().map(|document| schema::holds(document).0).collect();
+    let expected = ["comparison", "diagnosis", "effects", "session", "session-file", "surface"];
+    assert_eq!(kinds.iter().map(String::as_str).collect::<Vec<_>>(), expected);
 }
 
 #[test]

@@ -178,7 +178,14 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
         out.push_str("\n  the misfit of the base depends on nothing that stands out of the noise\n");
         return;
     }
-    out.push_str("\n  on what the misfit of the base depends\n");
+    let of = match diagnosis.verdict {
+        // All that was seen of a misfit that doesn't matter is still all of it.
+        Verdict::Adequate => {
+            format!("the {} N (RMS) that are judged small enough", three(diagnosis.remaining.misfit_n))
+        }
+        _ => "the whole".to_owned(),
+    };
+    let _ = writeln!(out, "\n  on what the misfit of the base depends, in parts of {of}");
     let width = found.iter().map(|located| located.variable.len()).max().unwrap_or(0);
     for located in found.iter().take(MOST_PLACES) {
         let _ = writeln!(
@@ -297,7 +304,7 @@ fn three(value: f64) -> String {
 }
 
 #[cfg(test)]
-#[path = "../../../report/tests/diagnosed/mod.rs"]
+#[path = "../../../report/tests/all/diagnosed/mod.rs"]
 mod diagnosed;
 
 #[cfg(test)]
@@ -410,6 +417,12 @@ mod tests {
         let adequate = lines(&diagnosed::adequate(comparison.clone()));
         place(&adequate, "  adequate: the model explains these data within noise and tolerance");
         place(&adequate, "  the misfit of the base depends on nothing that stands out of the noise");
+        // A share that stands out is one of a misfit that doesn't matter.
+        let mut passed = diagnosed::adequate(comparison.clone());
+        passed.r#where = diagnosed::missing(comparison.clone()).r#where;
+        passed.remaining.misfit_n = 0.25;
+        let says = "depends, in parts of the 0.250 N (RMS) that are judged small enough";
+        assert!(place(&lines(&passed), says) > 0);
         let unknown = lines(&diagnosed::unknown(comparison.clone()));
         place(&unknown, "  unknown: these data hold a structure that no effect of the catalogue explains");
         place(&unknown, "  nearest: bladder-elasticity (it lowers the error and leaves the structure)");

@@ -559,4 +559,8 @@ fn rows_are_left_out_by_their_lines() {
     let command = ["diagnose", &data, "--muscle", &muscle, "--with", "fibre-stretch", "--exclude", "2-41"];
     let said = String::from_utf8(bulge(&command).stdout).unwrap();
     assert!(said.contains("--exclude 2-41") && said.contains("coulomb-friction"), "{said}");
+    // A prediction has all rows, and its errors are those of the others.
+    let predicted = json(&["predict", &data, "--muscle", &muscle, "--exclude", "2-41", "--json"]);
+    assert_eq!([&predicted["rows"], &predicted["against"]["rows"]].map(|n| n.as_u64().unwrap()), [200, 160]);
+    assert_eq!(predicted["columns"]["force_n"].as_array().unwrap().len(), 200);
 }

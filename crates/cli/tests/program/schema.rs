@@ -1,12 +1,33 @@
 //! The part of JSON Schema 2020-12 that `docs/schemas` uses: type, properties, required, items, additionalProperties, const, enum.
 
 use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// Where the schemas lie, seen from a crate.
+pub(crate) fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/schemas")
+}
+
+/// Holds a document against the schema that it names, `bulge.shape/1` against `shape.json`, and once more without each field that is required. Returns the
+/// name, and the number of these fields.
+pub(crate) fn holds(document: &Value) -> (String, usize) {
+    let name = document["schema"].as_str().unwrap();
+    let kind = name.strip_prefix("bulge.").unwrap().strip_suffix("/1").unwrap().to_owned();
+    let schema = std::fs::read_to_string(folder().join(format!("{kind}.json"))).unwrap();
+    let schema: Value = serde_json::from_str(&schema).unwrap();
+    assert_eq!(complaints(&schema, document), Vec::<String>::new(), "{kind}");
+    let fields = without_one(&schema, document);
+    for (place, without) in &fields {
+        assert!(!complaints(&schema, without).is_empty(), "{kind} without {place} is not noticed");
+    }
+    (kind, fields.len())
+}
 
 /// Keywords that say nothing about a value.
 const WORDS: [&str; 4] = ["$schema", "$id", "title", "description"];
 
 /// What is wrong with a value by a schema: places and reasons. A keyword that isn't known here is wrong as well.
-pub(crate) fn complaints(schema: &Value, value: &Value) -> Vec<String> {
+fn complaints(schema: &Value, value: &Value) -> Vec<String> {
     let mut found = Vec::new();
     check(schema, value, "", &mut found);
     found
@@ -71,7 +92,7 @@ fn check(schema: &Value, value: &Value, at: &str, found: &mut Vec<String>) {
 }
 
 /// Every document that lacks one of the fields which its schema requires, of objects in lists the first, with the place of the field.
-pub(crate) fn without_one(schema: &Value, document: &Value) -> Vec<(String, Value)> {
+fn without_one(schema: &Value, document: &Value) -> Vec<(String, Value)> {
     let mut places = Vec::new();
     required(schema, document, "", &mut places);
     let without = |pointer: String| {

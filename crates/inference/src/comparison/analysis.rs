@@ -16,7 +16,7 @@ use crate::comparison::loops::branches;
 use crate::comparison::mismatch::questions;
 use crate::comparison::options::Options;
 use crate::comparison::requirements::{check_needs, check_size};
-use crate::comparison::rows::{Used, full_scale, lines, used};
+use crate::comparison::rows::{BY_HAND, Used, full_scale, lines, used};
 use crate::comparison::specimens::of_specimens;
 use crate::comparison::{loops, residuals};
 use crate::error::InferenceError;
@@ -68,9 +68,6 @@ pub(crate) struct Analysis<'a> {
     /// A model with all effects, and numbers near those of its best fit.
     pub(crate) near: Option<(&'a Model, &'a [f64])>,
 }
-
-/// Why rows are left out that a person took out.
-const BY_HAND: &str = "excluded by hand";
 
 /// Until the noise is known: a hundredth of full scale.
 fn unknown_noise(muscle: &Muscle, full_scale: f64) -> Noise {

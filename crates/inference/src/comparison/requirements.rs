@@ -60,5 +60,17 @@ pub(crate) fn check_needs(effect: &Arc<dyn Effect>, record: &Record) -> Result<(
     if has {
         return Ok(());
     }
-    Err(InferenceError::Needs { effect: card.name.to_owned(), needs: card.needs.says() })
+    Err(InferenceError::Needs { effect: card.name.to_owned(), needs: lacking(card.needs, record) })
+}
+
+/// What of the needs of an effect these data lack, in words.
+fn lacking(needs: Needs, record: &Record) -> &'static str {
+    match needs {
+        Needs::Path | Needs::Motion if !record.is_path() => {
+            "a column `sweep` or `time` for the order of the rows"
+        }
+        Needs::Path => "a path on which the length goes in both directions",
+        Needs::Motion => "a path on which the length or the pressure goes in both directions",
+        _ => needs.says(),
+    }
 }

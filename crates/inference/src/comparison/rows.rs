@@ -25,6 +25,9 @@ pub(crate) struct Used {
 /// How the reason begins of a row that was read and can't be used, because its pressure is no gauge pressure above 0: such rows are among those left out.
 pub const UNPRESSURISED: &str = "a gauge pressure of";
 
+/// Why rows are left out that a person took out.
+pub(crate) const BY_HAND: &str = "excluded by hand";
+
 impl Used {
     /// Leaves out rows, unless nothing would be left.
     pub(crate) fn leave_out(&mut self, data: &Data, rows: impl IntoIterator<Item = usize>, why: String) {

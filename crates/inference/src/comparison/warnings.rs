@@ -38,21 +38,53 @@ impl Analysis<'_> {
                 parameter.key()
             ));
         }
+        warnings.extend(self.extensor());
         let lowest = ladder.iter().filter_map(|rung| rung.held_out_rmse_n).fold(f64::INFINITY, f64::min);
         if let Some((last, held_out)) = ladder.last().and_then(|rung| Some((rung, rung.held_out_rmse_n?)))
             && held_out > 1.2 * lowest
         {
-            warnings.push(format!(
-                "the last effect, `{}`, makes the error on unseen data larger ({held_out:.1} N instead of {lowest:.1} N): it follows these \
-                 rows, not the muscle",
-                last.added.as_deref().unwrap_or("")
-            ));
+            let larger =
+                format!("the error on unseen data larger ({held_out:.1} N instead of {lowest:.1} N)");
+            let held = held_amiss(ladder);
+            warnings.push(if held.is_empty() {
+                format!(
+                    "the last effect, `{}`, makes {larger}: it follows these rows, not the muscle",
+                    last.added.as_deref().unwrap_or("")
+                )
+            } else {
+                format!("what is held makes {larger}: {}; fitted, it would be another", held.join(", "))
+            });
         }
         if let Some(fit) = ladder.last().and_then(|rung| rung.fit.as_ref()) {
             warnings.extend(fit.warnings.iter().cloned());
         }
         warnings
     }
+
+    /// A braid whose fibres run rather around the axis than along it.
+    fn extensor(&self) -> Option<String> {
+        let neutral = std::f64::consts::SQRT_2.atan();
+        let angle = self.muscle.get(Parameter::BraidAngle).filter(|angle| *angle > neutral)?;
+        Some(format!(
+            "the braid angle at rest is {:.1} deg, above the neutral {:.1} deg: under pressure such a muscle gets longer and pushes; check that the angle counts from the axis",
+            angle.to_degrees(),
+            neutral.to_degrees()
+        ))
+    }
+}
+
+/// Held numbers of effects with which the error of the fit rose, or with which nothing was left to fit: a free number of an effect that is added lets it fall.
+fn held_amiss(ladder: &[Rung]) -> Vec<String> {
+    let mut found = Vec::new();
+    for (i, pair) in ladder.windows(2).enumerate() {
+        let [before, rung] = pair else { continue };
+        let is_last = i + 2 == ladder.len();
+        if rung.rmse_n > before.rmse_n || is_last && rung.fitted <= before.fitted {
+            let own = rung.held.iter().filter(|held| Some(&held.effect) == rung.added.as_ref());
+            found.extend(own.map(|held| format!("`{held}`")));
+        }
+    }
+    found
 }
 
 /// The sentence on rows of which a model says nothing.

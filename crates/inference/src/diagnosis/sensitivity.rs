@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::comparison::requirements::check_needs;
 use crate::diagnosis::tangents::Tangents;
+use crate::error::InferenceError;
 use crate::fit::nuisance::Prepared;
 
 /// Values of each number that is not a size (a distance, a time) at which an effect is looked at.
@@ -118,8 +119,10 @@ impl Sensitivities {
             if nuisance && is_held(prepared, card.name) {
                 continue;
             }
-            let untestable =
-                check_needs(effect, record).err().map(|_| format!("needs {}", card.needs.says()));
+            let untestable = check_needs(effect, record).err().map(|error| match error {
+                InferenceError::Needs { needs, .. } => format!("needs {needs}"),
+                other => other.to_string(),
+            });
             effects.push(Screened { effect: Arc::clone(effect), untestable, nuisance });
         }
         let found: Vec<Result<Vec<Sensitivity>, String>> = effects

@@ -89,6 +89,14 @@ impl Options {
         self.with_restriction(Restriction { number, says: Says::Tied(to) })
     }
 
+    /// The SI unit of a number, by its name as [`Options::hold`] takes it: `Pa` of `bladder-elasticity.modulus`, `1` of what has no dimension.
+    ///
+    /// # Errors
+    /// In a sentence: if there is no such effect or number.
+    pub fn si_unit_of(&self, number: &str, muscle: &Muscle) -> Result<String, String> {
+        Ok(self.named(number)?.card(muscle, |card| card.dimension().to_string()))
+    }
+
     fn with_restriction(mut self, new: Restriction) -> Result<Self, String> {
         let same = |other: &&Restriction| {
             let [a, b] = [&other.number, &new.number];
@@ -206,6 +214,19 @@ mod tests {
         );
         assert!(matches!(&tied.says, Says::Tied(to) if to.to_string() == "pressure-lag.time"));
         assert_eq!(own.number.to_string(), "force-offset.offset[short]");
+    }
+
+    #[test]
+    fn a_number_in_si_units_is_itself() {
+        let (muscle, options) = options();
+        let unit = |number: &str| options.si_unit_of(number, &muscle);
+        assert_eq!(unit("bladder-elasticity.modulus").unwrap(), "Pa");
+        assert_eq!(unit("coulomb-friction").unwrap(), "N");
+        assert_eq!(unit("force-offset.offset[short]").unwrap(), "N");
+        assert!(unit("coulomb-frction.force").unwrap_err().contains("did you mean `coulomb-friction`?"));
+        let (value, pascal) = (123_456.7, unit("bladder-elasticity").unwrap());
+        let held = options.clone().hold(&format!("bladder-elasticity={value:e} {pascal}"), &muscle).unwrap();
+        assert_eq!(held.restrictions[0].says, Says::Held(value));
     }
 
     #[test]

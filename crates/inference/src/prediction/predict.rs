@@ -15,7 +15,7 @@ use crate::comparison::document::LeftOut;
 use crate::comparison::levels::sweep_of;
 use crate::comparison::requirements::{check_needs, check_size};
 use crate::comparison::row_by_row::short;
-use crate::comparison::rows::{lines, used};
+use crate::comparison::rows::{BY_HAND, lines, used};
 use crate::comparison::specimens::{note, of_specimens};
 use crate::error::InferenceError;
 use crate::fit::interval::quantile;
@@ -25,15 +25,25 @@ use crate::prediction::uncertain::Uncertain;
 /// The force of a muscle, with the effects that its file states, at rows that it wasn't fitted to.
 ///
 /// Intervals are made of what the muscle file knows: the table `[fitted]` that `bulge fit` writes, widths, and instruments. Where the data have no force
-/// ([`Data::has_force`]), nothing is compared.
+/// ([`Data::has_force`]), nothing is compared. Rows `excluded` by hand are predicted, and aren't in the errors.
 ///
 /// # Errors
 /// [`InferenceError`]: an effect that isn't known, a muscle of another size, a table `[fitted]` that isn't about this muscle.
-pub fn predict(data: &Data, muscle: &Muscle, catalogue: &Catalogue) -> Result<Predicted, InferenceError> {
-    rayon::scope(|_| predicted(data, muscle, catalogue))
+pub fn predict(
+    data: &Data,
+    muscle: &Muscle,
+    catalogue: &Catalogue,
+    excluded: &[usize],
+) -> Result<Predicted, InferenceError> {
+    rayon::scope(|_| predicted(data, muscle, catalogue, excluded))
 }
 
-fn predicted(data: &Data, muscle: &Muscle, catalogue: &Catalogue) -> Result<Predicted, InferenceError> {
+fn predicted(
+    data: &Data,
+    muscle: &Muscle,
+    catalogue: &Catalogue,
+    excluded: &[usize],
+) -> Result<Predicted, InferenceError> {
     let data = &*of_specimens(data, muscle)?;
     let known = known(muscle, catalogue).map_err(|error| InferenceError::Specimens(Box::new(error)))?;
     let record = Record::new(data, muscle.length().si());
@@ -76,7 +86,11 @@ fn predicted(data: &Data, muscle: &Muscle, catalogue: &Catalogue) -> Result<Pred
         );
     }
     warnings.extend(note(data, muscle));
-    let counting = data.has_force().then(|| used(data));
+    let counting = data.has_force().then(|| {
+        let mut used = used(data);
+        used.leave_out(data, excluded.iter().copied(), BY_HAND.to_owned());
+        used
+    });
     Ok(Predicted {
         schema: "bulge.prediction/1",
         muscle: muscle.name().to_owned(),

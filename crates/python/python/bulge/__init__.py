@@ -10,7 +10,8 @@ its name ends in its unit where it has one (``force_n``). Arrays broadcast as in
 stop on Ctrl-C.
 
 - :class:`Muscle`: what it is; its shape, force, volume and stiffness,
-- :func:`read`: measurements, :func:`compare`, :func:`diagnose`, :func:`fit`, :func:`plan`, :func:`next_experiment`, :func:`simulate`,
+- :func:`read`: measurements, :func:`compare`, :func:`diagnose`, :func:`fit`, :func:`predict`, :func:`plan`, :func:`next_experiment`,
+  :func:`simulate`,
 - :class:`Effect`: a physical effect of one's own, :func:`effects`: the catalogue,
 - :class:`Sweep`, :class:`Table`: families of muscles as data sets and as certified tables,
 - :mod:`bulge.distributed`: the same on Dask.
@@ -34,6 +35,7 @@ from bulge.inference import (
 )
 from bulge.measurements import Data, read
 from bulge.muscle import Muscle, Shape, Surface, presets
+from bulge.prediction import Prediction, predict
 from bulge.results import Result
 from bulge.sweeps import Sweep, read_sweep, sweep, sweep_example
 from bulge.tables import Table
@@ -56,6 +58,7 @@ __all__ = [
     "NotConvergedError",
     "Parameter",
     "Plan",
+    "Prediction",
     "Result",
     "Shape",
     "Simulation",
@@ -69,6 +72,7 @@ __all__ = [
     "fit",
     "next_experiment",
     "plan",
+    "predict",
     "presets",
     "quantity",
     "read",

@@ -10,10 +10,11 @@ from typing import Any
 
 from bulge import _bulge
 from bulge.effects import OwnEffects, joined, own_text
-from bulge.measurements import Data, DataLike, read
+from bulge.measurements import Data, DataLike, measured
 from bulge.muscle import Muscle, effect_units
 from bulge.progress import Progress, callback
 from bulge.results import Result, number, rung_names
+from bulge.statements import Bounded, Held, Lines, Tied, said
 from bulge.texts import count, read_text, write_whole
 from bulge.units import Quantity, si, si_range
 
@@ -284,13 +285,22 @@ def compare(
     law: str | None = None,
     fit_law: bool = False,
     rivals: bool = False,
+    exclude: Lines = None,
+    hold: Held = None,
+    bound: Bounded = None,
+    tie: Tied = None,
 ) -> Comparison:
     """Compares the model with measurements: what ``bulge compare`` does.
 
     ``data`` is what :func:`bulge.read` takes; ``with_`` names effects to fit, in their order; ``own`` are effects of one's own; ``law`` is a force
     law of the papers as the base (``fit_law``: fitted); ``rivals`` fits every law for comparison.
+
+    ``exclude`` leaves rows out by their lines in the file: ``"12,33-40"`` or ``range(33, 41)``. ``hold`` holds numbers of effects at values,
+    ``{"bladder-elasticity.modulus": "0.31 MPa"}``; ``bound`` keeps them between two, ``{"coulomb-friction.force": ("5 N", "20 N")}``; ``tie``
+    gives a number the value of another, ``{"force-lag.time": "pressure-lag.time"}``. Floats are SI. Raises :class:`bulge.InputError` if there is no
+    such line or number, a value is out of the bounds of its effect, or a number that isn't fitted is meant.
     """
-    return Comparison(_bulge.compare(read(data, muscle=muscle)._native, muscle._native, _names(with_), own_text(own), law, fit_law, rivals))
+    return Comparison(_bulge.compare(measured(data, muscle)._native, muscle._native, _names(with_), own_text(own), law, fit_law, rivals, said(exclude, hold, bound, tie)))
 
 
 def diagnose(
@@ -304,30 +314,52 @@ def diagnose(
     seed: int = 1,
     threads: int | None = None,
     progress: Progress = None,
+    exclude: Lines = None,
+    hold: Held = None,
+    bound: Bounded = None,
+    tie: Tied = None,
 ) -> Diagnosis:
     """Finds which physical effect is missing, and how sure that is: what ``bulge diagnose`` does.
 
     ``tolerance`` is the RMS misfit [N] that doesn't matter. The same ``seed`` gives the same answer, on any number of
     ``threads`` [default: all cores]. ``own`` effects are looked for too; ``among`` names the effects that alone are looked for.
+    ``exclude``, ``hold``, ``bound`` and ``tie`` are those of :func:`compare`.
     """
     if threads is not None:
         threads = count("threads", threads, 1, 1024)
     allowed = None if tolerance is None else si(tolerance, "N", "tolerance")
+    rows, stated = measured(data, muscle), said(exclude, hold, bound, tie)
     with callback(progress, "diagnose") as told:
-        return Diagnosis(_bulge.diagnose(read(data, muscle=muscle)._native, muscle._native, _names(with_), own_text(own), _names(among), allowed, count("seed", seed, 0), threads, told))
+        return Diagnosis(
+            _bulge.diagnose(
+                rows._native, muscle._native, _names(with_), own_text(own), _names(among), allowed, count("seed", seed, 0), threads, stated, told
+            )
+        )
 
 
-def fit(data: DataLike, muscle: Muscle, with_: Iterable[str] | str, *, own: OwnEffects = None, form_error: bool = False) -> Fit:
+def fit(
+    data: DataLike,
+    muscle: Muscle,
+    with_: Iterable[str] | str,
+    *,
+    own: OwnEffects = None,
+    form_error: bool = False,
+    exclude: Lines = None,
+    hold: Held = None,
+    bound: Bounded = None,
+    tie: Tied = None,
+) -> Fit:
     """Fits effects, and gives the muscle that has learnt them: what ``bulge fit`` does. Raises :class:`bulge.NotConvergedError`.
 
     ``form_error`` also draws the form that the data want of each effect, as ``bulge fit --form-error`` does: :attr:`Fit.bent` says how much the
-    formulas are bent, and :attr:`Fit.drawn` are effects of one's own with these forms.
+    formulas are bent, and :attr:`Fit.drawn` are effects of one's own with these forms. ``exclude``, ``hold``, ``bound`` and ``tie`` are those of
+    :func:`compare`.
     """
     names = _names(with_)
     if not names:
         raise _bulge.InputError("with_: name the effects to fit, such as [\"end-taper\", \"bladder-elasticity\"]")
     text = own_text(own)
-    document = json.loads(_bulge.fit(read(data, muscle=muscle)._native, muscle._native, names, text, bool(form_error)))
+    document = json.loads(_bulge.fit(measured(data, muscle)._native, muscle._native, names, text, bool(form_error), said(exclude, hold, bound, tie)))
     return Fit(document, joined(muscle._native.own, text))
 
 
@@ -350,15 +382,23 @@ def next_experiment(
     contraction: str | tuple[Quantity, Quantity] | None = None,
     seed: int = 1,
     progress: Progress = None,
+    exclude: Lines = None,
+    hold: Held = None,
+    bound: Bounded = None,
+    tie: Tied = None,
 ) -> NextExperiment:
-    """The experiment that best separates the effects that measurements leave open (``bulge next``), within ranges such as ``"1 bar..6 bar"``."""
+    """The experiment that best separates the effects that measurements leave open (``bulge next``), within ranges such as ``"1 bar..6 bar"``.
+
+    ``exclude``, ``hold``, ``bound`` and ``tie`` are those of :func:`compare`.
+    """
     limits = [
         None if value is None else si_range(value, unit, name)
         for value, unit, name in [(pressure, "Pa", "pressure"), (contraction, "1", "contraction")]
     ]
+    rows, stated = measured(data, muscle), said(exclude, hold, bound, tie)
     with callback(progress, "next experiment") as told:
         document = _bulge.next_experiment(
-            read(data, muscle=muscle)._native, muscle._native, _names(with_), own_text(own), limits[0], limits[1], count("seed", seed, 0), told
+            rows._native, muscle._native, _names(with_), own_text(own), limits[0], limits[1], count("seed", seed, 0), stated, told
         )
     return NextExperiment(json.loads(document))
 

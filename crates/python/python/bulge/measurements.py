@@ -22,14 +22,19 @@ class Data:
 
     __slots__ = ("_native", "_source")
 
-    def __init__(self, native: _bulge.Data, source: tuple[str, Any, str | None, Muscle | None]) -> None:
-        #: Where it comes from: ("files", paths, columns, muscle) or ("csv", (text, origin), columns, muscle).
+    def __init__(self, native: _bulge.Data, source: tuple[str, Any, str | None, Muscle | None, bool]) -> None:
+        #: Where it comes from: ("files", paths, columns, muscle, force_may_lack) or ("csv", (text, origin), columns, muscle, force_may_lack).
         self._native, self._source = native, source
 
     @property
     def is_path(self) -> bool:
         """Whether the rows follow each other in time; else they are a static map."""
         return self._native.is_path
+
+    @property
+    def has_force(self) -> bool:
+        """Whether a force was measured; see ``force_may_lack`` of :func:`bulge.read`."""
+        return self._native.has_force
 
     @property
     def n_sweeps(self) -> int:
@@ -54,7 +59,7 @@ class Data:
 
     @property
     def columns(self) -> dict[str, Any]:
-        """Arrays by name, in SI: ``pressure_pa``, ``contraction`` or ``length_m``, ``force_n``, ``time_s``, ..., ``sweep``, ``specimen``."""
+        """Arrays by name, in SI: ``pressure_pa``, ``contraction`` or ``length_m``, ``force_n`` (where it was measured), ``time_s``, ..., ``sweep``, ``specimen``."""
         found = self._native.columns()
         found["specimen"] = np.array(found["specimen"])
         if not self.is_path:
@@ -74,6 +79,8 @@ class Data:
         """Draws force against motion, a colour for each sweep; returns the axes (matplotlib)."""
         from bulge.plots import measured
 
+        if not self.has_force:
+            raise _bulge.InputError("no force was measured: there is nothing to draw over the motion")
         return measured(self, ax)
 
     def __len__(self) -> int:
@@ -81,30 +88,30 @@ class Data:
 
     def __repr__(self) -> str:
         columns = self.columns
-        force: FloatArray = columns["force_n"]
+        force: FloatArray | None = columns.get("force_n")
         pressure: FloatArray = columns["pressure_pa"]
         kind = f"{self.n_sweeps} sweeps" if self.is_path else "a static map"
         return (
             f"<Data {', '.join(self.files)}: {len(self)} rows, {kind}, {pressure.min() / 1e5:.3g} to {pressure.max() / 1e5:.3g} bar, "
-            f"{force.min():.3g} to {force.max():.3g} N>"
+            + ("no force>" if force is None else f"{force.min():.3g} to {force.max():.3g} N>")
         )
 
     def __reduce__(self) -> Any:
         return (_data_again, (*self._source, self.sha256))
 
 
-def _data_of(kind: str, source: Any, columns: str | None, muscle: Muscle | None) -> Data:
+def _data_of(kind: str, source: Any, columns: str | None, muscle: Muscle | None, force_may_lack: bool = False) -> Data:
     native = None if muscle is None else muscle._native
     if kind == "files":
         paths = [os.path.abspath(name) for name in source]
-        return Data(_bulge.Data.read(source, columns, native), (kind, paths, columns, muscle))
+        return Data(_bulge.Data.read(source, columns, native, force_may_lack), (kind, paths, columns, muscle, force_may_lack))
     text, origin = source
-    return Data(_bulge.Data.from_csv(text, origin, columns, native), (kind, source, columns, muscle))
+    return Data(_bulge.Data.from_csv(text, origin, columns, native, force_may_lack), (kind, source, columns, muscle, force_may_lack))
 
 
-def _data_again(kind: str, source: Any, columns: str | None, muscle: Muscle | None, sha256: str) -> Data:
+def _data_again(kind: str, source: Any, columns: str | None, muscle: Muscle | None, force_may_lack: bool, sha256: str) -> Data:
     """Unpickled: files are read again, and must be what they were."""
-    data = _data_of(kind, source, columns, muscle)
+    data = _data_of(kind, source, columns, muscle, force_may_lack)
     if data.sha256 != sha256:
         raise _bulge.InputError(f"{', '.join(data.files)} changed while these measurements travelled: read them again")
     return data
@@ -124,13 +131,16 @@ def _mapping(columns: str | Mapping[str, str] | None) -> str | None:
     return ",".join(entry(quantity, column) for quantity, column in columns.items())
 
 
-def read(source: Any, *more: Any, columns: str | Mapping[str, str] | None = None, muscle: Muscle | None = None) -> Data:
+def read(
+    source: Any, *more: Any, columns: str | Mapping[str, str] | None = None, muscle: Muscle | None = None, force_may_lack: bool = False
+) -> Data:
     """Measurements from a file of text, Excel, MATLAB or Parquet, several of them (one analysis), or a pandas DataFrame.
 
     Columns are named with their unit: ``pressure [bar]``, ``contraction [%]`` or ``length [mm]``, ``force [N]``, ``time [s]`` and so on, as in a
     file; a frame may also have the SI names of :attr:`Data.columns`. Other names are guessed (:attr:`Data.reading` says what was), unless
     ``columns`` settles them: ``"force=Force_N [N], displacement=-Weg"``, or a mapping of the same. A displacement, and a pressure or length without
-    any unit, are only understood with the ``muscle``. Raises :class:`bulge.InputError` with the line and the cure.
+    any unit, are only understood with the ``muscle``. With ``force_may_lack`` there need be no force: such rows are for :func:`bulge.predict`.
+    Raises :class:`bulge.InputError` with the line and the cure.
     """
     if isinstance(source, Data):
         return source
@@ -138,7 +148,7 @@ def read(source: Any, *more: Any, columns: str | Mapping[str, str] | None = None
     if hasattr(source, "to_csv") and hasattr(source, "columns"):
         if more:
             raise _bulge.InputError("one data frame at a time: join them first, with a column `sweep` or `specimen`")
-        return _data_of("csv", (_text(source), "the data frame"), mapping, muscle)
+        return _data_of("csv", (_text(source), "the data frame"), mapping, muscle, force_may_lack)
     if isinstance(source, Mapping):
         raise _bulge.InputError("a mapping is no table of measurements: make it a frame, pandas.DataFrame(...)")
     try:
@@ -148,7 +158,15 @@ def read(source: Any, *more: Any, columns: str | Mapping[str, str] | None = None
         raise _bulge.InputError(f"{source!r} is neither the name of a file, nor a list of such names, nor a data frame") from None
     if not names:
         raise _bulge.InputError("no file is named: give the name of a CSV file")
-    return _data_of("files", names, mapping, muscle)
+    return _data_of("files", names, mapping, muscle, force_may_lack)
+
+
+def measured(source: Any, muscle: Muscle) -> Data:
+    """Measurements of a muscle that have a force, to compare with."""
+    data = read(source, muscle=muscle)
+    if not data.has_force:
+        raise _bulge.InputError(f"{', '.join(data.files)}: no force was measured there: only bulge.predict takes such rows")
+    return data
 
 
 #: SI names of :attr:`Data.columns` as headings of a file.

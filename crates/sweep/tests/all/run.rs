@@ -409,7 +409,7 @@ fn chunks_that_do_not_exist_are_refused() {
     let summary = go(&plan, &path, &RunOptions { chunks: Some(3..9), ..RunOptions::default() }).unwrap();
     assert_eq!(summary.chunks, 2);
     let table_only = CLOSED.replace("points = 7\n", "").replace("points = 41\n", "") + "[table]\n";
-    let error = go(&crate::plan(&table_only), &path, &RunOptions::default()).unwrap_err();
+    let error = go(&self::plan(&table_only), &path, &RunOptions::default()).unwrap_err();
     assert!(matches!(error, SweepError::NoPoints));
 }
 
@@ -439,7 +439,7 @@ fn folders_merge_into_one() {
     assert_eq!((summary.computed, summary.is_complete), (1, true));
     assert!(bytes(folder.path()) == bytes(expected.path()));
     // Nor is another sweep, or a folder without one.
-    let other = whole(&crate::plan(&CLOSED.replace("4..12", "4..13")), false);
+    let other = whole(&self::plan(&CLOSED.replace("4..12", "4..13")), false);
     let empty = TempDir::new().unwrap();
     for (from, says) in [(&other, "- \"value\": 13.0"), (&empty, "holds no sweep")] {
         let options = RunOptions { merge: vec![from.path().to_owned()], ..RunOptions::default() };

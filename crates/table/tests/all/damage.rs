@@ -2,15 +2,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
-mod writer;
-
 use std::ops::Range;
 
+use crate::writer::{Kind, RECORDS, Random, sealed};
 use bulge_table::{Sample, Table, TableError};
 use proptest::prelude::*;
-use writer::{Kind, RECORDS, Random, sealed};
 
-const PPAM: &[u8] = include_bytes!("../examples/data/ppam.table");
+const PPAM: &[u8] = include_bytes!("../../examples/data/ppam.table");
 const KIND: Kind = Kind {
     axes: 2,
     outputs: 2,
@@ -357,7 +355,7 @@ fn coefficients_and_text() {
             for at in (start..end).step_by(each) {
                 for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                     let wrong = malformed("coefficient (not finite)");
-                    let (single, double) = (writer::single(odd).to_le_bytes(), odd.to_le_bytes());
+                    let (single, double) = (crate::writer::single(odd).to_le_bytes(), odd.to_le_bytes());
                     let odd = if each == 4 { &single[..] } else { &double[..] };
                     assert_eq!(error(&rewritten(&bytes, at, odd)), wrong);
                 }

@@ -2,13 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that can't be set up fails")]
 
-mod sample;
-
+use crate::sample::{Recipe, bare, crowded, empty, hostile, rich};
 use bulge_inference::Comparison;
 use bulge_report::PlotError;
 use bulge_report::comparison::{html, plots};
 use roxmltree::{Document, ParsingOptions};
-use sample::{Recipe, bare, crowded, empty, hostile, rich};
 
 fn samples() -> [(&'static str, Comparison); 5] {
     [

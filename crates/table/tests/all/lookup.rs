@@ -2,12 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
-mod writer;
-
+use crate::writer::{Axis, Draft, Dual, Kind, Polynomial, Random, single};
 use bulge_table::{Form, Lookup, Sample, Table, TableError};
-use writer::{Axis, Draft, Dual, Kind, Polynomial, Random, single};
 
-const PPAM: &[u8] = include_bytes!("../examples/data/ppam.table");
+const PPAM: &[u8] = include_bytes!("../../examples/data/ppam.table");
 
 /// Values, then gradients.
 fn sample(table: &Table<'_>, point: &[f64]) -> Option<[Vec<f64>; 2]> {

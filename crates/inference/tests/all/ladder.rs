@@ -121,6 +121,59 @@ fn asked_again_with_other_effects_the_answer_is_the_same() {
     }
 }
 
+/// A number that is held far from the data makes the error larger, and not the effect: that is said of it, by name and value.
+#[test]
+fn a_number_that_is_held_amiss_is_named() {
+    let data = loops(|row, direction| -7.0 * direction + alternating(row));
+    let muscle = muscle("");
+    let catalogue = Catalogue::builtin();
+    let friction = Arc::clone(catalogue.find("coulomb-friction").unwrap());
+    let free = Options::new(catalogue, vec![friction]);
+    let warned = |options: &Options| {
+        let found = compare(&data, &muscle, options).unwrap();
+        found.warnings.into_iter().find(|says| says.contains("on unseen data larger"))
+    };
+    let at = |newton: f64| free.clone().hold(&format!("coulomb-friction.force={newton} N"), &muscle).unwrap();
+    let says = warned(&at(30.0)).unwrap();
+    assert!(says.starts_with("what is held makes the error on unseen data larger (23."), "{says}");
+    assert!(says.contains("`coulomb-friction force = 30 N (held)`") && !says.contains("follows"), "{says}");
+    assert_eq!([warned(&at(7.0)), warned(&free)], [None, None]);
+}
+
+/// What data lack for an effect is said by the names of the columns.
+#[test]
+fn what_data_lack_is_said_by_its_column() {
+    let (muscle, catalogue) = (muscle(""), Catalogue::builtin());
+    let friction = Arc::clone(catalogue.find("coulomb-friction").unwrap());
+    let options = Options::new(catalogue, vec![friction]);
+    let rows = |heading: &str, label: &str| {
+        let row = |i: i32| format!("2,{},{}{label}\n", i, 300 - 8 * i);
+        let rows: String = (1..20).map(row).collect();
+        let data =
+            Data::from_csv(&format!("pressure [bar],contraction [%],force [N]{heading}\n{rows}"), "a.csv");
+        compare(&data.unwrap(), &muscle, &options).unwrap_err().to_string()
+    };
+    let map = rows("", "");
+    let says = "`coulomb-friction` needs a column `sweep` or `time` for the order of the rows, which these data don't have";
+    assert!(map.starts_with(says), "{map}");
+    let one_way = rows(",sweep", ",1");
+    assert!(one_way.contains("needs a path on which the length"), "{one_way}");
+    assert!(one_way.contains("in both directions") && !one_way.contains("column"), "{one_way}");
+}
+
+/// Fibres that run rather around the axis than along it lengthen a muscle: the neutral angle is atan(sqrt 2) = 54.74 deg.
+#[test]
+fn a_braid_that_extends_is_noted() {
+    let noted = |degrees: &str| {
+        let muscle = from_toml(&BRAID.replace("25 deg", degrees), "m.toml").unwrap();
+        let warnings = climbed(&loops(|row, _| alternating(row)), &muscle, &[]).warnings;
+        warnings.into_iter().find(|says| says.contains("neutral"))
+    };
+    let says = noted("54.8 deg").unwrap();
+    assert!(says.contains("at rest is 54.8 deg, above the neutral 54.7 deg"), "{says}");
+    assert_eq!([noted("54.7 deg"), noted("25 deg")], [None, None]);
+}
+
 /// 2 N or -2 N, neighbours unlike, the same number of both in either direction.
 fn alternating(row: usize) -> f64 {
     if (row / 2 + row).is_multiple_of(2) { 2.0 } else { -2.0 }

@@ -2,7 +2,6 @@
 
 #![expect(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't be set up fails")]
 
-#[path = "tidy/pages.rs"]
 mod pages;
 
 use std::fs;

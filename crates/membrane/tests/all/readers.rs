@@ -16,16 +16,16 @@ use std::io::Write as _;
 
 /// Files of Gmsh, VTK and meshio; `data/README.md` says how they came to be.
 const GMSH: [(&str, &[u8]); 4] = [
-    ("gmsh-4.1-text.msh", include_bytes!("data/gmsh-4.1-text.msh")),
-    ("gmsh-4.1-binary.msh", include_bytes!("data/gmsh-4.1-binary.msh")),
-    ("gmsh-2.2-text.msh", include_bytes!("data/gmsh-2.2-text.msh")),
-    ("gmsh-2.2-binary.msh", include_bytes!("data/gmsh-2.2-binary.msh")),
+    ("gmsh-4.1-text.msh", include_bytes!("../data/gmsh-4.1-text.msh")),
+    ("gmsh-4.1-binary.msh", include_bytes!("../data/gmsh-4.1-binary.msh")),
+    ("gmsh-2.2-text.msh", include_bytes!("../data/gmsh-2.2-text.msh")),
+    ("gmsh-2.2-binary.msh", include_bytes!("../data/gmsh-2.2-binary.msh")),
 ];
 const VTK: [(&str, &[u8]); 4] = [
-    ("vtk-ascii.vtu", include_bytes!("data/vtk-ascii.vtu")),
-    ("vtk-binary.vtu", include_bytes!("data/vtk-binary.vtu")),
-    ("vtk-appended.vtu", include_bytes!("data/vtk-appended.vtu")),
-    ("meshio.vtu", include_bytes!("data/meshio.vtu")),
+    ("vtk-ascii.vtu", include_bytes!("../data/vtk-ascii.vtu")),
+    ("vtk-binary.vtu", include_bytes!("../data/vtk-binary.vtu")),
+    ("vtk-appended.vtu", include_bytes!("../data/vtk-appended.vtu")),
+    ("meshio.vtu", include_bytes!("../data/meshio.vtu")),
 ];
 
 /// The places in those files: corners, then middles of edges.

@@ -2,15 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that can't be set up fails")]
 
-mod diagnosed;
-mod sample;
-
+use crate::diagnosed::{adequate, cannot_tell, missing, unknown};
+use crate::sample::{Recipe, bare, crowded, empty, hostile, rich};
 use bulge_inference::{Comparison, Diagnosis, Level};
 use bulge_report::PlotError;
 use bulge_report::diagnosis::{base_name, headlines, html, noise_says, plots, remains_says};
-use diagnosed::{adequate, cannot_tell, missing, unknown};
 use roxmltree::{Document, ParsingOptions};
-use sample::{Recipe, bare, crowded, empty, hostile, rich};
 
 /// The comparison of a diagnosis with two effects.
 fn comparison() -> Comparison {

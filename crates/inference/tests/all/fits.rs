@@ -458,7 +458,7 @@ fn intervals_of_new_rows_are_those_of_the_numbers_and_of_a_reading() {
     assert!(friction > 0.1 && offset > 0.1 && (known.error_n - 4.0).abs() < 0.6, "{text}");
     let truth: &[(&str, &[f64])] = &[("coulomb-friction", &[12.0]), ("force-offset", &[5.0])];
     let data = measured(&muscle(PLEATED), truth, 4.0, 2);
-    let found = predict(&data, &learnt, &Catalogue::builtin()).unwrap();
+    let found = predict(&data, &learnt, &Catalogue::builtin(), &[]).unwrap();
     let columns = &found.columns;
     let freedom = known.rows as f64 - 2.0;
     // Student's quantile, by Cornish and Fisher.
@@ -498,7 +498,7 @@ fn shape_and_stated_widths_widen_the_intervals() {
     let data = measured(&plain, truth, 2.0, 1);
     let found = fitted(&data, &plain, &["bladder-elasticity"]);
     let text = to_toml(&extended(&found.model, &found.fit).unwrap().muscle);
-    let prediction = predict(&data, &muscle(&text), &Catalogue::builtin()).unwrap();
+    let prediction = predict(&data, &muscle(&text), &Catalogue::builtin(), &[]).unwrap();
     let [modulus] = prediction.uncertain.as_slice() else { panic!("{:?} of {text}", prediction.uncertain) };
     assert!(modulus.from == "fitted" && (modulus.value - 0.3).abs() < 0.01, "{modulus:?}");
     // By hand: the force at another modulus.
@@ -516,7 +516,7 @@ fn shape_and_stated_widths_widen_the_intervals() {
     let sd = prediction.columns.sd_n[7];
     assert!((sd / expected - 1.0).abs() < 1e-4, "{sd} {expected}");
     let zero = text + "\n[instruments]\nforce = { noise = \"2 N\", zero = \"3 N\" }\n";
-    let wider = predict(&data, &muscle(&zero), &Catalogue::builtin()).unwrap();
+    let wider = predict(&data, &muscle(&zero), &Catalogue::builtin(), &[]).unwrap();
     assert!((wider.columns.sd_n[7].powi(2) - sd * sd - 9.0).abs() < 1e-6, "{}", wider.columns.sd_n[7]);
 }
 
@@ -528,14 +528,14 @@ fn a_prediction_says_what_it_lacks() {
     assert!(Data::from_csv(csv, "new.csv").is_err());
     let data = Data::from_bytes(csv.as_bytes(), "new.csv", &read).unwrap();
     assert!(!data.has_force());
-    let found = predict(&data, &learnt, &Catalogue::builtin()).unwrap();
+    let found = predict(&data, &learnt, &Catalogue::builtin(), &[]).unwrap();
     assert!(found.against.is_none() && found.columns.measured_n.is_none() && found.left_out.is_empty());
     assert!(found.warnings[0].contains("`coulomb-friction` needs a path"), "{:?}", found.warnings);
     let left = found.without_state.as_ref().unwrap();
     assert!(left.lines.contains('5') && found.columns.force_n[3].is_nan(), "{left:?}");
     assert!(found.columns.high_n[3].is_nan() && found.columns.high_n[1] > found.columns.force_n[1]);
     // A muscle of which no fit knows anything has no intervals, and says so.
-    let plain = predict(&data, &muscle(PLEATED), &Catalogue::builtin()).unwrap();
+    let plain = predict(&data, &muscle(PLEATED), &Catalogue::builtin(), &[]).unwrap();
     assert!(
         plain.columns.high_n.iter().all(|high| high.is_nan()) && plain.warnings.len() == 2,
         "{:?}",
@@ -544,7 +544,7 @@ fn a_prediction_says_what_it_lacks() {
     // A number that was changed by hand is no longer the one that was fitted.
     let value = text.lines().find(|line| line.starts_with("force = ")).unwrap();
     let changed = text.replacen(value, "force = \"20 N\"", 1);
-    let message = predict(&data, &muscle(&changed), &Catalogue::builtin()).unwrap_err().to_string();
+    let message = predict(&data, &muscle(&changed), &Catalogue::builtin(), &[]).unwrap_err().to_string();
     assert!(message.contains("`coulomb-friction.force` in the table `[fitted]`: it is"), "{message}");
     assert!(message.contains("20 N in its effect"), "{message}");
 }

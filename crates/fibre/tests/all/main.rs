@@ -1,0 +1,5 @@
+//! Equilibria and numerical methods through the public API: one program of tests, one module for each part.
+
+mod elastic_waist;
+mod quadrature_and_ode;
+mod slack;

@@ -1,0 +1,9 @@
+//! Comparisons, fits, noise laws and diagnoses through the public API: one program of tests, one module for each part.
+
+mod diagnose;
+mod fits;
+mod hidden_effects;
+mod ladder;
+mod noise_law;
+mod papers;
+mod simulation;

@@ -1,0 +1,7 @@
+//! Membranes against closed forms and other solvers, and the readers of meshes: one program of tests, one module for each part.
+
+mod ends;
+mod readers;
+mod refusals;
+mod triangles;
+mod verification;

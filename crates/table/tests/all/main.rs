@@ -1,0 +1,5 @@
+//! Lookups and damaged tables: one program of tests, one module for each part, and a writer of tables that both use.
+
+mod damage;
+mod lookup;
+mod writer;

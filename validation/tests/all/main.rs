@@ -1,0 +1,5 @@
+//! The verification tables, properties of the physics, and the rules that sources keep to: one program of tests, one module for each part.
+
+mod properties;
+mod tidy;
+mod verification;
