@@ -27,13 +27,25 @@ pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Compar
     rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, options)?)?.asked())
 }
 
+/// The same with its rows and the force of each rung, which a report draws.
+///
+/// # Errors
+/// As [`compare`].
+pub fn compare_with_rows(
+    data: &Data,
+    muscle: &Muscle,
+    options: &Options,
+) -> Result<(Comparison, Rows), InferenceError> {
+    rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, options)?)?.asked_with_rows())
+}
+
 /// The same with the numbers of the last rung about known, of a model with the same effects, and the record that another analysis has.
 pub(crate) fn compare_near(
     other: &Analysis<'_>,
     options: &Options,
     near: (&Model, &[f64]),
-) -> Result<Comparison, InferenceError> {
-    Comparing::of(other.with_options(options, near)?)?.asked()
+) -> Result<(Comparison, Rows), InferenceError> {
+    Comparing::of(other.with_options(options, near)?)?.asked_with_rows()
 }
 
 /// A comparison that is asked again with other effects: what the base says is computed once, and each rung of the ladder once.
@@ -121,14 +133,35 @@ impl<'a> Comparing<'a> {
         rayon::scope(|_| {
             let analysis = self.analysis.with_effects(effects)?;
             let ladder = self.ladder(&analysis, true)?;
-            let rung = last_that_says_something(&analysis, &ladder);
-            Rows::of(&analysis, [&ladder[0].climbed, &ladder[rung].climbed], rung)
+            let place = last_that_says_something(&analysis, &ladder);
+            let ends = if place == 0 { vec![0] } else { vec![0, place] };
+            let rungs: Vec<&Climbed> = ends.iter().map(|place| &ladder[*place].climbed).collect();
+            Rows::of(&analysis, &rungs, place)
         })
+    }
+
+    /// The same with the force of each rung, for a report.
+    ///
+    /// # Errors
+    /// As [`compare`].
+    pub fn rows_of_rungs(&self, effects: &[Arc<dyn Effect>]) -> Result<Rows, InferenceError> {
+        rayon::scope(|_| self.rungs(&self.analysis.with_effects(effects)?))
+    }
+
+    fn rungs(&self, analysis: &Analysis<'_>) -> Result<Rows, InferenceError> {
+        let ladder = self.ladder(analysis, true)?;
+        let place = last_that_says_something(analysis, &ladder);
+        let rungs: Vec<&Climbed> = ladder[..=place].iter().map(|step| &step.climbed).collect();
+        Rows::of(analysis, &rungs, place)
     }
 
     /// With the effects of the options, once.
     fn asked(self) -> Result<Comparison, InferenceError> {
         self.compared(&self.analysis, false)
+    }
+
+    fn asked_with_rows(self) -> Result<(Comparison, Rows), InferenceError> {
+        Ok((self.compared(&self.analysis, true)?, self.rungs(&self.analysis)?))
     }
 
     /// The rungs from the base to the last effect; they are kept if others will be asked for.
