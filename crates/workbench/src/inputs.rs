@@ -57,11 +57,6 @@ impl Inputs {
         let found: Result<Vec<_>, _> = choices.effects.iter().map(|chosen| find(&chosen.name)).collect();
         found.map_err(Refusal::at(Place::Effects))
     }
-
-    /// Whether a row was excluded by hand.
-    pub(crate) fn is_excluded(&self, row: usize) -> bool {
-        self.excluded.binary_search(&row).is_ok()
-    }
 }
 
 fn read_rows(choices: &Choices, muscle: &Muscle) -> Result<Data, Refusal> {

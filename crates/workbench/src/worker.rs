@@ -19,6 +19,8 @@ pub(crate) enum Question {
     Comparison(oneshot::Sender<Result<Box<Comparison>, Refusal>>),
     /// The forces row by row.
     Rows(oneshot::Sender<Result<Rows, Refusal>>),
+    /// The comparison with the force of each rung, row by row.
+    Report(oneshot::Sender<Result<(Box<Comparison>, Rows), Refusal>>),
     /// Why each of some effects can't be added.
     Unsuitable(oneshot::Sender<Result<Vec<Option<String>>, Refusal>>),
 }
@@ -28,6 +30,7 @@ impl Question {
         match self {
             Self::Comparison(to) => to.is_closed(),
             Self::Rows(to) => to.is_closed(),
+            Self::Report(to) => to.is_closed(),
             Self::Unsuitable(to) => to.is_closed(),
         }
     }
@@ -38,6 +41,7 @@ impl Question {
         match self {
             Self::Comparison(to) => drop(to.send(Err(refusal))),
             Self::Rows(to) => drop(to.send(Err(refusal))),
+            Self::Report(to) => drop(to.send(Err(refusal))),
             Self::Unsuitable(to) => drop(to.send(Err(refusal))),
         }
     }
@@ -50,6 +54,10 @@ impl Question {
                 drop(to.send(found));
             }
             Self::Rows(to) => drop(to.send(of_all(|| comparing.rows(effects).map_err(&refused)))),
+            Self::Report(to) => {
+                let both = || Ok((Box::new(comparing.with(effects)?), comparing.rows_of_rungs(effects)?));
+                drop(to.send(of_all(|| both().map_err(&refused))));
+            }
             Self::Unsuitable(to) => {
                 drop(to.send(of_all(|| {
                     Ok(effects.iter().map(|effect| comparing.unsuitable(effect)).collect())
