@@ -41,7 +41,8 @@ class Plots:
         return now
 
     def focus(self, name):
-        self.browser.run(f"document.querySelector('#plot-{name}').scrollIntoView({{block: 'center'}}); document.querySelector('#plot-{name}').focus({{preventScroll: true}})")
+        plot = f"document.querySelector('#plot-{name}')"
+        self.browser.run(f"{plot}.scrollIntoView({{block: 'center'}}); {plot}.focus({{preventScroll: true}})")
 
     def point_at_a_row(self):
         """The keyboard finds the first row with a place; the mouse then points there."""
@@ -59,7 +60,8 @@ class Plots:
         self.expect("the pointer beside the plots points at no row", browser.run(RING % ("force", "force")) is None)
         browser.mouse("mouseMoved", *ring)
         tip, readout = browser.text("#tip"), browser.text("#readout")
-        self.expect("a row below the pointer says its line in the file", re.match(r"line \d+", tip) and re.match(r"line \d+", readout), [tip, readout])
+        names_its_line = re.match(r"line \d+", tip) and re.match(r"line \d+", readout)
+        self.expect("a row below the pointer says its line in the file", names_its_line, [tip, readout])
         rings = [name for name in PLOTS if browser.run(RING % (name, name)) is None]
         self.expect("it is marked in all plots that have a place for it", "no state" in readout or "left out" in readout or not rings, rings)
         return readout
@@ -75,7 +77,8 @@ class Plots:
         after = [self.settled(name) for name in PLOTS]
         same = [name for name, a, b in zip(PLOTS, before, after) if a == b]
         self.expect("another rung changes all plots", not same, same)
-        self.expect("the rung is marked", browser.run("return [...document.querySelectorAll('[data-rung][aria-pressed=true]')].map(b => b.dataset.rung).join()") == "0")
+        pressed = browser.run("return [...document.querySelectorAll('[data-rung][aria-pressed=true]')].map(b => b.dataset.rung).join()")
+        self.expect("the rung is marked", pressed == "0", pressed)
         self.focus("force")
         browser.key("]")
         browser.key("[")
@@ -83,7 +86,8 @@ class Plots:
         self.expect("the row has another residual", not readout or (other.startswith("line") and other != readout), [readout, other])
         browser.click(f'[data-rung="{rungs - 1}"]')
         again = [self.settled(name) for name in PLOTS]
-        self.expect("back at the last rung all is as before", before == again, [name for name, a, b in zip(PLOTS, before, again) if a != b])
+        others = [name for name, a, b in zip(PLOTS, before, again) if a != b]
+        self.expect("back at the last rung all is as before", not others, others)
 
     def zoom(self):
         browser = self.browser
@@ -121,10 +125,12 @@ class Plots:
     def other_columns(self):
         browser = self.browser
         names = browser.run("return [...document.querySelectorAll('#residual-against option')].map(o => o.value)")
-        self.expect("residuals can be drawn against the columns of the data, and not against forces of rungs", "pressure" in names and not any(n.startswith("rung") for n in names), names)
+        of_rungs = any(name.startswith("rung") for name in names)
+        self.expect("residuals are drawn against columns, not against forces of rungs", "pressure" in names and not of_rungs, names)
         drawn = set()
         for name in names:
-            browser.run(f"const s = document.querySelector('#residual-against'); s.value = {name!r}; s.dispatchEvent(new Event('change'))")
+            choice = "document.querySelector('#residual-against')"
+            browser.run(f"{choice}.value = {name!r}; {choice}.dispatchEvent(new Event('change'))")
             drawn.add(self.settled("against"))
         self.expect("each of them gives a drawing of its own", len(drawn) == len(names), f"{len(drawn)} of {len(names)}")
 

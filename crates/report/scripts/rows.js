@@ -14,8 +14,8 @@ import { counted, newtons, number, quantity, ranges, signed } from "./format.js"
 
 /**
  * @typedef {object} Report what a report says beside the rows, because nobody can be asked
- * @property {number} all rows, of which every so manieth is there
- * @property {number} every
+ * @property {number} all rows that there are
+ * @property {number} every of so many rows one is here
  * @property {boolean} is_path
  * @property {number | null} noise_floor_n
  * @property {Rung[]} rungs

@@ -1,8 +1,8 @@
 //! All rows of a comparison as bytes, for the plots of rows: a header of JSON, then one column after the other as 32-bit numbers.
 //!
 //! Little endian: the length of the header (u32); the header, padded with blanks so that what follows begins at a multiple of 4; then for each of
-//! the header's columns one `f32` for each row. What a row doesn't have is NaN. [`bytes`] is what the workbench's page asks for; a report holds the same with
-//! the force of each rung.
+//! the header's columns one `f32` for each row. What a row doesn't have is NaN. [`bytes`] is what the workbench's page asks for; a report holds
+//! the same with the force of each rung.
 
 use bulge_inference::Rows;
 use bulge_measurements::SweepKind;
@@ -35,7 +35,7 @@ struct Column {
 /// What a report says beside the rows, because nobody can be asked.
 #[derive(Debug, Serialize)]
 struct ForReport<'a> {
-    /// Rows that there are, of which every so manieth is here.
+    /// Rows that there are; of every so many the first is here.
     all: usize,
     every: usize,
     is_path: bool,
@@ -60,7 +60,7 @@ pub fn bytes(rows: &Rows, revision: u64) -> Result<Vec<u8>, serde_json::Error> {
     written(rows, revision, 1, None)
 }
 
-/// The rows of a report, with the force of each rung: all of them, or every so manieth.
+/// The rows of a report, with the force of each rung: all of them, or every n-th.
 ///
 /// # Errors
 /// If the header can't be written.
@@ -123,7 +123,7 @@ fn written(
     Ok(bytes)
 }
 
-/// Every column with its values at every so manieth row.
+/// Every column with its values at every n-th row.
 #[expect(clippy::cast_possible_truncation, reason = "as exact as a plot needs")]
 fn columns(rows: &Rows, every: usize) -> Vec<(Column, Vec<f32>)> {
     let kept = || (0..rows.len()).step_by(every);
