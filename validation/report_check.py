@@ -1,11 +1,12 @@
 """Opens reports of Bulge in headless Chromium, with the network blocked, and looks at them as a reader would.
 
     apt-get install chromium chromium-driver
-    python validation/report_check.py report.html ... [--screenshot FILE.png] [--narrow FILE.png] [--pdf FILE.pdf]
+    python validation/report_check.py report.html ... [--screenshot FILE.png] [--narrow FILE.png] [--dark FILE.png] [--pdf FILE.pdf]
 
 Needs nothing beyond the Python standard library: Chromium is driven by chromedriver over the W3C WebDriver protocol. Looks for complaints
 on the console, requests to anywhere, drawings without size, texts in drawings that overlap or are cut, a page wider than the window (1280
-and 390 px), and drawings that do not fit on a printed A4 page. Pictures of several reports are numbered: FILE-1.png, FILE-2.png and so on.
+and 390 px), texts without contrast on light and on dark ground, and drawings that do not fit on a printed A4 page. Where a report holds its rows, their
+plots are used with mouse and keyboard, and the report is looked at once more without scripts (report_plots.py). Pictures of several reports are numbered: FILE-1.png, FILE-2.png and so on.
 The last line is `N passed, M failed`; the exit status is 1 if anything failed, or if there is no Chromium to look with.
 """
 
@@ -26,13 +27,15 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
+import report_plots
+
 WIDE, NARROW = 1280, 390
 HEIGHT = 900
 # CSS pixels are 1/96 inch; the page's @page rule leaves 15 mm on both sides and 16 mm above and below.
 PRINTED_WIDTH, PRINTED_HEIGHT = (round((side - 2 * margin) / 25.4 * 96) for side, margin in ((210, 15), (297, 16)))
 
 # A report that takes longer than this [s] is too heavy to read.
-LIMIT = 60
+LIMIT = 180
 
 LEAST_DRAWING = 60
 # Boxes of neighbouring texts are higher than their letters; this much of both may overlap.
@@ -45,8 +48,10 @@ FLAGS = [
     "--disable-component-update", "--disable-sync", "--hide-scrollbars", "--host-resolver-rules=MAP * ~NOTFOUND",
 ]
 
+# Of a report whose rows are drawn by its script only those for which these plots don't stand.
 DRAWINGS = """
-return [...document.querySelectorAll('svg')].map((svg, i) => {
+const isShown = svg => svg.checkVisibility() || !(svg.closest('.without-script') && document.querySelector('.scripted'));
+return [...document.querySelectorAll('svg')].filter(svg => !svg.closest('#explored') && isShown(svg)).map((svg, i) => {
   const box = svg.getBoundingClientRect();
   const figure = svg.closest('figure');
   const texts = [...svg.querySelectorAll('text')].map(text => {
@@ -76,6 +81,27 @@ return [...document.querySelectorAll('figure')].map(f => {
 """
 
 SECTIONS = "return [...document.querySelectorAll('section')].map(s => [s.id, !!s.querySelector('h2'), (s.querySelector('.lead') || {}).textContent || '']);"
+
+# Contrast of texts with their ground (WCAG 2.1): those that are below AA.
+CONTRAST = """
+const parse = (c) => { const m = c.match(/[\\d.]+/g).map(Number); return m.length > 3 ? m : [...m, 1]; };
+const light = (c) => { const [r, g, b] = c.slice(0, 3).map((v) => { v /= 255; return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; }); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+const found = [];
+for (const element of document.querySelectorAll('body *')) {
+  const own = [...element.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+  if (!own || element.closest('svg, :disabled, [hidden], .visually-hidden, noscript')) continue;
+  if (element.checkVisibility && !element.checkVisibility()) continue;
+  const style = getComputedStyle(element);
+  let ground = [255, 255, 255, 1];
+  for (let p = element; p; p = p.parentElement) { const g = getComputedStyle(p).backgroundColor; if (!g.startsWith('rgb')) continue; const c = parse(g); if (c[3] > 0.99) { ground = c; break; } }
+  const [a, b] = [light(parse(style.color)), light(ground)].sort((x, y) => y - x);
+  const ratio = (a + 0.05) / (b + 0.05);
+  const size = parseFloat(style.fontSize);
+  const least = size >= 24 || (size >= 18.66 && Number(style.fontWeight) >= 700) ? 3 : 4.5;
+  if (ratio < least) found.push(`${element.tagName.toLowerCase()}.${element.className} “${element.textContent.trim().slice(0, 30)}” ${ratio.toFixed(2)}`);
+}
+return [...new Set(found)];
+"""
 
 
 class Trouble(Exception):
@@ -181,6 +207,55 @@ class Browser:
 
     def run(self, script):
         return self.do("/execute/sync", {"script": script, "args": []})
+
+    def wait(self, condition, what, seconds=60):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if self.run(f"return Boolean({condition})"):
+                return
+            time.sleep(0.05)
+        raise Trouble(f"after {seconds} s still waiting until {what}")
+
+    def find(self, selector):
+        found = self.do("/element", {"using": "css selector", "value": selector})
+        return next(iter(found.values()))
+
+    def click(self, selector):
+        self.do(f"/element/{self.find(selector)}/click", {})
+
+    def text(self, selector):
+        return self.run(f"return (document.querySelector({json.dumps(selector)}) || {{}}).textContent || ''")
+
+    def drag(self, selector, start, end):
+        """From one to another place of an element, as shares of its size."""
+        x, y, width, height = self.box(selector)
+        at = [(round(x + width * a), round(y + height * b)) for a, b in (start, end)]
+        move = lambda place, ms: {"type": "pointerMove", "duration": ms, "x": place[0], "y": place[1], "origin": "viewport"}
+        steps = [move(at[0], 0), {"type": "pointerDown", "button": 0}, move(((at[0][0] + at[1][0]) // 2, at[1][1]), 60), move(at[1], 60), {"type": "pointerUp", "button": 0}]
+        self.do("/actions", {"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": steps}]})
+
+    def shade(self, name):
+        self.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": name}])
+
+    def pause(self, seconds):
+        time.sleep(seconds)
+
+    def box(self, selector):
+        """Left, top, width and height of an element in the window."""
+        return self.run(f"const b = document.querySelector({json.dumps(selector)}).getBoundingClientRect(); return [b.left, b.top, b.width, b.height]")
+
+    def mouse(self, kind, x, y, **more):
+        self.devtools("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+        self.pause(0.05)
+
+    def wheel(self, x, y, by):
+        self.mouse("mouseMoved", x, y)
+        self.mouse("mouseWheel", x, y, deltaX=0, deltaY=by)
+        self.pause(0.25)
+
+    def key(self, key):
+        for kind in ("keyDown", "keyUp"):
+            self.devtools("Input.dispatchKeyEvent", type=kind, key=key)
 
     def log(self, kind):
         return self.do("/se/log", {"type": kind})
@@ -297,6 +372,11 @@ def look(browser, checks, pictures):
         if width == NARROW and pictures.narrow:
             browser.whole_page(width, pictures.narrow)
     browser.size(WIDE)
+    for ground in ("dark", "light"):
+        browser.shade(ground)
+        checks.check(f"texts stand out from the {ground} ground", browser.run(CONTRAST))
+        if ground == "dark" and pictures.dark:
+            browser.whole_page(WIDE, pictures.dark)
     for drawing in browser.run(DRAWINGS):
         checks.check(f"drawing {drawing['name']}", drawing_faults(drawing))
     sections = browser.run(SECTIONS)
@@ -305,6 +385,19 @@ def look(browser, checks, pictures):
     checks.check("each section begins with a heading and a sentence", [f"section {name} does not" for name in bare])
     if pictures.screenshot:
         browser.whole_page(WIDE, pictures.screenshot)
+
+
+def look_without_scripts(browser, checks, report):
+    """The same with a browser that runs none: drawings stand for the plots."""
+    browser.devtools("Emulation.setScriptExecutionDisabled", value=True)
+    browser.open(report.resolve().as_uri())
+    browser.size(WIDE)
+    drawings = browser.run(DRAWINGS)
+    faults = [f"{drawing['name']}: {fault}" for drawing in drawings for fault in drawing_faults(drawing)]
+    checks.check("without scripts all drawings are there", faults)
+    shown = browser.run("return !!document.querySelector('#explore').checkVisibility()")
+    checks.check("without scripts there is no place for the plots", ["it is there"] if shown else [])
+    browser.devtools("Emulation.setScriptExecutionDisabled", value=False)
 
 
 def print_out(browser, checks, pictures):
@@ -335,9 +428,14 @@ def check_report(report, checks, pictures):
         browser.open(report.resolve().as_uri())
         browser.size(WIDE)
         look(browser, checks, pictures)
+        has_rows = browser.run("return !!document.querySelector('#explore')")
+        if has_rows:
+            report_plots.use(browser, checks)
         print_out(browser, checks, pictures)
         checks.check("no complaint on the console", complaints_of(browser))
         checks.check("nothing was asked of a network", requests_of(browser))
+        if has_rows:
+            look_without_scripts(browser, checks, report)
 
 
 def main():
@@ -345,6 +443,7 @@ def main():
     parser.add_argument("reports", type=Path, nargs="+", metavar="report.html")
     parser.add_argument("--screenshot", metavar="FILE.png", help=f"picture of the page at {WIDE} px")
     parser.add_argument("--narrow", metavar="FILE.png", help=f"picture of the page at {NARROW} px")
+    parser.add_argument("--dark", metavar="FILE.png", help=f"picture of the page at {WIDE} px on dark ground")
     parser.add_argument("--pdf", metavar="FILE.pdf", help="the page as it is printed")
     arguments = parser.parse_args()
     missing = [str(report) for report in arguments.reports if not report.is_file()]
@@ -356,7 +455,7 @@ def main():
         if count > 1:
             print(f"{report}:")
         pictures = argparse.Namespace(
-            **{kind: numbered(getattr(arguments, kind), number, count) for kind in ("screenshot", "narrow", "pdf")}
+            **{kind: numbered(getattr(arguments, kind), number, count) for kind in ("screenshot", "narrow", "dark", "pdf")}
         )
         start = time.monotonic()
         try:

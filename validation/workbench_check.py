@@ -25,7 +25,7 @@ import time
 import urllib.request
 from pathlib import Path
 
-from report_check import FLAGS, OVERFLOW, Browser, Checks, Trouble, complaints_of
+from report_check import CONTRAST, FLAGS, OVERFLOW, Browser, Checks, Trouble, complaints_of
 
 WIDE, NARROW = (1440, 900), (400, 800)
 LIMIT = 900
@@ -35,27 +35,6 @@ PAGE_FLAGS = [flag for flag in FLAGS if not flag.startswith("--host-resolver")] 
 ]
 HOSTILE = '<img src=x onerror="window.hurt=1">'
 EFFECTS = ["end-taper", "bladder-elasticity", "coulomb-friction"]
-
-# Contrast of texts with their ground (WCAG 2.1): those that are below AA.
-CONTRAST = """
-const parse = (c) => { const m = c.match(/[\\d.]+/g).map(Number); return m.length > 3 ? m : [...m, 1]; };
-const light = (c) => { const [r, g, b] = c.slice(0, 3).map((v) => { v /= 255; return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; }); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
-const found = [];
-for (const element of document.querySelectorAll('body *')) {
-  const own = [...element.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
-  if (!own || element.closest('svg, :disabled, [hidden], .visually-hidden, noscript')) continue;
-  if (element.checkVisibility && !element.checkVisibility()) continue;
-  const style = getComputedStyle(element);
-  let ground = [255, 255, 255, 1];
-  for (let p = element; p; p = p.parentElement) { const g = getComputedStyle(p).backgroundColor; if (!g.startsWith('rgb')) continue; const c = parse(g); if (c[3] > 0.99) { ground = c; break; } }
-  const [a, b] = [light(parse(style.color)), light(ground)].sort((x, y) => y - x);
-  const ratio = (a + 0.05) / (b + 0.05);
-  const size = parseFloat(style.fontSize);
-  const least = size >= 24 || (size >= 18.66 && Number(style.fontWeight) >= 700) ? 3 : 4.5;
-  if (ratio < least) found.push(`${element.tagName.toLowerCase()}.${element.className} “${element.textContent.trim().slice(0, 30)}” ${ratio.toFixed(2)}`);
-}
-return [...new Set(found)];
-"""
 
 # Controls without a name that a screen reader could say.
 NAMELESS = """
@@ -95,14 +74,6 @@ class Page(Browser):
         """A script that calls back."""
         return self.do("/execute/async", {"script": script, "args": []})
 
-    def wait(self, condition, what, seconds=60):
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            if self.run(f"return Boolean({condition})"):
-                return
-            time.sleep(0.05)
-        raise Trouble(f"after {seconds} s still waiting until {what}")
-
     def is_ready(self, seconds=60):
         self.wait("document.body.dataset.state === 'ready'", "the page is ready", seconds)
 
@@ -110,29 +81,11 @@ class Page(Browser):
         self.is_ready(seconds)
         self.wait("document.body.dataset.heldOut === 'done' && document.body.dataset.state === 'ready'", "held-out errors are there", seconds)
 
-    def find(self, selector):
-        found = self.do("/element", {"using": "css selector", "value": selector})
-        return next(iter(found.values()))
-
-    def click(self, selector):
-        self.do(f"/element/{self.find(selector)}/click", {})
-
     def choose(self, selector, *paths):
         self.do(f"/element/{self.find(selector)}/value", {"text": "\n".join(str(Path(path).resolve()) for path in paths)})
 
-    def text(self, selector):
-        return self.run(f"return (document.querySelector({json.dumps(selector)}) || {{}}).textContent || ''")
-
     def error(self):
         return float(self.run("return document.querySelector('#error').dataset.rmse"))
-
-    def drag(self, selector, start, end):
-        """From one to another place of an element, as shares of its size."""
-        x, y, width, height = self.run(f"const b = document.querySelector({json.dumps(selector)}).getBoundingClientRect(); return [b.left, b.top, b.width, b.height]")
-        at = [(round(x + width * a), round(y + height * b)) for a, b in (start, end)]
-        move = lambda place, ms: {"type": "pointerMove", "duration": ms, "x": place[0], "y": place[1], "origin": "viewport"}
-        steps = [move(at[0], 0), {"type": "pointerDown", "button": 0}, move(((at[0][0] + at[1][0]) // 2, at[1][1]), 60), move(at[1], 60), {"type": "pointerUp", "button": 0}]
-        self.do("/actions", {"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": steps}]})
 
     def press(self, selector, rest=0.25):
         """As a hand does: the pointer comes, rests, and presses."""
@@ -143,9 +96,6 @@ class Page(Browser):
             {"type": "pause", "duration": round(1000 * rest)}, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0},
         ]
         self.do("/actions", {"actions": [{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": steps}]})
-
-    def shade(self, name):
-        self.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": name}])
 
     def shot(self, path):
         picture = self.devtools("Page.captureScreenshot", format="png")

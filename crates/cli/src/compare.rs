@@ -1,7 +1,7 @@
 //! `bulge compare`: model against measurement, and the error as effects are added.
 
 use bulge_effects::Effect;
-use bulge_inference::{Comparing, Comparison, Fit, HeldNumber};
+use bulge_inference::{Comparison, Fit, HeldNumber, Rows, compare_with_rows};
 use bulge_measurements::written;
 use bulge_report::comparison::{html, plots};
 use clap::Args;
@@ -69,18 +69,15 @@ impl CompareCommand {
         if let Some(path) = &self.rows {
             self.data.can_write(("--rows", path), &self.muscle, self.effects.as_deref())?;
         }
-        // Rungs that the comparison has climbed aren't climbed again for its rows.
-        let comparing = Comparing::new(&data, &muscle, &options)?;
-        let comparison = comparing.with(&options.effects, &[])?;
+        let (comparison, rows) = compare_with_rows(&data, &muscle, &options)?;
         let document = serde_json::to_string_pretty(&comparison)? + "\n";
         let mut wrote = String::new();
         if let Some(path) = &self.rows {
-            let rows = comparing.rows(&options.effects, &[])?;
             files::write(path, &written(path, &rows.columns())?)?;
             let _ = writeln!(wrote, "  wrote {}", path.display());
         }
         if let Some(folder) = &self.out {
-            for path in report(folder, &comparison, &document)? {
+            for path in report(folder, &comparison, &rows, &document)? {
                 let _ = writeln!(wrote, "  wrote {}", path.display());
             }
         }
@@ -92,10 +89,11 @@ impl CompareCommand {
 pub(crate) fn report(
     folder: &Path,
     comparison: &Comparison,
+    rows: &Rows,
     document: &str,
 ) -> Result<[PathBuf; 2], Failure> {
     // Everything is made before anything is written.
-    let page = html(comparison)?;
+    let page = html(comparison, Some(rows))?;
     let plots = plots(comparison)?;
     let [numbers, first] = [folder.join("compare.json"), folder.join("report.html")];
     let mut contents = vec![(numbers.clone(), document), (first.clone(), page.as_str())];

@@ -6,7 +6,7 @@ mod tabulated;
 
 use bulge_effects::Catalogue;
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response, isobars};
-use bulge_inference::{Comparison, Diagnosis, Options, Verdict, compare};
+use bulge_inference::{Comparison, Diagnosis, Options, Verdict, compare_with_rows};
 use bulge_measurements::Data;
 use bulge_muscles::{
     Bladder, Braided, Construction, Ends, Length, Muscle, MuscleError, Pressure, from_toml, preset,
@@ -242,7 +242,7 @@ fn measured(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result
     let catalogue = Catalogue::builtin();
     let effects = ADDED.iter().map(|name| Ok(Arc::clone(catalogue.find(name)?)));
     let effects = effects.collect::<Result<Vec<_>, Failure>>()?;
-    let comparison = compare(&data, &muscle, &Options::new(catalogue, effects))?;
+    let (comparison, rows) = compare_with_rows(&data, &muscle, &Options::new(catalogue, effects))?;
     let _ = writeln!(
         text,
         "3. {} readings of a braid (simulated, with noise) against the textbook: the error falls as the right effects are added",
@@ -256,7 +256,7 @@ fn measured(out: &Path, text: &mut String, written: &mut Vec<PathBuf>) -> Result
     }
     text.push_str("\n  It was simulated with c10 = 0.31 MPa and a friction of 14 N.\n\n");
     let document = serde_json::to_string_pretty(&comparison)? + "\n";
-    written.extend(report(&out.join("report"), &comparison, &document)?);
+    written.extend(report(&out.join("report"), &comparison, &rows, &document)?);
     Ok(comparison)
 }
 

@@ -85,7 +85,7 @@ impl NextCommand {
     /// Writes the protocol, if there is a place for it and a test to make.
     fn write(&self, step: &NextStep<'_>) -> Result<String, Failure> {
         let Some(path) = &self.out else { return Ok(String::new()) };
-        let Some(protocol) = step.next.and_then(|next| next.protocol.as_ref()) else {
+        let Some(protocol) = step.next.and_then(|next| next.protocol.as_deref()) else {
             return Ok(format!("  nothing is written to {}: there is no test to make\n", path.display()));
         };
         files::write(path, protocol.to_toml().as_bytes())?;

@@ -26,7 +26,7 @@ mod protocol;
 
 pub use bulge_model::{NumberName, Restriction, Says};
 pub use bulge_numerics::Random;
-pub use comparison::compare::{Comparing, Fitting, compare, fit_effects};
+pub use comparison::compare::{Comparing, Fitting, compare, compare_with_rows, fit_effects};
 pub use comparison::document::{
     Bin, Breakdown, Comparison, Curve, CurvePoint, DataSummary, HeldLoad, HeldLoadPoint, LeftOut, LoopGap,
     Mismatch, NoiseFloor, Part, ResidualMap, Rival, Rung, Stack,

@@ -17,9 +17,9 @@ use crate::task::{Watch, beside, beside_on};
 /// Name, title and drawing of each plot of a report.
 type Plots = Vec<(String, String, String)>;
 
-/// A comparison, with its reports.
+/// A comparison, with its rows for reports.
 #[pyclass(frozen, module = "bulge._bulge")]
-pub(crate) struct Comparison(inference::Comparison);
+pub(crate) struct Comparison(inference::Comparison, inference::Rows);
 
 #[pymethods]
 impl Comparison {
@@ -30,7 +30,7 @@ impl Comparison {
 
     /// The report, a page that stands for itself.
     fn html(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| comparison::html(&self.0)).or_raise()
+        py.detach(|| comparison::html(&self.0, Some(&self.1))).or_raise()
     }
 
     /// Its plots as SVG: name, title, drawing.
@@ -118,8 +118,9 @@ pub(crate) fn compare(
     }
     let options = said.apply(py, options, &data.0, &muscle.muscle)?;
     let (data, muscle) = (Arc::clone(&data.0), muscle.muscle.clone());
-    let found = beside(py, None, move |_| inference::compare(&data, &muscle, &options))?;
-    Ok(Comparison(found.or_raise()?))
+    let found = beside(py, None, move |_| inference::compare_with_rows(&data, &muscle, &options))?;
+    let (comparison, rows) = found.or_raise()?;
+    Ok(Comparison(comparison, rows))
 }
 
 /// The options of a diagnosis.

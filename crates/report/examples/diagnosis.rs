@@ -11,18 +11,21 @@ use bulge_report::diagnosis::{html, plots};
 use std::error::Error;
 use std::path::PathBuf;
 
+use sample::Recipe;
+
 fn main() -> Result<(), Box<dyn Error>> {
     let into = PathBuf::from(std::env::args().nth(1).ok_or("name the folder to write to")?);
-    let rich = sample::rich(&sample::Recipe::usual());
-    for (name, diagnosis) in [
-        ("missing", diagnosed::missing(rich.clone())),
-        ("adequate", diagnosed::adequate(rich.clone())),
-        ("unknown", diagnosed::unknown(rich)),
-        ("cannot-tell", diagnosed::cannot_tell(sample::bare())),
-        ("empty", diagnosed::cannot_tell(sample::empty())),
-        ("crowded", diagnosed::missing(sample::crowded())),
-        ("hostile", diagnosed::missing(sample::hostile())),
+    let rich = sample::rich(&Recipe::usual());
+    for (name, mut diagnosis, recipe) in [
+        ("missing", diagnosed::missing(rich.clone()), Some(Recipe::usual())),
+        ("adequate", diagnosed::adequate(rich.clone()), Some(Recipe::usual())),
+        ("unknown", diagnosed::unknown(rich), Some(Recipe::usual())),
+        ("cannot-tell", diagnosed::cannot_tell(sample::bare()), Some(Recipe::bare())),
+        ("empty", diagnosed::cannot_tell(sample::empty()), None),
+        ("crowded", diagnosed::missing(sample::crowded()), Some(Recipe::crowded())),
+        ("hostile", diagnosed::missing(sample::hostile()), Some(Recipe::hostile())),
     ] {
+        diagnosis.rows = recipe.map(|recipe| sample::rows(&recipe, &diagnosis.comparison));
         let folder = into.join(name);
         std::fs::create_dir_all(&folder)?;
         std::fs::write(folder.join("report.html"), html(&diagnosis)?)?;

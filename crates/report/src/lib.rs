@@ -5,6 +5,8 @@
 //! [`bulge_inference::Diagnosis`]. Letters stay letters: no font is needed to draw.
 //! The same input gives the same bytes.
 //!
+//! [`scripts`] are the plots of rows in a browser, and [`rows`] what they draw: the page of the workbench and the reports share them.
+//!
 //! This crate computes no equilibrium, fits nothing and writes no file: a picture is a function of its numbers.
 mod axis;
 mod characteristics;
@@ -12,14 +14,18 @@ pub mod comparison;
 pub mod diagnosis;
 mod drawing;
 mod error;
+mod explore;
 mod interval;
 mod learning;
 mod palette;
+pub mod rows;
+pub mod scripts;
 mod shell;
 mod sizing;
 
 pub use characteristics::{Curve, characteristics_svg};
 pub use error::PlotError;
+pub use explore::policy;
 pub use interval::with_interval;
 pub use learning::{LearningError, Learnt, LearntDocument};
 pub use shell::{Call, shell_word};

@@ -1,7 +1,9 @@
 // @ts-check
 // The only module that talks to the server. Addresses are relative, because the page lives below a token.
 
-/** @typedef {import("./types.js").Rows} Rows */
+import { decoded } from "./rows.js";
+
+/** @typedef {import("./rows.js").Rows} Rows */
 /** @typedef {import("./types.js").Session} Session */
 
 /** A refusal of the server: its sentence, and at which part of the page it belongs. */
@@ -66,18 +68,7 @@ export async function post(path, body, signal) {
 
 /** All rows, as one array for each column. @param {AbortSignal} [signal] @returns {Promise<Rows>} */
 export async function getRows(signal) {
-  const bytes = await (await ask("rows", { signal })).arrayBuffer();
-  const length = new DataView(bytes).getUint32(0, true);
-  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
-  const count = header.rows;
-  /** @type {Record<string, Float32Array>} */
-  const of = {};
-  header.columns.forEach((/** @type {{name: string}} */ column, /** @type {number} */ i) => {
-    of[column.name] = new Float32Array(bytes, 4 + length + 4 * count * i, count);
-  });
-  const residual = new Float32Array(count);
-  for (let i = 0; i < count; i += 1) residual[i] = of.measured[i] - of.model[i];
-  return { revision: header.revision, count, columns: header.columns, of, files: header.files, specimens: header.specimens, sweeps: header.sweeps, kind: header.kind ?? [], residual };
+  return decoded(await (await ask("rows", { signal })).arrayBuffer());
 }
 
 /**

@@ -7,6 +7,7 @@ import { startConnection } from "./connection.js";
 import { startDataPanel } from "./data-panel.js";
 import { startDiagnosis } from "./diagnosis-panel.js";
 import { startEffects } from "./effects-panel.js";
+import { startExclusion } from "./exclusion.js";
 import { startExport } from "./export-menu.js";
 import { startFooter } from "./footer.js";
 import { startHeadline } from "./headline.js";
@@ -16,8 +17,7 @@ import { startNotices } from "./notices.js";
 import { startOwnEffect } from "./own-effect.js";
 import { startPlan } from "./plan-panel.js";
 import { startPlots } from "./plots.js";
-import { startSelection } from "./selection.js";
-import { load } from "./store.js";
+import { keepView, load, state } from "./store.js";
 import { startTabs } from "./tabs.js";
 import { startTheme } from "./theme.js";
 import { startTimings } from "./timings.js";
@@ -30,8 +30,18 @@ startTabs();
 startHeadline();
 startDataPanel();
 startColumns();
-startPlots();
-startSelection();
+startPlots({
+  get rows() { return state.rows; },
+  get data() { return JSON.stringify([state.session?.data, state.session?.columns]); },
+  get measured() { return JSON.stringify([state.session?.data, state.session?.columns, state.session?.excluded, state.session?.muscle.toml]); },
+  get isPath() { return state.comparison?.data.is_path ?? true; },
+  get hasEffects() { return state.effects.length > 0; },
+  get floor() { return state.comparison?.noise_floor?.sd_n; },
+  scrolls: false,
+  get view() { return state.session?.view ?? {}; },
+  keepView,
+});
+startExclusion();
 startLadder();
 startEffects();
 startOwnEffect();

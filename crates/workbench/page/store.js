@@ -2,6 +2,7 @@
 // What the page knows, and the one way in which it changes: a change goes to the server, its documents come back, everybody who listens redraws.
 
 import { get, getRows, isAborted, Lost, post, putSession, Refusal } from "./api.js";
+import * as topics from "./topics.js";
 
 /** @typedef {import("./types.js").Session} Session */
 /** @typedef {import("./types.js").Rows} Rows */
@@ -30,20 +31,10 @@ let computing = new AbortController();
 let computedFor = "";
 let cardsFor = "";
 
-/** @type {Map<Topic, Set<(detail?: any) => void>>} */
-const listeners = new Map();
-
-/** @param {Topic} topic @param {(detail?: any) => void} then */
-export function on(topic, then) {
-  const those = listeners.get(topic) ?? new Set();
-  those.add(then);
-  listeners.set(topic, those);
-}
-
-/** @param {Topic} topic @param {unknown} [detail] */
-export function tell(topic, detail) {
-  for (const then of listeners.get(topic) ?? []) then(detail);
-}
+/** @type {(topic: Topic, then: (detail?: any) => void) => void} */
+export const on = topics.on;
+/** @type {(topic: Topic, detail?: unknown) => void} */
+export const tell = topics.tell;
 
 export const state = {
   get session() { return session; },

@@ -49,7 +49,7 @@
  * @property {string} python
  */
 
-/** @typedef {{against?: string, residual?: string, log?: boolean, cells?: boolean, theme?: string, plan?: {blocks: import("./protocol.js").Block[], noise_n: number | null}}} View */
+/** @typedef {import("./plots.js").View & {theme?: string, plan?: {blocks: import("./protocol.js").Block[], noise_n: number | null}}} View */
 
 /**
  * @typedef {object} Fitted
@@ -156,20 +156,7 @@
  * @property {string[]} warnings
  */
 
-/** @typedef {{name: string, unit: string}} ColumnName */
-
-/**
- * @typedef {object} Rows
- * @property {number} revision
- * @property {number} count
- * @property {ColumnName[]} columns
- * @property {Record<string, Float32Array>} of values of each column
- * @property {string[]} files
- * @property {string[]} specimens
- * @property {string[]} sweeps
- * @property {string[]} kind
- * @property {Float32Array} residual measured - model; NaN where the model has no state
- */
+/** @typedef {import("./rows.js").Rows} Rows */
 
 /**
  * @typedef {object} Shape

@@ -6,7 +6,7 @@ use bulge_effects::{CardDocument, Catalogue, Effect, Known, known};
 use bulge_inference::{Comparison, Diagnosis, Plan, Protocol, fit_effects};
 use bulge_measurements::written;
 use bulge_muscles::{Muscle, PRESETS, from_toml};
-use bulge_report::Learnt;
+use bulge_report::{Learnt, rows};
 use serde::Serialize;
 use std::path::Path;
 use std::sync::{Arc, PoisonError};
@@ -17,7 +17,6 @@ use crate::diagnosis::{self, Listener};
 use crate::folder::Diagnosed;
 use crate::inputs::{Inputs, MUSCLE, With, catalogue};
 use crate::refusal::{Place, Refusal};
-use crate::rows;
 use crate::server::Workbench;
 use crate::surface::{self, State, Surface};
 use crate::worker::{Question, Worker};
@@ -67,7 +66,7 @@ pub(crate) async fn prepare(workbench: &Workbench, effects: &[ChosenEffect]) -> 
 pub(crate) async fn rows(workbench: &Workbench) -> Result<Response, Refusal> {
     let asked = asked(workbench)?;
     let found = ask(&workbench.quick, &asked, asked.with.clone(), Question::Rows).await?;
-    let bytes = rows::bytes(&asked.inputs, &found, asked.revision).map_err(Refusal::at(Place::Request))?;
+    let bytes = rows::bytes(&found, asked.revision).map_err(Refusal::at(Place::Request))?;
     Ok(([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
 }
 
@@ -77,6 +76,13 @@ pub(crate) async fn rows_file(workbench: &Workbench, name: &'static str) -> Resu
     let found = ask(&workbench.quick, &asked, asked.with.clone(), Question::Rows).await?;
     let bytes = written(Path::new(name), &found.columns()).map_err(Refusal::at(Place::Request))?;
     Ok(([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response())
+}
+
+/// The report of the comparison, with errors on held-out data.
+pub(crate) async fn report(workbench: &Workbench) -> Result<String, Refusal> {
+    let asked = asked(workbench)?;
+    let (comparison, rows) = ask(&workbench.held_out, &asked, asked.with.clone(), Question::Report).await?;
+    bulge_report::comparison::html(&comparison, Some(&rows)).map_err(Refusal::at(Place::Request))
 }
 
 /// The catalogue for the page.

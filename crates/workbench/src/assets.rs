@@ -1,8 +1,15 @@
-//! The files of the page, embedded.
+//! The files of the page, embedded; those of its plots are in `bulge-report`.
+
+use bulge_report::scripts;
 
 /// A file by its name: its kind and its bytes.
 pub(crate) fn asset(name: &str) -> Option<(&'static str, &'static [u8])> {
-    FILES.iter().find(|(known, _)| *known == name).map(|(known, bytes)| (kind(known), *bytes))
+    all().find(|(known, _)| *known == name).map(|(known, bytes)| (kind(known), *bytes))
+}
+
+/// Of the page, then those that reports have as well.
+fn all() -> impl Iterator<Item = &'static (&'static str, &'static [u8])> {
+    FILES.iter().chain(scripts::FILES)
 }
 
 /// What a browser is told that a file is.
@@ -24,22 +31,17 @@ macro_rules! files {
 
 files! {
     "api.js" => "page/api.js",
-    "axis.js" => "page/axis.js",
     "bulge-panel.js" => "page/bulge-panel.js",
-    "cells.js" => "page/cells.js",
     "column-map.js" => "page/column-map.js",
     "columns.js" => "page/columns.js",
     "connection.js" => "page/connection.js",
-    "contents.js" => "page/contents.js",
     "data-panel.js" => "page/data-panel.js",
     "diagnosis-panel.js" => "page/diagnosis-panel.js",
-    "dom.js" => "page/dom.js",
     "effect-card.js" => "page/effect-card.js",
     "effects-panel.js" => "page/effects-panel.js",
+    "exclusion.js" => "page/exclusion.js",
     "export-menu.js" => "page/export-menu.js",
     "footer.js" => "page/footer.js",
-    "format.js" => "page/format.js",
-    "gestures.js" => "page/gestures.js",
     "headline.js" => "page/headline.js",
     "icon.svg" => "page/icon.svg",
     "index.html" => "page/index.html",
@@ -49,15 +51,10 @@ files! {
     "notices.js" => "page/notices.js",
     "numbers.js" => "page/numbers.js",
     "own-effect.js" => "page/own-effect.js",
-    "palette.js" => "page/palette.js",
     "plan-panel.js" => "page/plan-panel.js",
     "plan-plane.js" => "page/plan-plane.js",
-    "plot.js" => "page/plot.js",
-    "plots.js" => "page/plots.js",
     "protocol.js" => "page/protocol.js",
-    "save-plot.js" => "page/save-plot.js",
     "scene.js" => "page/scene.js",
-    "selection.js" => "page/selection.js",
     "store.js" => "page/store.js",
     "style.css" => "page/style.css",
     "tabs.js" => "page/tabs.js",
@@ -66,8 +63,7 @@ files! {
     "toml.js" => "page/toml.js",
     "types.js" => "page/types.js",
     "verdict.js" => "page/verdict.js",
-    "vendor/echarts.js" => "vendor/echarts.js",
-    "vendor/three.js" => "vendor/three.js",
+    "vendor/three.js" => "page/vendor/three.js",
 }
 
 #[cfg(test)]
@@ -89,10 +85,16 @@ mod tests {
         assert_eq!(there, embedded.collect());
     }
 
+    #[test]
+    fn no_name_is_there_twice() {
+        let names: BTreeSet<&str> = all().map(|(name, _)| *name).collect();
+        assert_eq!(names.len(), all().count());
+    }
+
     /// The page must weigh less than 3 MB.
     #[test]
     fn the_page_is_light() {
-        let bytes: usize = FILES.iter().map(|(_, bytes)| bytes.len()).sum();
+        let bytes: usize = all().map(|(_, bytes)| bytes.len()).sum();
         assert!((500_000..3_000_000).contains(&bytes), "{bytes}");
     }
 }

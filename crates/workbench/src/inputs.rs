@@ -65,11 +65,6 @@ impl Inputs {
             restrictions: restrictions(effects, &self.catalogue, &self.muscle)?,
         })
     }
-
-    /// Whether a row was excluded by hand.
-    pub(crate) fn is_excluded(&self, row: usize) -> bool {
-        self.excluded.binary_search(&row).is_ok()
-    }
 }
 
 fn read_rows(choices: &Choices, muscle: &Muscle) -> Result<Data, Refusal> {

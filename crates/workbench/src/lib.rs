@@ -6,7 +6,7 @@
 //!
 //! - `choices`, `session`, `folder`: what was chosen, how it came about, where it is kept,
 //! - `inputs`, `worker`, `diagnosis`: rows, muscle and catalogue, and the threads that compute with them,
-//! - `answers`, `rows`, `surface`, `command`: the documents,
+//! - `answers`, `surface`, `command`: the documents,
 //! - `server`, `stream`, `guard`, `assets`: HTTP, and who may ask.
 //!
 //! Deliberately absent: physics, files of the user (it reads those that are named, and writes into its session's folder alone), any other address than this
@@ -21,7 +21,6 @@ mod folder;
 mod guard;
 mod inputs;
 mod refusal;
-mod rows;
 mod server;
 mod session;
 mod stream;

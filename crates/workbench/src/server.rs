@@ -36,8 +36,8 @@ const MOST_REQUEST: usize = 16 << 20;
 /// What no page from elsewhere may do with ours, and ours may not do at all.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; font-src 'self'; \
                       base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-/// Reports hold their style and their plots; they run nothing.
-const REPORT_POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+/// What reports may do beside what they allow themselves: nothing.
+const REPORT_POLICY: &str = "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 /// A muscle with the effects that it has learnt.
 pub(crate) type Shaped = Arc<(Muscle, Vec<Known>)>;
@@ -157,11 +157,7 @@ async fn api(workbench: Arc<Workbench>, call: &str, parts: &Parts, body: Body) -
             Ok(([(header::CONTENT_TYPE, "application/xml")], bytes).into_response())
         }
         ("GET", "learnt.toml") => Ok(blocking(workbench, |w| answers::learnt(&w)).await?.into_response()),
-        ("GET", "report") => {
-            let comparison = answers::comparison(&workbench, true).await?;
-            let page = bulge_report::comparison::html(&comparison).map_err(Refusal::at(Place::Request))?;
-            Ok(report(page))
-        }
+        ("GET", "report") => Ok(report(answers::report(&workbench).await?)),
         ("GET", "diagnosis-report") => {
             blocking(workbench, |w| w.session().diagnosis().map(|found| report(found.report))).await
         }
@@ -301,8 +297,9 @@ fn as_json(text: String) -> Response {
 }
 
 fn report(page: String) -> Response {
-    let kind = (header::CONTENT_TYPE, "text/html; charset=utf-8");
-    ([kind, (header::CONTENT_SECURITY_POLICY, REPORT_POLICY)], page).into_response()
+    let kind = "text/html; charset=utf-8";
+    let policy = format!("{}; {REPORT_POLICY}", bulge_report::policy(true));
+    ([(header::CONTENT_TYPE, kind), (header::CONTENT_SECURITY_POLICY, &policy)], page).into_response()
 }
 
 fn refused(refusal: &Refusal) -> Response {

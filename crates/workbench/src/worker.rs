@@ -18,6 +18,8 @@ pub(crate) enum Question {
     Comparison(oneshot::Sender<Result<Box<Comparison>, Refusal>>),
     /// The forces row by row.
     Rows(oneshot::Sender<Result<Rows, Refusal>>),
+    /// The comparison with the force of each rung, row by row.
+    Report(oneshot::Sender<Result<(Box<Comparison>, Rows), Refusal>>),
     /// Why each of the effects can't be added.
     Unsuitable(oneshot::Sender<Result<Vec<Option<String>>, Refusal>>),
     /// To be ready for the questions that may follow.
@@ -29,6 +31,7 @@ impl Question {
         match self {
             Self::Comparison(to) => to.is_closed(),
             Self::Rows(to) => to.is_closed(),
+            Self::Report(to) => to.is_closed(),
             Self::Unsuitable(to) => to.is_closed(),
             Self::Prepared(to) => to.is_closed(),
         }
@@ -40,6 +43,7 @@ impl Question {
         match self {
             Self::Comparison(to) => drop(to.send(Err(refusal))),
             Self::Rows(to) => drop(to.send(Err(refusal))),
+            Self::Report(to) => drop(to.send(Err(refusal))),
             Self::Unsuitable(to) => drop(to.send(Err(refusal))),
             Self::Prepared(to) => drop(to.send(Err(refusal))),
         }
@@ -54,6 +58,13 @@ impl Question {
             }
             Self::Rows(to) => {
                 drop(to.send(of_all(|| comparing.rows(effects, restrictions).map_err(&refused))));
+            }
+            Self::Report(to) => {
+                let both = || {
+                    let comparison = Box::new(comparing.with(effects, restrictions)?);
+                    Ok((comparison, comparing.rows_of_rungs(effects, restrictions)?))
+                };
+                drop(to.send(of_all(|| both().map_err(&refused))));
             }
             Self::Prepared(to) => {
                 drop(to.send(of_all(|| comparing.prepare(effects, restrictions).map_err(&refused))));

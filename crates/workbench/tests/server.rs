@@ -582,7 +582,14 @@ fn a_diagnosis_is_told_by_stages_and_kept() {
         found["missing"]
     );
     assert_eq!(page.get("diagnosis.json").json(), found);
-    assert!(page.get("diagnosis-report").body.starts_with(b"<!"));
+    // Reports hold the rows, and may run their own script alone.
+    for report in ["report", "diagnosis-report"] {
+        let answer = page.get(report);
+        let text = String::from_utf8(answer.body).unwrap();
+        assert!(text.starts_with("<!") && text.contains("<script id=\"rows\""), "{report}");
+        let policy = bulge_report::policy(true);
+        assert!(text.contains(&policy) && answer.head.contains(&policy), "{report}: {}", answer.head);
+    }
     // It outlives the process, and knows whether it is about what is there.
     let again = Page::open(tour(folder.path()), Some(session), false);
     assert_eq!(again.get("diagnosis.json").json(), found);

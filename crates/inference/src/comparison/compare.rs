@@ -27,13 +27,25 @@ pub fn compare(data: &Data, muscle: &Muscle, options: &Options) -> Result<Compar
     rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, options)?)?.asked())
 }
 
+/// The same with its rows and the force of each rung, which a report draws.
+///
+/// # Errors
+/// As [`compare`].
+pub fn compare_with_rows(
+    data: &Data,
+    muscle: &Muscle,
+    options: &Options,
+) -> Result<(Comparison, Rows), InferenceError> {
+    rayon::scope(|_| Comparing::of(Analysis::new(data, muscle, options)?)?.asked_with_rows())
+}
+
 /// The same with the numbers of the last rung about known, of a model with the same effects, and the record that another analysis has.
 pub(crate) fn compare_near(
     other: &Analysis<'_>,
     options: &Options,
     near: (&Model, &[f64]),
-) -> Result<Comparison, InferenceError> {
-    Comparing::of(other.with_options(options, near)?)?.asked()
+) -> Result<(Comparison, Rows), InferenceError> {
+    Comparing::of(other.with_options(options, near)?)?.asked_with_rows()
 }
 
 /// A comparison that is asked again with other effects and other restrictions of their numbers: what the base says is computed once, and each rung of the
@@ -162,24 +174,59 @@ impl<'a> Comparing<'a> {
         effects: &[Arc<dyn Effect>],
         restrictions: &[Restriction],
     ) -> Result<Rows, InferenceError> {
+        self.rows_with(effects, restrictions, false)
+    }
+
+    /// The same with the force of each rung, for a report.
+    ///
+    /// # Errors
+    /// As [`compare`].
+    pub fn rows_of_rungs(
+        &self,
+        effects: &[Arc<dyn Effect>],
+        restrictions: &[Restriction],
+    ) -> Result<Rows, InferenceError> {
+        self.rows_with(effects, restrictions, true)
+    }
+
+    fn rows_with(
+        &self,
+        effects: &[Arc<dyn Effect>],
+        restrictions: &[Restriction],
+        of_all_rungs: bool,
+    ) -> Result<Rows, InferenceError> {
         rayon::scope(|_| match self.of_other_base(effects, restrictions) {
             Some(options) => {
                 let other = self.begun_with(&options)?;
-                other.rows_of(&other.analysis, &[])
+                other.rungs(&other.analysis, &[], of_all_rungs)
             }
-            None => self.rows_of(&self.analysis.with_effects(effects, restrictions)?, restrictions),
+            None => {
+                self.rungs(&self.analysis.with_effects(effects, restrictions)?, restrictions, of_all_rungs)
+            }
         })
     }
 
-    fn rows_of(&self, analysis: &Analysis<'_>, restrictions: &[Restriction]) -> Result<Rows, InferenceError> {
+    /// The rows with the force of the base and the last rung, or of all rungs.
+    fn rungs(
+        &self,
+        analysis: &Analysis<'_>,
+        restrictions: &[Restriction],
+        of_all: bool,
+    ) -> Result<Rows, InferenceError> {
         let ladder = self.ladder(analysis, restrictions, true)?;
-        let rung = last_that_says_something(analysis, &ladder);
-        Rows::of(analysis, [&ladder[0].climbed, &ladder[rung].climbed], rung)
+        let last = last_that_says_something(analysis, &ladder);
+        let wanted = (0..=last).filter(|place| of_all || [0, last].contains(place));
+        let rungs: Vec<&Climbed> = wanted.map(|place| &ladder[place].climbed).collect();
+        Rows::of(analysis, &rungs, last)
     }
 
     /// With the effects of the options, once.
     fn asked(self) -> Result<Comparison, InferenceError> {
         self.compared(&self.analysis, &[], false)
+    }
+
+    fn asked_with_rows(self) -> Result<(Comparison, Rows), InferenceError> {
+        Ok((self.compared(&self.analysis, &[], true)?, self.rungs(&self.analysis, &[], true)?))
     }
 
     /// The rungs from the base to the last effect; they are kept if others will be asked for.

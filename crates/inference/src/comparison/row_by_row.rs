@@ -1,6 +1,6 @@
 //! A comparison row by row: what was read, what the base and the last rung say of it, and whether it counts.
 
-use bulge_measurements::{WrittenColumn, WrittenValues};
+use bulge_measurements::{SweepKind, WrittenColumn, WrittenValues};
 use bulge_model::{Wanted, Warm};
 use serde::Serialize;
 
@@ -17,6 +17,8 @@ pub struct Rows {
     pub files: Vec<String>,
     /// Names of the sweeps.
     pub sweeps: Vec<String>,
+    /// What each of the sweeps is.
+    pub sweep_kinds: Vec<SweepKind>,
     /// Names of the specimens.
     pub specimens: Vec<String>,
     /// Why rows don't count.
@@ -35,6 +37,8 @@ pub struct Rows {
     pub counts: Vec<bool>,
     /// Place of the reason in `reasons`, of rows that don't count.
     pub reason: Vec<Option<u32>>,
+    /// Whether the row was excluded by hand.
+    pub excluded: Vec<bool>,
     /// Whether the rows follow each other; else they are a static map, and sweeps mean nothing.
     pub is_path: bool,
     /// Time as read \[s\], where there is any.
@@ -45,32 +49,45 @@ pub struct Rows {
     pub pressure_pa: Vec<f64>,
     /// Contraction as read, 1 - l/l0 where the length was read.
     pub contraction: Vec<f64>,
+    /// Rate of contraction \[1/s\], positive when shortening; 0 without time.
+    pub rate: Vec<f64>,
     /// +1 shortening, -1 lengthening, 0 at rest; at held length that of the pressure.
     pub direction: Vec<f64>,
     /// Measured force \[N\].
     pub measured_n: Vec<f64>,
     /// Force of the base \[N\].
     pub base_n: Vec<f64>,
+    /// Force of each rung between base and model \[N\], where those were asked for.
+    pub between_n: Vec<Vec<f64>>,
     /// Force of the model with the effects \[N\].
     pub model_n: Vec<f64>,
 }
 
 impl Rows {
+    /// The rungs from the base to the model, all of them or these two.
     pub(crate) fn of(
         analysis: &Analysis<'_>,
-        [base, last]: [&Climbed; 2],
-        rung: usize,
+        rungs: &[&Climbed],
+        effects: usize,
     ) -> Result<Self, InferenceError> {
         let (data, record, used) = (&analysis.data, &analysis.record, &analysis.used);
         let moments = record.moments();
         let rows = 0..record.len();
         let lines: Vec<(usize, usize)> = rows.clone().map(|row| data.line(row)).collect();
-        let base_n = force_of_all(analysis, base)?;
-        let model_n = if rung == 0 { base_n.clone() } else { force_of_all(analysis, last)? };
-        let names = analysis.options.effects[..rung].iter().map(|effect| effect.card().name.to_owned());
+        let mut forces =
+            rungs.iter().map(|rung| force_of_all(analysis, rung)).collect::<Result<Vec<_>, _>>()?;
+        let model_n = forces.pop().unwrap_or_default();
+        let (base_n, between_n) = match forces.split_first() {
+            Some((base, between)) => (base.clone(), between.to_vec()),
+            None => (model_n.clone(), Vec::new()),
+        };
+        let mut excluded = vec![false; record.len()];
+        analysis.options.excluded.iter().for_each(|row| excluded[*row] = true);
+        let names = analysis.options.effects[..effects].iter().map(|effect| effect.card().name.to_owned());
         Ok(Self {
             files: data.files().iter().map(|file| file.name.clone()).collect(),
             sweeps: data.sweeps().iter().map(|sweep| sweep.name.clone()).collect(),
+            sweep_kinds: data.sweeps().iter().map(|sweep| sweep.kind).collect(),
             specimens: record.specimens().to_vec(),
             reasons: used.left_out.iter().map(|left| left.why.clone()).collect(),
             effects: names.collect(),
@@ -80,14 +97,17 @@ impl Rows {
             specimen: moments.iter().map(|moment| moment.specimen).collect(),
             counts: used.mask.clone(),
             reason: used.reason.clone(),
+            excluded,
             is_path: data.is_path(),
             time_s: data.time().map(<[f64]>::to_vec),
             temperature_k: data.temperature().map(<[f64]>::to_vec),
             pressure_pa: moments.iter().map(|moment| moment.pressure).collect(),
             contraction: moments.iter().map(|moment| moment.contraction).collect(),
+            rate: moments.iter().map(|moment| moment.rate).collect(),
             direction: moments.iter().map(bulge_effects::Moment::branch).collect(),
             measured_n: record.force().to_vec(),
             base_n,
+            between_n,
             model_n,
         })
     }

@@ -7,9 +7,10 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 use crate::comparison::analysis::{Analysis, Climbed};
-use crate::comparison::compare::{compare, compare_near};
+use crate::comparison::compare::{compare_near, compare_with_rows};
 use crate::comparison::document::Comparison;
 use crate::comparison::options::Options;
+use crate::comparison::row_by_row::Rows;
 use crate::comparison::rows::lines;
 use crate::comparison::specimens::of_specimens;
 use crate::diagnosis::classes::Class;
@@ -119,7 +120,8 @@ fn diagnosed(
     let mut analysis = Analysis::new(data, muscle, &options.base)?;
     analysis.ask()?;
     if analysis.findings.iter().any(|finding| finding.decided) {
-        return Ok(unanswered(&analysis.data, stated, compared_as_stated(data, stated, options)?));
+        let (comparison, rows) = compared_as_stated(data, stated, options)?;
+        return Ok(Diagnosis { rows: Some(rows), ..unanswered(&analysis.data, stated, comparison) });
     }
     let first = analysis.climb(0, None)?;
     analysis.measure_noise(&first);
@@ -260,11 +262,11 @@ fn concluded(
     let mut compared = options.base.clone();
     compared.effects.extend(found.shown().iter().map(Arc::clone));
     let last = &search.stages[search.stages.len() - 1].confirmed;
-    let comparison = compare_near(analysis, &compared, last.numbers())?;
+    let answer = compare_near(analysis, &compared, last.numbers())?;
     progress.at(1.0, "done");
-    let above_n = comparison.ladder.last().map_or(f64::INFINITY, |rung| rung.rmse_n);
+    let above_n = answer.0.ladder.last().map_or(f64::INFINITY, |rung| rung.rmse_n);
     let bent = bent_rungs(analysis, found.shown_stage(), &ground.averaged.groups, above_n)?;
-    let mut diagnosis = document(analysis.muscle, &found, comparison, &bent);
+    let mut diagnosis = document(analysis.muscle, &found, answer, &bent);
     diagnosis.geometry = geometry(analysis, found.regardless());
     Ok(diagnosis)
 }
@@ -274,8 +276,8 @@ fn compared_as_stated(
     data: &Data,
     muscle: &Muscle,
     options: &DiagnoseOptions,
-) -> Result<Comparison, InferenceError> {
-    compare(data, muscle, &Options { rivals: false, held_out: false, ..options.base.clone() })
+) -> Result<(Comparison, Rows), InferenceError> {
+    compare_with_rows(data, muscle, &Options { rivals: false, held_out: false, ..options.base.clone() })
 }
 
 /// Each named effect with its rivals, and how often such a claim is right.

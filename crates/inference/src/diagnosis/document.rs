@@ -6,6 +6,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 use crate::comparison::document::{Comparison, LeftOut, Mismatch};
+use crate::comparison::row_by_row::Rows;
 use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::geometry::Geometry;
@@ -57,6 +58,9 @@ pub struct Diagnosis {
     /// The comparison with the effects that were found, for curves and plots; its ladder is empty where there were too few rows.
     #[serde(skip)]
     pub comparison: Comparison,
+    /// Its rows, with the force of each rung; none where there were too few.
+    #[serde(skip)]
+    pub rows: Option<Rows>,
 }
 
 impl Diagnosis {
@@ -403,5 +407,5 @@ pub struct NextExperiment {
     /// How often to repeat it.
     pub repeats: usize,
     /// The test once, with the noise of the data at hand; none if no test within the limits tells them apart.
-    pub protocol: Option<Protocol>,
+    pub protocol: Option<Box<Protocol>>,
 }

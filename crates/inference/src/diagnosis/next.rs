@@ -315,7 +315,7 @@ pub(crate) fn next_experiment(
         separates: vec![named, nearest],
         sigma: best.after,
         repeats,
-        protocol: Some(Protocol { noise: noise_of(given, &protocol), ..protocol }),
+        protocol: Some(Box::new(Protocol { noise: noise_of(given, &protocol), ..protocol })),
     })
 }
 

@@ -57,6 +57,7 @@ pub(crate) fn cannot_tell(data: &Data, muscle: &Muscle, reason: &str) -> Diagnos
         next_experiment: None,
         warnings: Vec::new(),
         comparison: nothing_compared(data, muscle),
+        rows: None,
     }
 }
 

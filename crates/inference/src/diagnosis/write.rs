@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::comparison::document::Comparison;
+use crate::comparison::row_by_row::Rows;
 use crate::diagnosis::bending::may_bend;
 use crate::diagnosis::claim::{Levels, form_error};
 use crate::diagnosis::classes::{Class, Rival};
@@ -57,7 +58,7 @@ pub(crate) struct Findings<'a> {
 pub(crate) fn document(
     muscle: &Muscle,
     found: &Findings<'_>,
-    mut comparison: Comparison,
+    (mut comparison, rows): (Comparison, Rows),
     bent: &[BentRung],
 ) -> Diagnosis {
     let Findings { given, search, classes, sd_n, .. } = *found;
@@ -119,6 +120,7 @@ pub(crate) fn document(
         next_experiment: found.next.clone().filter(|_| named),
         warnings: comparison.warnings.clone(),
         comparison,
+        rows: Some(rows),
     }
 }
 

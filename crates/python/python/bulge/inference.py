@@ -34,7 +34,7 @@ class _Reported(Result):
         return self._native
 
     def to_html(self) -> str:
-        """The report: a page that stands for itself, without scripts or network."""
+        """The report: a page that stands for itself, without network; its rows can be asked."""
         page: str = self._whole().html()
         return page
 

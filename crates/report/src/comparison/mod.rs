@@ -1,8 +1,8 @@
 //! The report of a comparison: one page that stands for itself, and each of its plots.
 //!
 //! ```text
-//! html(&comparison)?   -> report.html, without scripts, network or fonts of its own
-//! plots(&comparison)?  -> NAME.svg for each plot
+//! html(&comparison, rows)?  -> report.html, without network or fonts of its own; with rows also plots that can be asked
+//! plots(&comparison)?       -> NAME.svg for each plot
 //! ```
 //! Numbers come from the comparison alone: nothing is fitted or predicted here. Errors are measured - model throughout, so a positive error
 //! means that the model pulls too weakly.
@@ -33,7 +33,7 @@ mod scatter;
 pub(crate) mod svg;
 pub(crate) mod wording;
 
-use bulge_inference::Comparison;
+use bulge_inference::{Comparison, Rows};
 use serde::Serialize;
 
 use crate::PlotError;
@@ -55,6 +55,9 @@ pub struct Plot {
 }
 
 /// The page: one HTML document with all plots and tables, readable on screen and on paper.
+///
+/// With the rows of all rungs ([`bulge_inference::compare_with_rows`]) it shows them in plots that zoom, name the line of a row in its file, and switch
+/// between the rungs. Where no script runs, drawings stand for these plots.
 ///
 /// # Errors
 /// A number that isn't finite, lists of different lengths that belong together, or values too far apart for an axis.
@@ -118,15 +121,15 @@ pub struct Plot {
 /// #     rivals: Vec::new(),
 /// #     warnings: Vec::new(),
 /// # };
-/// let page = html(&comparison)?;
+/// let page = html(&comparison, None)?;
 /// assert!(page.contains("The base alone misses the measured force by 41.0 N (5.10 % of full scale)."));
 /// // Names are text, whatever they look like.
 /// assert!(page.contains("Braided muscle &lt;20 mm&gt;"));
 /// # Ok::<(), bulge_report::PlotError>(())
 /// ```
-pub fn html(comparison: &Comparison) -> Result<String, PlotError> {
+pub fn html(comparison: &Comparison, rows: Option<&Rows>) -> Result<String, PlotError> {
     check::check(comparison)?;
-    page::render(comparison)
+    page::render(comparison, rows)
 }
 
 /// The plots for which there are data, in the order of the page.
@@ -136,12 +139,12 @@ pub fn html(comparison: &Comparison) -> Result<String, PlotError> {
 ///
 /// # Examples
 /// ```
-/// use bulge_inference::Comparison;
+/// use bulge_inference::{Comparison, Rows};
 /// use bulge_report::comparison::plots;
 ///
 /// /// The page and its plots as files.
-/// fn write(comparison: &Comparison, folder: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
-///     std::fs::write(folder.join("report.html"), bulge_report::comparison::html(comparison)?)?;
+/// fn write(comparison: &Comparison, rows: &Rows, folder: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
+///     std::fs::write(folder.join("report.html"), bulge_report::comparison::html(comparison, Some(rows))?)?;
 ///     for plot in plots(comparison)? {
 ///         std::fs::write(folder.join(plot.name).with_extension("svg"), plot.svg)?;
 ///     }

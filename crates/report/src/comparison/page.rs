@@ -1,21 +1,25 @@
 //! The page: texts, tables and plots put into the template.
 
-use bulge_inference::{Comparison, LeftOut};
+use bulge_inference::{Comparison, LeftOut, Rows};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Serde, Value};
 use minijinja::{AutoEscape, Environment, HtmlEscape};
 use serde::Serialize;
 
-use crate::PlotError;
 use crate::comparison::{
     Plot, breakdown, contributions, convergence, correlations, data, force, headline, isotonic, ladder,
     ladder_table, loops, parameters, parameters_table, residual_map, rivals, scatter, wording,
 };
+use crate::explore::{Explore, policy, replaces};
+use crate::{PlotError, scripts};
 
 const TEMPLATE: &str = include_str!("report.html");
 /// What every page is made of: its look, and macros for plots and tables.
-const PIECES: [(&str, &str); 2] =
-    [("style.css", include_str!("style.css")), ("pieces.html", include_str!("pieces.html"))];
+const PIECES: [(&str, &str); 3] = [
+    ("plots.css", scripts::STYLE),
+    ("style.css", include_str!("style.css")),
+    ("pieces.html", include_str!("pieces.html")),
+];
 
 /// A plot with the sentence above it.
 #[derive(Debug, Serialize)]
@@ -24,6 +28,8 @@ pub(crate) struct Figure {
     name: &'static str,
     title: String,
     caption: String,
+    /// Whether the plots of rows stand for it where scripts run, as far as there are any.
+    replaced: bool,
     /// Markup, which the template must not escape.
     svg: Value,
 }
@@ -32,7 +38,7 @@ impl Figure {
     /// A plot, and what is to be seen in it.
     pub(crate) fn new(plot: Plot, says: String) -> Self {
         let Plot { name, title, caption, svg } = plot;
-        Self { says, name, title, caption, svg: Value::from_safe_string(svg) }
+        Self { says, name, title, caption, replaced: replaces(name), svg: Value::from_safe_string(svg) }
     }
 }
 
@@ -43,6 +49,8 @@ struct Page<'a> {
     base: &'a str,
     version: &'static str,
     schema: &'static str,
+    policy: Value,
+    explore: Option<Explore>,
     headline: String,
     verdict: Vec<String>,
     key_figures: Vec<headline::Figure>,
@@ -84,8 +92,8 @@ struct Page<'a> {
 ///
 /// # Errors
 /// If a plot can't be drawn, or the template not be filled in.
-pub(super) fn render(comparison: &Comparison) -> Result<String, PlotError> {
-    filled("report.html", TEMPLATE, &page(comparison)?)
+pub(super) fn render(comparison: &Comparison, rows: Option<&Rows>) -> Result<String, PlotError> {
+    filled("report.html", TEMPLATE, &page(comparison, rows)?)
 }
 
 /// A template with its values put in. It may use the pieces that every page has, and the filter `code`.
@@ -140,7 +148,8 @@ fn code(text: &str) -> Value {
     Value::from_safe_string(marked.collect())
 }
 
-fn page(comparison: &Comparison) -> Result<Page<'_>, PlotError> {
+fn page<'a>(comparison: &'a Comparison, rows: Option<&Rows>) -> Result<Page<'a>, PlotError> {
+    let explore = Explore::of(comparison, rows)?;
     let figure = |plot: Option<Plot>, says: String| plot.map(|plot| Figure::new(plot, says));
     let errors = breakdown::with_sentences(comparison)?;
     let (pairs, all_pairs) = correlations::pairs(comparison);
@@ -154,6 +163,8 @@ fn page(comparison: &Comparison) -> Result<Page<'_>, PlotError> {
         base: &comparison.base,
         version: env!("CARGO_PKG_VERSION"),
         schema: comparison.schema,
+        policy: Value::from_safe_string(policy(explore.is_some())),
+        explore,
         headline: headline::says(comparison),
         verdict: headline::verdict(comparison),
         key_figures: headline::figures(comparison),

@@ -1,7 +1,7 @@
 //! The report of a diagnosis: one page that stands for itself, each of its plots, and the sentences that it shares with the command line.
 //!
 //! ```text
-//! html(&diagnosis)?      -> report.html, without scripts, network or fonts of its own
+//! html(&diagnosis)?      -> report.html, without network or fonts of its own; its rows can be asked
 //! plots(&diagnosis)?     -> NAME.svg for each plot
 //! headlines(&diagnosis)  -> the verdict in plain words
 //! ```

@@ -1,6 +1,7 @@
 //! The page of a diagnosis: texts, tables and plots put into the template.
 
 use bulge_inference::{Diagnosis, Missing, NextExperiment, Verdict};
+use minijinja::value::Value;
 use serde::Serialize;
 
 use crate::PlotError;
@@ -13,6 +14,7 @@ use crate::diagnosis::{
     bending_says, bent, candidates, chance, explained, forms_says, further, headlines, limits, located,
     noise_says, others_in_class, remaining, remains_says, rivals, steps, words,
 };
+use crate::explore::{Explore, policy};
 use crate::interval::with_interval;
 
 /// A missing effect as the verdict's box shows it.
@@ -37,6 +39,8 @@ struct Page<'a> {
     muscle: &'a str,
     version: &'static str,
     schema: &'static str,
+    policy: Value,
+    explore: Option<Explore>,
     tone: &'static str,
     headlines: Vec<String>,
     says: &'a str,
@@ -86,10 +90,13 @@ fn page(diagnosis: &Diagnosis) -> Result<Page<'_>, PlotError> {
     let bent = bent::with_sentences(diagnosis)?;
     let remains = sentence(&remains_says(diagnosis));
     let comparison = steps::with_noise(diagnosis);
+    let explore = Explore::of(&comparison, diagnosis.rows.as_ref())?;
     Ok(Page {
         muscle: &diagnosis.muscle,
         version: env!("CARGO_PKG_VERSION"),
         schema: diagnosis.schema,
+        policy: Value::from_safe_string(policy(explore.is_some())),
+        explore,
         tone: tone(diagnosis.verdict),
         headlines: headlines(diagnosis).iter().map(|line| sentence(line)).collect(),
         says: further(diagnosis).unwrap_or_default(),

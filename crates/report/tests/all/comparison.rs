@@ -2,11 +2,16 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that can't be set up fails")]
 
-use crate::sample::{Recipe, bare, crowded, empty, hostile, rich};
-use bulge_inference::Comparison;
+use crate::sample::{Recipe, bare, crowded, empty, hostile, rich, rows};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use bulge_inference::{Comparison, Rows};
 use bulge_report::PlotError;
-use bulge_report::comparison::{html, plots};
+use bulge_report::comparison::plots;
 use roxmltree::{Document, ParsingOptions};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::collections::HashMap;
 
 fn samples() -> [(&'static str, Comparison); 5] {
     [
@@ -16,6 +21,11 @@ fn samples() -> [(&'static str, Comparison); 5] {
         ("crowded", crowded()),
         ("hostile", hostile()),
     ]
+}
+
+/// The page without rows.
+fn html(comparison: &Comparison) -> Result<String, PlotError> {
+    bulge_report::comparison::html(comparison, None)
 }
 
 /// The page as XML: it is written so that both kinds of parser read it.
@@ -292,6 +302,145 @@ fn markup_in_names_stays_text() {
     let document = parsed(&html);
     let heading = document.descendants().find(|n| n.has_tag_name("h1")).unwrap();
     assert_eq!(heading.text().unwrap().trim(), "<script>alert(\"1\")</script> & 'b'");
+}
+
+/// Samples with rows, and their pages.
+fn with_rows() -> Vec<(Comparison, Rows, String)> {
+    let samples = [
+        (Recipe::usual(), rich(&Recipe::usual())),
+        (Recipe::bare(), bare()),
+        (Recipe::crowded(), crowded()),
+        (Recipe::hostile(), hostile()),
+    ];
+    let page = |(recipe, comparison): (Recipe, Comparison)| {
+        let rows = rows(&recipe, &comparison);
+        let page = bulge_report::comparison::html(&comparison, Some(&rows)).unwrap();
+        (comparison, rows, page)
+    };
+    samples.map(page).into()
+}
+
+/// The texts of the elements `script`, and the page without them.
+fn scripts(page: &str) -> (Vec<&str>, String) {
+    let mut pieces = page.split("<script");
+    let mut rest = pieces.next().unwrap().to_owned();
+    let mut scripts = Vec::new();
+    for piece in pieces {
+        let (script, after) = piece.split_once("</script>").unwrap();
+        scripts.push(script.split_once('>').unwrap().1);
+        rest += after;
+    }
+    (scripts, rest)
+}
+
+/// Header and columns of the rows in a page.
+fn rows_of(page: &str) -> (Value, HashMap<String, Vec<f32>>) {
+    let bytes = STANDARD.decode(scripts(page).0[0]).unwrap();
+    let length = usize::try_from(u32::from_le_bytes(bytes[..4].try_into().unwrap())).unwrap();
+    let header: Value = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
+    let numbers = bytes[4 + length..].chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap()));
+    let numbers: Vec<f32> = numbers.collect();
+    let count = usize::try_from(header["rows"].as_u64().unwrap()).unwrap();
+    let names = header["columns"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap().to_owned());
+    let columns: HashMap<_, _> = names.zip(numbers.chunks(count).map(<[f32]>::to_vec)).collect();
+    assert_eq!(numbers.len(), count * columns.len());
+    (header, columns)
+}
+
+#[test]
+fn the_rows_of_a_page_are_those_of_the_comparison() {
+    for (comparison, rows, page) in with_rows() {
+        let (header, columns) = rows_of(&page);
+        let single = |values: &[f64], scale: f64| -> Vec<f32> {
+            values.iter().map(|value| (value * scale).to_string().parse().unwrap()).collect()
+        };
+        assert_eq!(columns["measured"], single(&rows.measured_n, 1.0));
+        assert_eq!(columns["pressure"], single(&rows.pressure_pa, 1e-5));
+        assert_eq!(columns["contraction"], single(&rows.contraction, 100.0));
+        assert_eq!(columns["model"], single(&rows.model_n, 1.0));
+        let line: Vec<f32> = rows.line.iter().map(|line| line.to_string().parse().unwrap()).collect();
+        assert_eq!(columns["line"], line);
+        let forces: Vec<&Vec<f64>> =
+            [&rows.base_n].into_iter().chain(&rows.between_n).chain([&rows.model_n]).collect();
+        let rungs = header["report"]["rungs"].as_array().unwrap();
+        assert_eq!(rungs.len(), comparison.ladder.len());
+        for (place, (rung, of_ladder)) in rungs.iter().zip(&comparison.ladder).enumerate() {
+            assert_eq!(rung["added"].as_str(), of_ladder.added.as_deref());
+            assert_eq!(columns[rung["column"].as_str().unwrap()], single(forces[place], 1.0));
+            let errors = (0..rows.len()).filter(|row| rows.counts[*row]);
+            let errors: Vec<f64> = errors.map(|row| rows.measured_n[row] - forces[place][row]).collect();
+            let rmse = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
+            assert!((rung["rmse_n"].as_f64().unwrap() - rmse).abs() < 1e-9 * rmse);
+        }
+        for (row, state) in columns["state"].iter().enumerate() {
+            let expected = if rows.excluded[row] {
+                "-1"
+            } else if rows.counts[row] {
+                "1"
+            } else {
+                "0"
+            };
+            assert_eq!(state.to_string(), expected);
+        }
+        assert_eq!(header["files"], serde_json::to_value(&rows.files).unwrap());
+        assert!(header["report"]["every"] == 1 && header["report"]["all"] == rows.len());
+    }
+}
+
+#[test]
+fn many_rows_are_thinned_and_the_page_stays_light() {
+    let recipe = Recipe { rows: 5000, ..Recipe::usual() };
+    let comparison = rich(&Recipe::usual());
+    let rows = rows(&recipe, &comparison);
+    assert_eq!(rows.len(), 100_000);
+    let page = bulge_report::comparison::html(&comparison, Some(&rows)).unwrap();
+    assert!(page.len() < 3_000_000, "{}", page.len());
+    let (header, columns) = rows_of(&page);
+    assert!(
+        header["rows"] == 10_000 && header["report"]["every"] == 10 && header["report"]["all"] == 100_000
+    );
+    assert_eq!(columns["line"][..3], [2.0, 12.0, 22.0]);
+    // The error is that of all rows.
+    let errors =
+        (0..rows.len()).filter(|row| rows.counts[*row]).map(|row| rows.measured_n[row] - rows.base_n[row]);
+    let errors: Vec<f64> = errors.collect();
+    let rmse = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
+    let shown = header["report"]["rungs"][0]["rmse_n"].as_f64().unwrap();
+    assert!((shown - rmse).abs() < 1e-9 * rmse, "{shown} {rmse}");
+}
+
+#[test]
+fn a_page_with_rows_runs_its_own_script_alone_and_is_else_the_page_without_them() {
+    for (comparison, _, page) in with_rows() {
+        let (scripts, rest) = scripts(&page);
+        assert_eq!(scripts.len(), 2, "the rows, and the script");
+        assert!(scripts[0].bytes().all(|b| b.is_ascii_alphanumeric() || b"+/=".contains(&b)));
+        let hash = STANDARD.encode(Sha256::digest(scripts[1]));
+        let policy = format!(
+            "default-src 'none'; script-src 'sha256-{hash}'; style-src 'unsafe-inline'; img-src data:"
+        );
+        assert!(policy == bulge_report::policy(true) && rest.contains(&policy));
+        let document = parsed(&rest);
+        let explore = document.descendants().find(|n| n.attribute("id") == Some("explore")).unwrap();
+        assert_eq!(explore.attribute("class"), Some("with-script"));
+        // Whoever runs no script has all drawings.
+        let drawings = |page: &str| page.matches("<svg ").count();
+        assert_eq!(drawings(&rest), drawings(&html(&comparison).unwrap()));
+        assert_eq!(rest.matches("<figure").count(), plots(&comparison).unwrap().len());
+    }
+}
+
+#[test]
+fn rows_of_different_lengths_are_refused() {
+    let comparison = rich(&Recipe::usual());
+    let mut uneven = rows(&Recipe::usual(), &comparison);
+    uneven.rate.pop();
+    let error = bulge_report::comparison::html(&comparison, Some(&uneven)).unwrap_err();
+    assert_eq!(error.to_string(), "899 values of a column of rows where 900 are needed");
+    let mut fewer = rows(&Recipe::usual(), &comparison);
+    fewer.between_n.pop();
+    let error = bulge_report::comparison::html(&comparison, Some(&fewer)).unwrap_err();
+    assert_eq!(error.to_string(), "2 forces of rungs between base and model where 3 are needed");
 }
 
 #[test]

@@ -365,6 +365,22 @@ fn rivals_are_drawn_with_the_line_beyond_which_they_are_told_apart() {
 }
 
 #[test]
+fn the_rows_of_a_diagnosis_are_drawn_in_its_page() {
+    for comparison in [comparison(), hostile()] {
+        let recipe = if comparison.data.files[0].contains('<') { Recipe::hostile() } else { Recipe::usual() };
+        let mut diagnosis = missing(comparison);
+        let without = html(&diagnosis).unwrap();
+        diagnosis.rows = Some(crate::sample::rows(&recipe, &diagnosis.comparison));
+        let page = html(&diagnosis).unwrap();
+        assert!(page.contains(&bulge_report::policy(true)) && without.contains(&bulge_report::policy(false)));
+        assert_eq!([&page, &without].map(|page| page.matches("<script").count()), [2, 0]);
+        // The two drawings that the plots of rows stand for are there without scripts.
+        assert_eq!(page.matches("<svg ").count(), without.matches("<svg ").count());
+        assert_eq!(page.matches("<div class=\"without-script\">").count(), 2);
+    }
+}
+
+#[test]
 fn markup_in_names_stays_text_and_the_same_diagnosis_gives_the_same_bytes() {
     let mut diagnosis = missing(hostile());
     diagnosis.muscle = "<script>alert(1)</script>".to_owned();

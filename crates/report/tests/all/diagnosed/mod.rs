@@ -68,6 +68,7 @@ pub(crate) fn missing(mut comparison: Comparison) -> Diagnosis {
         }),
         warnings: vec!["one warning".to_owned()],
         comparison,
+        rows: None,
     }
 }
 

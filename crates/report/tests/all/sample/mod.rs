@@ -4,10 +4,13 @@
 
 use bulge_inference::{
     Bin, Breakdown, Comparison, Convergence, Curve, CurvePoint, DataSummary, Fit, Fitted, HeldLoad,
-    HeldLoadPoint, LeftOut, LoopGap, NoiseFloor, Part, ResidualMap, Rival, Rung, Stack,
+    HeldLoadPoint, LeftOut, LoopGap, NoiseFloor, Part, ResidualMap, Rival, Rows, Rung, Stack,
 };
 use bulge_measurements::{Finding, FindingKind, LineRange, Severity, SweepKind};
 use std::f64::consts::PI;
+
+/// A name that is no markup but looks like it.
+const HOSTILE: &str = "<script>alert(\"1\")</script> & 'b' \u{7}";
 
 /// What is simulated.
 #[derive(Debug, Clone)]
@@ -25,6 +28,25 @@ impl Recipe {
     pub(crate) fn usual() -> Self {
         let pressures_pa = vec![0.5e5, 1e5, 1.5e5, 2e5, 3e5];
         Self { pressures_pa, specimens: vec!["A".to_owned(), "B".to_owned()], rows: 45 }
+    }
+
+    /// One pressure, few rows.
+    pub(crate) fn bare() -> Self {
+        Self { pressures_pa: vec![2e5], specimens: vec!["1".to_owned()], rows: 12 }
+    }
+
+    /// Many of everything.
+    pub(crate) fn crowded() -> Self {
+        Self {
+            pressures_pa: (1..=40).map(|i| 1e4 * f64::from(i)).collect(),
+            specimens: (1..=9).map(|i| format!("spring series of last year, number {i}")).collect(),
+            rows: 8,
+        }
+    }
+
+    /// A specimen whose name looks like markup.
+    pub(crate) fn hostile() -> Self {
+        Self { pressures_pa: vec![1e5, 2e5], specimens: vec![HOSTILE.to_owned(), "2".to_owned()], rows: 10 }
     }
 }
 
@@ -437,6 +459,47 @@ fn rivals() -> Vec<Rival> {
     rivals
 }
 
+/// The rows of a comparison that was made from this recipe, with the force of each of its rungs.
+pub(crate) fn rows(recipe: &Recipe, comparison: &Comparison) -> Rows {
+    let rows = simulate(recipe);
+    let sweeps = comparison.data.sweeps;
+    let added: Vec<String> = comparison.ladder.iter().filter_map(|rung| rung.added.clone()).collect();
+    let rung = |k: usize| -> Vec<f64> {
+        let error = |k: usize| comparison.ladder[k].rmse_n;
+        let share = if k == 0 { 0.0 } else { (error(0) - error(k)) / (error(0) - error(added.len())) };
+        rows.iter().map(|r| r.first + share * (r.last - r.first)).collect()
+    };
+    let place = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
+    // Every fiftieth row doesn't count, and every second of those was excluded by hand.
+    let is_out = |row: usize| row % 50 == 49;
+    Rows {
+        files: comparison.data.files.clone(),
+        sweeps: (1..=sweeps).map(|sweep| sweep.to_string()).collect(),
+        sweep_kinds: comparison.data.sweep_kinds.clone(),
+        specimens: comparison.data.specimens.clone(),
+        reasons: vec!["spike".to_owned(), "excluded by hand".to_owned()],
+        file: vec![0; rows.len()],
+        line: (2..).take(rows.len()).collect(),
+        sweep: rows.iter().map(|row| place(row.sweep)).collect(),
+        specimen: rows.iter().map(|row| place(row.specimen)).collect(),
+        counts: (0..rows.len()).map(|row| !is_out(row)).collect(),
+        reason: (0..rows.len()).map(|row| is_out(row).then_some(u32::from(row % 100 == 99))).collect(),
+        excluded: (0..rows.len()).map(|row| row % 100 == 99).collect(),
+        is_path: comparison.data.is_path,
+        time_s: comparison.data.is_path.then(|| rows.iter().map(|row| row.time).collect()),
+        temperature_k: None,
+        pressure_pa: rows.iter().map(|row| row.pressure).collect(),
+        contraction: rows.iter().map(|row| row.contraction).collect(),
+        rate: rows.iter().map(|row| 0.028 * row.direction).collect(),
+        direction: rows.iter().map(|row| row.direction).collect(),
+        measured_n: rows.iter().map(|row| row.measured).collect(),
+        base_n: rung(0),
+        between_n: (1..added.len()).map(rung).collect(),
+        model_n: rung(added.len()),
+        effects: added,
+    }
+}
+
 /// A comparison in which every section has something to show.
 pub(crate) fn rich(recipe: &Recipe) -> Comparison {
     let rows = simulate(recipe);
@@ -530,8 +593,7 @@ fn held_loads() -> Vec<HeldLoad> {
 
 /// A static map with the base alone: no loops, one pressure, nothing fitted.
 pub(crate) fn bare() -> Comparison {
-    let recipe = Recipe { pressures_pa: vec![2e5], specimens: vec!["1".to_owned()], rows: 12 };
-    let mut all = rich(&recipe);
+    let mut all = rich(&Recipe::bare());
     all.data.is_path = false;
     all.data.left_out.clear();
     all.data.rows = all.data.used;
@@ -568,12 +630,7 @@ pub(crate) fn empty() -> Comparison {
 
 /// Forty pressures, nine specimens with long names, thirty effects.
 pub(crate) fn crowded() -> Comparison {
-    let recipe = Recipe {
-        pressures_pa: (1..=40).map(|i| 1e4 * f64::from(i)).collect(),
-        specimens: (1..=9).map(|i| format!("spring series of last year, number {i}")).collect(),
-        rows: 8,
-    };
-    let mut all = rich(&recipe);
+    let mut all = rich(&Recipe::crowded());
     let last = all.ladder.pop();
     for i in 0..26 {
         let mut rung = all.ladder[3].clone();
@@ -610,10 +667,8 @@ pub(crate) fn crowded() -> Comparison {
 
 /// Names that are no markup but look like it.
 pub(crate) fn hostile() -> Comparison {
-    let name = "<script>alert(\"1\")</script> & 'b' \u{7}";
-    let recipe =
-        Recipe { pressures_pa: vec![1e5, 2e5], specimens: vec![name.to_owned(), "2".to_owned()], rows: 10 };
-    let mut all = rich(&recipe);
+    let name = HOSTILE;
+    let mut all = rich(&Recipe::hostile());
     name.clone_into(&mut all.muscle);
     name.clone_into(&mut all.base);
     all.data.files = vec![name.to_owned(), name.to_owned()];

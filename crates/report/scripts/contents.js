@@ -4,7 +4,7 @@
 import { cells } from "./cells.js";
 import { inks, lineColour, signedColour, sweepColour } from "./palette.js";
 
-/** @typedef {import("./types.js").Rows} Rows */
+/** @typedef {import("./rows.js").Rows} Rows */
 /** @typedef {import("./plot.js").Content} Content */
 /** @typedef {import("./plot.js").Group} Group */
 /** @typedef {import("./plot.js").Line} Line */

@@ -13,6 +13,7 @@ const REACH = 16;
 /**
  * @param {Plot} plot
  * @param {object} does
+ * @param {boolean} does.scrolls whether the wheel is the page's until the plot is clicked
  * @param {() => Tool} does.tool
  * @param {(rows: number[], how: How) => void} does.brushed
  * @param {(row: number | null, px: number, py: number) => void} does.hovered
@@ -26,7 +27,7 @@ export function listen(plot, does) {
   const at = (/** @type {MouseEvent} */ event) => /** @type {[number, number]} */ ([event.clientX - area.getBoundingClientRect().left, event.clientY - area.getBoundingClientRect().top]);
 
   area.addEventListener("wheel", (event) => {
-    if (!plot.content) return;
+    if (!plot.content || (does.scrolls && document.activeElement !== area && !event.ctrlKey)) return;
     event.preventDefault();
     const [px, py] = at(event);
     zoom(plot, 1.0015 ** Math.max(-400, Math.min(400, event.deltaY * (event.deltaMode === 1 ? 30 : 1))), px, py);

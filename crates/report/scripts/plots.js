@@ -1,5 +1,5 @@
 // @ts-check
-// The plots of the middle, linked by selection and hovered row.
+// The plots of rows, linked by selection and hovered row. Their elements and controls are found by their ids; a page may lack some of them.
 
 import * as contents from "./contents.js";
 import { byId, fill, h, select } from "./dom.js";
@@ -7,21 +7,39 @@ import { listen } from "./gestures.js";
 import { newtons, number } from "./format.js";
 import { gradient, ground, signedColour } from "./palette.js";
 import { Plot } from "./plot.js";
+import { describe } from "./rows.js";
 import { startSaving } from "./save-plot.js";
-import { describe, hover, selection, selectRows } from "./selection.js";
-import { keepView, on, state } from "./store.js";
+import { hover, selection, selectRows, startSelection } from "./selection.js";
+import { on } from "./topics.js";
 
+/** @typedef {{against?: string, residual?: string, log?: boolean, cells?: boolean}} View how the plots are looked at */
+
+/**
+ * @typedef {object} Shown what the plots show at the moment
+ * @property {import("./rows.js").Rows | null} rows
+ * @property {string} data another text for other data, of which a row's number means another row
+ * @property {string} measured another text if anything else than the model is another one
+ * @property {boolean} isPath
+ * @property {boolean} hasEffects
+ * @property {number | null | undefined} floor the noise floor [N]
+ * @property {boolean} scrolls whether the page is a long one: then the wheel moves the page, until a plot is clicked
+ * @property {View} view
+ * @property {(part: View) => void} keepView
+ */
+
+/** @type {Shown} */
+let shown;
 /** @type {Record<string, Plot>} */
 const plots = {};
 /** @type {import("./gestures.js").Tool} */
 let tool = "pan";
 let scale = 1;
 
-const view = () => state.session?.view ?? {};
+const view = () => shown.view;
 
 /** Isometric tests are read along the pressure, all others along the contraction. */
 function abscissa() {
-  const rows = state.rows;
+  const rows = shown.rows;
   const chosen = view().against;
   if (chosen && rows?.of[chosen]) return chosen;
   return rows?.kind.length && rows.kind.every((kind) => kind === "isometric") ? "pressure" : "contraction";
@@ -29,27 +47,27 @@ function abscissa() {
 
 const residualAgainst = () => {
   const chosen = view().residual ?? "contraction";
-  return state.rows?.of[chosen] ? chosen : "contraction";
+  return shown.rows?.of[chosen] ? chosen : "contraction";
 };
 
-const inCells = () => view().cells ?? (state.rows?.count ?? 0) > 5000;
+const inCells = () => view().cells ?? (shown.rows?.count ?? 0) > 5000;
 
 /** Which content each plot had, so that a zoom is kept while only the model changes. @type {Record<string, string>} */
-const shown = {};
+const before = {};
 
 /** @param {string} name @param {string} key @param {import("./plot.js").Content} content */
 function show(name, key, content) {
-  const full = `${JSON.stringify(state.session?.data)} ${key}`;
-  plots[name].show(content, shown[name] !== full);
-  shown[name] = full;
+  const full = `${shown.data} ${key}`;
+  plots[name].show(content, before[name] !== full);
+  before[name] = full;
 }
 
 function drawForce() {
-  const rows = state.rows;
+  const rows = shown.rows;
   if (!rows) return;
   const against = abscissa();
   const isLog = view().log ?? false;
-  const how = { isLog, isPath: state.comparison?.data.is_path ?? true, hasEffects: state.effects.length > 0 };
+  const how = { isLog, isPath: shown.isPath, hasEffects: shown.hasEffects };
   show("force", `${against} ${isLog}`, contents.force(rows, against, how));
   for (const choice of document.querySelectorAll("[data-against]")) {
     const its = /** @type {HTMLButtonElement} */ (choice);
@@ -60,12 +78,12 @@ function drawForce() {
 }
 
 function drawMap() {
-  const rows = state.rows;
+  const rows = shown.rows;
   if (!rows) return;
   scale = contents.residualScale(rows);
   show("map", String(inCells()), contents.map(rows, inCells(), scale));
   byId("cells").setAttribute("aria-pressed", String(inCells()));
-  const floor = state.comparison?.noise_floor?.sd_n;
+  const { floor } = shown;
   byId("map-scale").style.backgroundImage = gradient((share) => signedColour(2 * share - 1));
   byId("map-low").textContent = `−${number(scale)}`;
   byId("map-high").textContent = `+${newtons(scale)}`;
@@ -73,7 +91,7 @@ function drawMap() {
 }
 
 function drawAgainst() {
-  const rows = state.rows;
+  const rows = shown.rows;
   if (!rows) return;
   const against = residualAgainst();
   show("against", against, contents.residual(rows, against));
@@ -104,9 +122,9 @@ function drawAll() {
 let sweepsFor = "";
 
 function drawSweeps() {
-  const { session, rows } = state;
-  if (!session || !rows) return;
-  const key = JSON.stringify([session.data, session.columns, session.excluded, session.muscle.toml, ground()]);
+  const { rows } = shown;
+  if (!plots.sweeps || !rows) return;
+  const key = `${shown.measured} ${ground()}`;
   if (key === sweepsFor) return;
   sweepsFor = key;
   show("sweeps", "", contents.sweeps(rows));
@@ -128,7 +146,7 @@ function showTip(plot, row, px, py) {
   hover(row);
   tip.hidden = row === null;
   if (row === null) return;
-  fill(tip, ...describe(row).map((part) => h("span", null, part)));
+  fill(tip, ...describe(shown.rows, row, shown.floor).map((part) => h("span", null, part)));
   const box = plot.element.getBoundingClientRect();
   const left = Math.min(box.left + px + 14, document.documentElement.clientWidth - tip.offsetWidth - 8);
   const below = box.top + py + 14;
@@ -136,37 +154,51 @@ function showTip(plot, row, px, py) {
   tip.style.top = `${below + tip.offsetHeight > innerHeight ? box.top + py - tip.offsetHeight - 10 : below}px`;
 }
 
-export function startPlots() {
+/** @param {number | null} row */
+function readOut(row) {
+  const readout = byId("readout");
+  readout.textContent = row === null ? readout.dataset.empty ?? "" : describe(shown.rows, row, shown.floor).join(" · ");
+}
+
+/** @param {Shown} what */
+export function startPlots(what) {
+  shown = what;
   for (const name of ["force", "map", "against", "sweeps"]) {
-    const plot = new Plot(byId(`plot-${name}`), { small: name === "sweeps" });
+    const element = document.getElementById(`plot-${name}`);
+    if (!element) continue;
+    const plot = new Plot(element, { small: name === "sweeps" });
     plots[name] = plot;
-    listen(plot, { tool: () => tool, brushed: selectRows, hovered: (row, px, py) => showTip(plot, row, px, py) });
+    listen(plot, { scrolls: shown.scrolls, tool: () => tool, brushed: selectRows, hovered: (row, px, py) => showTip(plot, row, px, py) });
   }
   setTool("pan");
   startSaving(plots);
+  startSelection(shown);
 
   on("documents", drawAll);
   on("theme", drawAll);
   on("selection", () => Object.values(plots).forEach((plot) => plot.content && plot.select(selection.rows)));
-  on("hover", (row) => Object.values(plots).forEach((plot) => plot.mark(row)));
+  on("hover", (row) => {
+    readOut(row);
+    Object.values(plots).forEach((plot) => plot.mark(row));
+  });
 
   for (const choice of document.querySelectorAll("[data-against]")) {
     choice.addEventListener("click", () => {
-      keepView({ against: /** @type {HTMLElement} */ (choice).dataset.against });
+      shown.keepView({ against: /** @type {HTMLElement} */ (choice).dataset.against });
       drawForce();
     });
   }
   byId("log").addEventListener("click", () => {
-    keepView({ log: !view().log });
+    shown.keepView({ log: !view().log });
     drawForce();
   });
   byId("cells").addEventListener("click", () => {
-    keepView({ cells: !inCells() });
+    shown.keepView({ cells: !inCells() });
     drawMap();
   });
   byId("reset").addEventListener("click", () => Object.values(plots).forEach((plot) => plot.content && plot.reset()));
   select("residual-against").addEventListener("change", () => {
-    keepView({ residual: select("residual-against").value });
+    shown.keepView({ residual: select("residual-against").value });
     drawAgainst();
   });
   for (const choice of document.querySelectorAll("[data-tool]")) {

@@ -3,7 +3,7 @@
 
 import { signedColour } from "./palette.js";
 
-/** @typedef {import("./types.js").Rows} Rows */
+/** @typedef {import("./rows.js").Rows} Rows */
 
 /** Cells along the pressure, where it has no levels, and along the contraction. */
 const MOST = [28, 22];

@@ -1,0 +1,2 @@
+// What the bundle exports, for the check of types.
+export { init, use } from "echarts/core";

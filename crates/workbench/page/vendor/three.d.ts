@@ -1,0 +1,3 @@
+// What the bundle exports, for the check of types.
+export * from "three";
+export { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
