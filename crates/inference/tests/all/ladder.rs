@@ -4,8 +4,8 @@
 
 use bulge_effects::{Catalogue, Moment};
 use bulge_inference::{
-    Block, Comparing, Comparison, DiagnoseOptions, Noise, Options, Protocol, ReadingNoise, compare, diagnose,
-    simulate,
+    Block, Comparing, Comparison, DiagnoseOptions, Noise, Options, Protocol, ReadingNoise, Rows, compare,
+    compare_with_rows, diagnose, simulate,
 };
 use bulge_measurements::Data;
 use bulge_model::{Model, Prediction, Record, Wanted};
@@ -520,4 +520,28 @@ fn rows_are_those_of_the_ladder() {
     assert!((friction - other).abs() < 0.02 * other.abs() && (other - 7.0).abs() < 1.0, "{friction} {other}");
     assert!(rows.model_n[119].is_nan() && rows.residual_n()[119].is_nan(), "{}", rows.model_n[119]);
     assert_eq!(rows.time_s.as_deref().unwrap()[7].to_bits(), 7.0_f64.to_bits());
+}
+
+/// For a report: the force of each rung is the one of a ladder that ends there, whoever is asked.
+#[test]
+fn rows_have_the_force_of_each_rung() {
+    let data = loops(|row, direction| -7.0 * direction + alternating(row));
+    let muscle = muscle("[instruments]\nforce = { noise = \"2 N\" }");
+    let catalogue = Catalogue::builtin();
+    let effects = ["end-taper", "coulomb-friction"].map(|name| Arc::clone(catalogue.find(name).unwrap()));
+    let options = Options { excluded: vec![3, 4], ..Options::new(catalogue, effects.to_vec()) };
+    let (comparison, rows) = compare_with_rows(&data, &muscle, &options).unwrap();
+    assert_eq!(comparison, compare(&data, &muscle, &options).unwrap());
+    let comparing = Comparing::new(&data, &muscle, &options).unwrap();
+    assert_eq!(rows, comparing.rows_of_rungs(&effects).unwrap());
+    assert_eq!((rows.effects.len(), rows.between_n.len()), (2, 1));
+    let ends = |count: usize| comparing.rows(&effects[..count]).unwrap();
+    assert_eq!(
+        [&rows.base_n, &rows.between_n[0], &rows.model_n],
+        [0, 1, 2].map(|count| ends(count).model_n).each_ref()
+    );
+    assert_eq!(ends(2), Rows { between_n: Vec::new(), ..rows.clone() });
+    let excluded: Vec<usize> = (0..rows.len()).filter(|row| rows.excluded[*row]).collect();
+    assert_eq!((excluded, rows.sweep_kinds.len()), (vec![3, 4], rows.sweeps.len()));
+    assert!(rows.rate.iter().zip(&rows.direction).all(|(rate, direction)| rate * direction >= 0.0));
 }
