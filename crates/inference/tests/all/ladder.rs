@@ -533,9 +533,9 @@ fn rows_have_the_force_of_each_rung() {
     let (comparison, rows) = compare_with_rows(&data, &muscle, &options).unwrap();
     assert_eq!(comparison, compare(&data, &muscle, &options).unwrap());
     let comparing = Comparing::new(&data, &muscle, &options).unwrap();
-    assert_eq!(rows, comparing.rows_of_rungs(&effects).unwrap());
+    assert_eq!(rows, comparing.rows_of_rungs(&effects, &[]).unwrap());
     assert_eq!((rows.effects.len(), rows.between_n.len()), (2, 1));
-    let ends = |count: usize| comparing.rows(&effects[..count]).unwrap();
+    let ends = |count: usize| comparing.rows(&effects[..count], &[]).unwrap();
     assert_eq!(
         [&rows.base_n, &rows.between_n[0], &rows.model_n],
         [0, 1, 2].map(|count| ends(count).model_n).each_ref()
