@@ -82,7 +82,8 @@ impl Used {
             }
         }
         let why = "spike: the force lies far from what the rows around lead to, beside any model";
-        self.leave_out(data, data.spikes(&values), why.to_owned());
+        let spikes = data.spikes_where(&values, |row| self.mask[row]);
+        self.leave_out(data, spikes, why.to_owned());
     }
 }
 

@@ -39,8 +39,11 @@ impl Scale {
     }
 }
 
-/// Quantile 0.975 of Student's t.
+/// Quantile 0.975 of Student's t; with infinite freedom that of the normal distribution, at which a search in the tails of Student's would not end.
 pub(crate) fn quantile(freedom: f64) -> f64 {
+    if !freedom.is_finite() {
+        return 1.959_964;
+    }
     StudentsT::new(0.0, 1.0, freedom.max(1.0))
         .map_or(1.959_964, |t| t.inverse_cdf(0.975))
         .clamp(1.959_964, 12.71)

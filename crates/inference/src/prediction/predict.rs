@@ -67,10 +67,11 @@ fn predicted(
     let freedom =
         fitted.map_or(f64::INFINITY, |fitted| (fitted.rows as f64 - fitted.numbers.len() as f64).max(1.0));
     let k = wanted.parameters.len();
+    let quantile = quantile(freedom);
     let slopes = |row: usize| &found.prediction.jacobian[row * k..(row + 1) * k];
     let columns = columns(data, &record, &found.prediction.force, |row| {
         let variance = uncertain.variance(slopes(row));
-        let half = reading_sd_n.map_or(f64::NAN, |sd| quantile(freedom) * (variance + sd * sd).sqrt());
+        let half = reading_sd_n.map_or(f64::NAN, |sd| quantile * (variance + sd * sd).sqrt());
         [variance.sqrt(), half]
     });
     let mut warnings = [idle, uncertain.warnings.clone()].concat();

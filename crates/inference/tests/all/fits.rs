@@ -3,7 +3,9 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use bulge_effects::{Catalogue, Effect, Moment, known};
-use bulge_inference::{Fit, Fitting, Options, check_restrictions, compare, extended, fit_effects, predict};
+use bulge_inference::{
+    Fit, Fitting, Options, PredictedColumns, check_restrictions, compare, extended, fit_effects, predict,
+};
 use bulge_measurements::{Data, ReadOptions};
 use bulge_model::{Model, Record, Wanted};
 use bulge_muscles::{Muscle, from_toml, to_toml};
@@ -518,6 +520,23 @@ fn shape_and_stated_widths_widen_the_intervals() {
     let zero = text + "\n[instruments]\nforce = { noise = \"2 N\", zero = \"3 N\" }\n";
     let wider = predict(&data, &muscle(&zero), &Catalogue::builtin(), &[]).unwrap();
     assert!((wider.columns.sd_n[7].powi(2) - sd * sd - 9.0).abs() < 1e-6, "{}", wider.columns.sd_n[7]);
+}
+
+/// A muscle that was never fitted, with the noise of its load cell: the interval is that of the normal distribution, and the search for it ends.
+#[test]
+fn a_stated_muscle_has_the_intervals_of_its_instruments() {
+    let plain = muscle(BRAIDED);
+    let stated = muscle(&format!("{BRAIDED}[instruments]\nforce = {{ noise = \"2 N\" }}\n"));
+    let found = predict(&measured(&plain, &[], 2.0, 1), &stated, &Catalogue::builtin(), &[]).unwrap();
+    let PredictedColumns { low_n, high_n, force_n, .. } = &found.columns;
+    for row in 0..found.rows {
+        assert!(
+            (high_n[row] - force_n[row] - 3.919_928).abs() < 1e-9
+                && (force_n[row] - low_n[row] - 3.919_928).abs() < 1e-9
+        );
+    }
+    let coverage = found.against.unwrap().coverage.unwrap();
+    assert!(found.rows > 100 && (coverage - 0.95).abs() < 0.04, "{coverage}");
 }
 
 #[test]

@@ -73,10 +73,17 @@ impl Data {
     /// values is where one of the sides leads. Sweeps that were recorded without a pause are looked at as one. None in a static map.
     #[must_use]
     pub fn spikes(&self, values: &[f64]) -> Vec<usize> {
+        self.spikes_where(values, |_| true)
+    }
+
+    /// The same where some rows don't count: sweeps of which none does say nothing of the noise, whatever stands in their values.
+    #[must_use]
+    pub fn spikes_where(&self, values: &[f64], counts: impl Fn(usize) -> bool) -> Vec<usize> {
         if values.len() != self.len() {
             return Vec::new();
         }
-        let sweeps: Vec<Range<usize>> = self.sweeps().iter().map(|sweep| sweep.rows.clone()).collect();
+        let sweeps = self.sweeps().iter().map(|sweep| sweep.rows.clone());
+        let sweeps: Vec<Range<usize>> = sweeps.filter(|rows| rows.clone().any(&counts)).collect();
         let whole = recordings(self);
         along(self, values, &Resolution::of(values, &sweeps), 0.0, &whole)
     }
