@@ -67,10 +67,10 @@ pub(crate) fn check_needs(effect: &Arc<dyn Effect>, record: &Record) -> Result<(
 fn lacking(needs: Needs, record: &Record) -> &'static str {
     match needs {
         Needs::Path | Needs::Motion if !record.is_path() => {
-            "a column `sweep` or `time` for the order of the rows"
+            "a path: rows in an order, by a column `sweep` or `time`"
         }
-        Needs::Path => "a path on which the length goes in both directions",
-        Needs::Motion => "a path on which the length or the pressure goes in both directions",
+        Needs::Path => "a path: the length in both directions",
+        Needs::Motion => "a path: the length or the pressure in both directions",
         _ => needs.says(),
     }
 }

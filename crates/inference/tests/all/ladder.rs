@@ -146,19 +146,16 @@ fn what_data_lack_is_said_by_its_column() {
     let (muscle, catalogue) = (muscle(""), Catalogue::builtin());
     let friction = Arc::clone(catalogue.find("coulomb-friction").unwrap());
     let options = Options::new(catalogue, vec![friction]);
-    let rows = |heading: &str, label: &str| {
-        let row = |i: i32| format!("2,{},{}{label}\n", i, 300 - 8 * i);
-        let rows: String = (1..20).map(row).collect();
-        let data =
-            Data::from_csv(&format!("pressure [bar],contraction [%],force [N]{heading}\n{rows}"), "a.csv");
-        compare(&data.unwrap(), &muscle, &options).unwrap_err().to_string()
+    let says = |heading: &str, label: &dyn Fn(i32) -> String| {
+        let rows: String = (1..20).map(|i| format!("2,{i},{}{}\n", 300 - 8 * i, label(i))).collect();
+        let csv = format!("pressure [bar],contraction [%],force [N]{heading}\n{rows}");
+        compare(&Data::from_csv(&csv, "a.csv").unwrap(), &muscle, &options).map_err(|error| error.to_string())
     };
-    let map = rows("", "");
-    let says = "`coulomb-friction` needs a column `sweep` or `time` for the order of the rows, which these data don't have";
-    assert!(map.starts_with(says), "{map}");
-    let one_way = rows(",sweep", ",1");
-    assert!(one_way.contains("needs a path on which the length"), "{one_way}");
-    assert!(one_way.contains("in both directions") && !one_way.contains("column"), "{one_way}");
+    let expected = "`coulomb-friction` needs a path: rows in an order, by a column `sweep` or `time`, which these data don't have";
+    let map = says("", &|_| String::new()).unwrap_err();
+    assert!(map.starts_with(expected), "{map}");
+    assert!(says(",sweep", &|_| ",1".to_owned()).is_ok());
+    assert!(says(",time [s]", &|i| format!(",{i}")).is_ok());
 }
 
 /// Fibres that run rather around the axis than along it lengthen a muscle: the neutral angle is atan(sqrt 2) = 54.74 deg.
