@@ -147,8 +147,10 @@ fn what_data_lack_is_said_by_its_column() {
     let friction = Arc::clone(catalogue.find("coulomb-friction").unwrap());
     let options = Options::new(catalogue, vec![friction]);
     let says = |heading: &str, label: &dyn Fn(i32) -> String| {
-        let rows: String = (1..20).map(|i| format!("2,{i},{}{}\n", 300 - 8 * i, label(i))).collect();
-        let csv = format!("pressure [bar],contraction [%],force [N]{heading}\n{rows}");
+        let mut csv = format!("pressure [bar],contraction [%],force [N]{heading}\n");
+        for i in 1..20 {
+            let _ = writeln!(csv, "2,{i},{}{}", 300 - 8 * i, label(i));
+        }
         compare(&Data::from_csv(&csv, "a.csv").unwrap(), &muscle, &options).map_err(|error| error.to_string())
     };
     let expected = "`coulomb-friction` needs a path: rows in an order, by a column `sweep` or `time`, which these data don't have";
