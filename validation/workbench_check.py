@@ -384,9 +384,9 @@ class Story:
         page.wait("document.querySelectorAll('[data-block]').length === 1 && document.querySelector('#plan-facts') && !document.querySelector('#plan-answer.pending')", "a drawn test is looked at")
         self.measured("a test is drawn and looked at", [1000 * (time.monotonic() - start)])
         self.expect("a rectangle is three sweeps", "in 3 sweeps" in page.text("#plan-facts"), page.text("#plan-facts"))
-        page.drag("#plan-plane", (0.5, 0.8), (0.5, 0.3))
+        page.drag("#plan-plane", (0.3, 0.5), (0.7, 0.5))
         page.wait("document.querySelectorAll('[data-block]').length === 2 && document.querySelector('#plan-facts')?.textContent.includes('in 4 sweeps')", "a held length is added")
-        self.expect("an upright line holds the length", page.run("return document.querySelector('#block-1-motion').value") == "held")
+        self.expect("a level line holds the length", page.run("return document.querySelector('#block-1-motion').value") == "held")
         wrong = "const b = document.querySelector('#block-0-{}'); b.value = '{}'; b.dispatchEvent(new Event('change'))"
         page.run(wrong.format("pressures", "2 bar"))
         self.expect("a wrong number is told at its field", "numbers such as" in page.text("[data-block='0'] .field-error"), page.text("[data-block='0']"))

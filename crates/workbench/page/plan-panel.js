@@ -161,15 +161,14 @@ function moved(of, name) {
   return { ...part, period_s: name === "static" ? 0 : period_s };
 }
 
-/** @param {Block} of @param {number} i @param {number} count */
-function blockForm(of, i, count) {
+/** @param {Block} of @param {number} i */
+function blockForm(of, i) {
   const id = (/** @type {string} */ name) => `block-${i}-${name}`;
   const percents = (/** @type {number[]} */ values) => values.map((value) => 100 * value);
   const shares = (/** @type {number[]} */ values) => values.map((value) => value / 100);
   const bars = (/** @type {number[]} */ values) => values.map((value) => value / 1e5);
   const pascals = (/** @type {number[]} */ values) => values.map((value) => 1e5 * value);
   const mark = h("span", { class: "block-mark", "aria-hidden": "true" });
-  mark.style.background = blockColour(i, count);
   const one = (/** @type {"cycles" | "period_s" | "rows" | "repeats"} */ name, /** @type {string} */ label, /** @type {string} */ example) => field(label, id(name), [of[name]], ([value]) => edit(i, { [name]: name === "period_s" ? value : Math.max(0, Math.round(value)) }), { example });
   const its = stairs(of);
   const choose = h("select", { id: id("motion"), "data-motion": i }, ...MOTIONS.map(([name, label]) => h("option", { value: name }, label)));
@@ -230,14 +229,14 @@ function draw() {
     const drawnBefore = state.session?.view.plan?.blocks;
     fill(
       byId("plan-panel"),
-      h("p", { class: "empty" }, drawnBefore ? "Drag a rectangle for loops, a level line for one pressure, an upright one for a held length." : "What would a test show that is not made yet? This is about the one of the data. Drag to draw another: a rectangle for loops, a level line for one pressure, an upright one for a held length."),
+      h("p", { class: "empty" }, drawnBefore ? "Drag a rectangle for loops at three pressures, an upright line for one pressure, a level one for a held length." : "What would a test show that is not made yet? This is about the one of the data. Drag to add to it, or clear it and draw another: a rectangle for loops at three pressures, an upright line for one pressure, a level one for a held length."),
       h("div", { id: "plan-room" }),
       h("div", { class: "row" },
         h("button", { type: "button", class: "small", id: "add-block", onclick: () => keep({ blocks: [...test().blocks, block({ ...test().blocks.at(-1) })] }) }, "Add a block"),
         h("button", { type: "button", class: "small", id: "plan-data", disabled: !state.rows, onclick: () => keep({ blocks: state.rows ? [asMeasured(state.rows)] : [] }) }, "As the data"),
         h("button", { type: "button", class: "small", id: "clear-plan", disabled: !blocks.length, onclick: () => keep({ blocks: [] }) }, "Clear"),
         h("button", { type: "button", class: "small", id: "save-protocol", disabled: !planned, onclick: () => planned && download(new Blob([planned.toml], { type: "application/toml" }), "protocol.toml") }, "Save as TOML")),
-      ...blocks.map((one, i) => blockForm(one, i, blocks.length)),
+      ...blocks.map((one, i) => blockForm(one, i)),
       h("div", { class: "fields" }, ...field("noise of the force [N]", "plan-noise", [noise()], ([value]) => keepField({ noise_n: Math.max(0, value) }), { example: "2" })),
       h("p", { class: "error", id: "plan-error", role: "alert" }),
       h("div", { id: "plan-answer" }),
@@ -249,6 +248,10 @@ function draw() {
 
 function drawPlane() {
   const { blocks } = test();
+  // The theme may have changed.
+  document.querySelectorAll(".block-mark").forEach((mark, i) => {
+    /** @type {HTMLElement} */ (mark).style.background = blockColour(i, blocks.length);
+  });
   fill(byId("plan-room"), plane({ rows: state.rows, blocks, usual: blocks.at(-1) ?? block({}), add: (made) => keep({ blocks: [...test().blocks, made] }) }));
 }
 

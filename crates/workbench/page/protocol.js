@@ -42,24 +42,30 @@ function levels(values, range) {
 
 /** The test that was made, about: what each sweep holds, and what it goes over. @param {Rows} rows @returns {Block} */
 export function asMeasured(rows) {
-  const { pressure, contraction, sweep, time } = rows.of;
-  /** @type {Map<number, {p: [number, number], c: [number, number], t: [number, number], count: number}>} */
+  const { pressure, contraction, sweep, time, direction } = rows.of;
+  /** @type {Map<number, {p: [number, number], c: [number, number], t: [number, number], count: number, turns: number, way: number}>} */
   const sweeps = new Map();
   for (let i = 0; i < rows.count; i += 1) {
-    const its = sweeps.get(sweep[i]) ?? { p: [Infinity, -Infinity], c: [Infinity, -Infinity], t: [Infinity, -Infinity], count: 0 };
+    const its = sweeps.get(sweep[i]) ?? { p: [Infinity, -Infinity], c: [Infinity, -Infinity], t: [Infinity, -Infinity], count: 0, turns: 0, way: 0 };
     for (const [range, value] of /** @type {[[number, number], number][]} */ ([[its.p, pressure[i]], [its.c, contraction[i]], [its.t, time ? time[i] : 0]])) {
       range[0] = Math.min(range[0], value);
       range[1] = Math.max(range[1], value);
     }
     its.count += 1;
+    const way = direction ? direction[i] : 0;
+    if (way && its.way && way !== its.way) its.turns += 1;
+    if (way) its.way = way;
     sweeps.set(sweep[i], its);
   }
   const all = [...sweeps.values()];
   const ends = (/** @type {[number, number][]} */ of) => /** @type {[number, number]} */ ([Math.min(...of.map((one) => one[0])), Math.max(...of.map((one) => one[1]))]);
   const [p, c] = [ends(all.map((one) => one.p)), ends(all.map((one) => one.c))];
   const spread = (/** @type {[number, number]} */ [low, high]) => high - low;
-  const period = all.map((one) => spread(one.t)).sort((a, b) => a - b)[Math.floor(all.length / 2)];
-  const rest = { period_s: period > 0 ? round(period) : 60 };
+  const middle = (/** @type {number[]} */ values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
+  // To and fro is one turn.
+  const cycles = Math.max(1, middle(all.map((one) => Math.round((one.turns + 1) / 2))));
+  const period = middle(all.map((one) => spread(one.t))) / cycles;
+  const rest = { cycles, period_s: period > 0 ? round(period) : 60, rows: Math.max(8, Math.min(1000, Math.round(middle(all.map((one) => one.count)) / cycles))) };
   const contractions = /** @type {[number, number]} */ (c.map((value) => round(value) / 100));
   if (all.every((one) => spread(one.c) <= HELD * spread(c)) || spread(c) < 1e-3) {
     const held = levels(all.map((one) => (one.c[0] + one.c[1]) / 2), Math.max(spread(c), 1));
