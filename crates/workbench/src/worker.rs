@@ -67,7 +67,7 @@ impl Question {
                 drop(to.send(of_all(|| both().map_err(&refused))));
             }
             Self::Prepared(to) => {
-                drop(to.send(of_all(|| comparing.prepare(effects, restrictions).map_err(&refused))));
+                drop(to.send(of_all(|| comparing.with(effects, restrictions).map(drop).map_err(&refused))));
             }
             Self::Unsuitable(to) => {
                 drop(to.send(of_all(|| {

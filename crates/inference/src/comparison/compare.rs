@@ -58,11 +58,39 @@ pub struct Comparing<'a> {
     quality: Vec<Finding>,
     base: Arc<Step>,
     /// By the effects up to each, in their order, with what is stated of their numbers.
-    steps: Mutex<HashMap<Vec<String>, Arc<Step>>>,
+    steps: Known<Step>,
+    /// What was answered, by the same.
+    answers: Known<Comparison>,
 }
 
-/// Rungs that are kept at most: each holds the force of every row.
+/// Rungs and answers that are kept at most: each rung holds the force of every row.
 const MOST_STEPS: usize = 64;
+
+/// By what rungs and answers are known: each effect with what is stated of its numbers, in their order.
+fn key(effects: &[Arc<dyn Effect>], restrictions: &[Restriction]) -> Vec<String> {
+    let one = |effect: &Arc<dyn Effect>| {
+        let name = effect.card().name;
+        let own: Vec<&Restriction> = restrictions.iter().filter(|one| one.number.effect == name).collect();
+        if own.is_empty() { name.to_owned() } else { format!("{name} {own:?}") }
+    };
+    effects.iter().map(one).collect()
+}
+
+type Known<T> = Mutex<HashMap<Vec<String>, Arc<T>>>;
+
+fn locked<T>(known: &Known<T>) -> MutexGuard<'_, HashMap<Vec<String>, Arc<T>>> {
+    // A thread that panicked leaves whole entries.
+    known.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Keeps something for the next question. Of what leads elsewhere some goes when there is too much: memory doesn't grow with the number of questions.
+fn keep<T>(known: &Known<T>, key: &[String], found: &Arc<T>) {
+    let mut known = locked(known);
+    if known.len() >= MOST_STEPS {
+        known.retain(|other, _| key.starts_with(other));
+    }
+    known.insert(key.to_vec(), Arc::clone(found));
+}
 
 /// A rung with what it predicts.
 struct Step {
@@ -106,7 +134,7 @@ impl<'a> Comparing<'a> {
         let climbed = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
         let base = Arc::new(Step { rung: analysis.rung(0, &climbed), climbed });
         let quality = quality(&analysis.data, analysis.muscle);
-        Ok(Self { analysis, floor, quality, base, steps: Mutex::default() })
+        Ok(Self { analysis, floor, quality, base, steps: Mutex::default(), answers: Mutex::default() })
     }
 
     /// Compares with these effects, in this order, instead of those of the options; numbers are restricted by these statements beside those of the options.
@@ -118,27 +146,18 @@ impl<'a> Comparing<'a> {
         effects: &[Arc<dyn Effect>],
         restrictions: &[Restriction],
     ) -> Result<Comparison, InferenceError> {
-        rayon::scope(|_| match self.of_other_base(effects, restrictions) {
-            Some(options) => self.begun_with(&options)?.asked(),
-            None => self.compared(&self.analysis.with_effects(effects, restrictions)?, restrictions, true),
-        })
-    }
-
-    /// Climbs the ladder and keeps its rungs, so that [`Comparing::with`] and [`Comparing::rows`] answer sooner.
-    ///
-    /// # Errors
-    /// As [`compare`].
-    pub fn prepare(
-        &self,
-        effects: &[Arc<dyn Effect>],
-        restrictions: &[Restriction],
-    ) -> Result<(), InferenceError> {
-        rayon::scope(|_| match self.of_other_base(effects, restrictions) {
-            Some(_) => Ok(()),
-            None => {
-                self.ladder(&self.analysis.with_effects(effects, restrictions)?, restrictions, true).map(drop)
-            }
-        })
+        if let Some(options) = self.of_other_base(effects, restrictions) {
+            return rayon::scope(|_| self.begun_with(&options)?.asked());
+        }
+        let key = key(effects, restrictions);
+        let known = locked(&self.answers).get(&key).map(Arc::clone);
+        if let Some(known) = known {
+            return Ok(Comparison::clone(&known));
+        }
+        let analysis = self.analysis.with_effects(effects, restrictions)?;
+        let found = rayon::scope(|_| self.compared(&analysis, restrictions, true))?;
+        keep(&self.answers, &key, &Arc::new(found.clone()));
+        Ok(found)
     }
 
     /// The options of a comparison whose base isn't this one's: a statement is about one of its numbers, say an error of the rig that is fitted along.
@@ -237,19 +256,15 @@ impl<'a> Comparing<'a> {
         again: bool,
     ) -> Result<Vec<Arc<Step>>, InferenceError> {
         let mut ladder = vec![Arc::clone(&self.base)];
-        let mut key = Vec::new();
-        for (place, effect) in analysis.options.effects.iter().enumerate() {
-            let name = effect.card().name;
-            let own: Vec<&Restriction> =
-                restrictions.iter().filter(|one| one.number.effect == name).collect();
-            key.push(if own.is_empty() { name.to_owned() } else { format!("{name} {own:?}") });
+        let key = key(&analysis.options.effects, restrictions);
+        for place in 0..key.len() {
             if place > 0
                 && let Some(below) = Arc::get_mut(&mut ladder[place])
             {
                 // Of many rows forces are large, and what the rungs between say is in the ladder.
                 below.climbed.force = Vec::new();
             }
-            let step = self.step(&key, again, || {
+            let step = self.step(&key[..=place], again, || {
                 let climbed = analysis.climb(place + 1, Some(&ladder[place].climbed))?;
                 Ok(Step { rung: analysis.rung(place + 1, &climbed), climbed })
             })?;
@@ -265,29 +280,15 @@ impl<'a> Comparing<'a> {
         again: bool,
         climb: impl FnOnce() -> Result<Step, InferenceError>,
     ) -> Result<Arc<Step>, InferenceError> {
-        let known = self.lock().get(key).map(Arc::clone);
+        let known = locked(&self.steps).get(key).map(Arc::clone);
         if let Some(known) = known {
             return Ok(known);
         }
         let step = Arc::new(climb()?);
         if again {
-            self.keep(key, &step);
+            keep(&self.steps, key, &step);
         }
         Ok(step)
-    }
-
-    /// Keeps a rung for the next question. Of those that lead elsewhere some go when there are too many: memory doesn't grow with the number of questions.
-    fn keep(&self, key: &[String], step: &Arc<Step>) {
-        let mut steps = self.lock();
-        if steps.len() >= MOST_STEPS {
-            steps.retain(|other, _| key.starts_with(other));
-        }
-        steps.insert(key.to_vec(), Arc::clone(step));
-    }
-
-    fn lock(&self) -> MutexGuard<'_, HashMap<Vec<String>, Arc<Step>>> {
-        // A thread that panicked leaves whole entries.
-        self.steps.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn compared(

@@ -106,7 +106,7 @@ fn asked_again_with_other_effects_the_answer_is_the_same() {
         if !held.is_empty() {
             options = options.hold(held, &muscle).unwrap();
         }
-        comparing.prepare(&effects, &options.restrictions).unwrap();
+        comparing.with(&effects, &options.restrictions).unwrap();
         let found = comparing.with(&effects, &options.restrictions).unwrap();
         assert_eq!(json(&found), json(&compare(&data, &muscle, &options).unwrap()), "{held}");
         let number = |p: &bulge_inference::HeldNumber| p.value.to_string();
