@@ -222,7 +222,7 @@ def test_a_name_states_no_effect():
 
 
 def test_advice_is_in_the_words_of_python():
-    with pytest.raises(bulge.InputError, match=r"`bulge\.effects\(\)` lists .*`own=` adds your own"):
+    with pytest.raises(bulge.InputError, match=r"`bulge\.effects\(\)` lists .*an effect of your own needs `own=`"):
         bulge.Muscle(kind="pleated", length=0.11, radius=0.016, fibres=40, effects={"zzzzzzzz": {"k": 1.0}})
 
 
