@@ -26,6 +26,8 @@ function copies(id, text) {
 export function startFooter() {
   on("session", () => {
     byId("command").textContent = state.session?.command ?? "";
+    const files = [state.session && !state.session.muscle.shipped && / --muscle muscle\.toml/.test(state.session.command) ? "muscle.toml" : "", state.session?.own_effects ? "effects.toml" : ""].filter(Boolean);
+    byId("needs").textContent = files.length ? `needs ${files.join(" and ")} from Export` : "";
     byId("python").textContent = state.session?.python ?? "";
   });
   copies("copy-command", () => state.session?.command ?? "");

@@ -100,11 +100,15 @@ function slider({ effect, name, value, bounds: [low, high], unit, isLog, shown, 
     shown.textContent = quantity(next, unit);
     range.textContent = "held";
     box.setAttribute("aria-valuetext", quantity(next, unit));
-    changeSoon(holding(effect, name, next));
+    // One drag is one step back.
+    const goesOn = box.dataset.moved === "true";
+    box.dataset.moved = "true";
+    changeSoon((now) => ({ ...holding(effect, name, next)(now), goes_on: goesOn }));
   });
   const release = () => {
     if (!box.dataset.heldByHand) return;
     delete box.dataset.heldByHand;
+    delete box.dataset.moved;
     tell("numbers");
   };
   box.addEventListener("change", release);

@@ -4,6 +4,7 @@
 import { isAborted, post, Refusal } from "./api.js";
 import { afterRest, button, byId, input } from "./dom.js";
 import { counted, withoutExcerpt } from "./format.js";
+import { notice } from "./notices.js";
 import { change, on, report, state } from "./store.js";
 
 const TEMPLATE = `[effects.hose-stiffness]
@@ -47,8 +48,13 @@ export function startOwnEffect() {
   byId("own").addEventListener("toggle", () => void check());
   byId("own-apply").addEventListener("click", async () => {
     const text = box.value;
-    if (await change(() => ({ own_effects: text }), "own_effects")) say("It stands in the catalogue: switch it on there.", "good");
-    void check();
+    if (await change(() => ({ own_effects: text }), "own_effects")) {
+      const [, name] = /^\s*\[effects\.([^\]]+)\]/m.exec(text) ?? [];
+      say("It stands in the catalogue: switch it on there.", "good");
+      notice(`${name ? `${name} stands` : "It stands"} in the list of effects now: switch it on there.`);
+      if (name) document.querySelector(`[data-item="${CSS.escape(name.trim())}"]`)?.scrollIntoView({ block: "center" });
+      button("own-apply").disabled = true;
+    }
   });
   byId("own-remove").addEventListener("click", () => {
     void change((now) => {

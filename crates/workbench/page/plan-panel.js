@@ -12,7 +12,7 @@ import { showTab } from "./tabs.js";
 /** @typedef {import("./protocol.js").Block} Block */
 /** @typedef {{effect: string, family: string, detection_limit_n: number | null, usual_sigma: number, compensation: number, why: string | null}} PlannedEffect */
 /** @typedef {{effects: [string, string], cosine: number, sigma: number, repeats: number | null, separate: string}} Pair */
-/** @typedef {{toml: string, plan: {rows: number, sweeps: number, effects: PlannedEffect[], confused: Pair[], warnings: string[], noise: {says: string}}}} Planned */
+/** @typedef {{toml: string, seconds: number, plan: {rows: number, sweeps: number, effects: PlannedEffect[], confused: Pair[], warnings: string[], noise: {says: string}}}} Planned */
 
 /** Effects and pairs that are shown before the rest. */
 const [MOST_EFFECTS, MOST_PAIRS] = [12, 8];
@@ -32,7 +32,7 @@ const isShown = () => !byId("plan-panel").hidden;
 /** The test that is planned; as long as nobody has drawn one, that of the data. @returns {{blocks: Block[], noise_n: number | null}} */
 function test() {
   const kept = state.session?.view.plan;
-  return { blocks: kept?.blocks ?? (state.rows ? [asMeasured(state.rows)] : []), noise_n: kept?.noise_n ?? null };
+  return { blocks: kept?.blocks ?? (state.rows ? asMeasured(state.rows) : []), noise_n: kept?.noise_n ?? null };
 }
 
 /** The noise that is stated, else what the data show. */
@@ -87,11 +87,11 @@ async function askNow() {
   try {
     const found = await post("plan", JSON.stringify(protocol(blocks, noise() > 0 ? { force_n: noise() } : {})), mine.signal);
     if (mine !== asking) return;
-    planned = found;
+    planned = { ...found, seconds: blocks.reduce((sum, one) => sum + duration(one), 0) };
   } catch (error) {
     if (mine !== asking || isAborted(error)) return;
     planned = null;
-    if (error instanceof Refusal) failure = withoutExcerpt(error.message);
+    if (error instanceof Refusal) failure = withoutExcerpt(error.message).replace(/^the protocol:\d+:\d+: /, "");
     else report(error);
   }
   isAsking = false;
@@ -110,30 +110,33 @@ function ask() {
   askSoon();
 }
 
-/** Draws a test in the plan, and shows it. @param {import("./protocol.js").Protocol} of */
-export function drawInPlan(of) {
+/** Draws a test in the plan, and shows it. @param {import("./protocol.js").Protocol} of @param {number} repeats how often it is to be made */
+export function drawInPlan(of, repeats) {
   showTab("plan");
-  keep({ blocks: of.blocks, noise_n: of.noise.force_n || null });
+  keep({ blocks: of.blocks.map((one) => block({ ...one, repeats: one.repeats * repeats })), noise_n: of.noise.force_n || null });
 }
 
-/** @param {string} text @returns {number[] | null} numbers between commas or blanks */
+/** Numbers between commas or blanks. A comma within a number is a decimal one where semicolons stand between the numbers; one comma alone can be either. @param {string} text @returns {number[] | null} */
 function numbers(text) {
-  const found = text.split(/[,;\s]+/).filter(Boolean).map((word) => Number(word.replace("−", "-")));
+  const plain = text.trim().replaceAll("−", "-");
+  if (/^[^,;]*\d,\d[^,;]*$/.test(plain)) return null;
+  const words = plain.includes(";") ? plain.replaceAll(/(\d),(\d)/g, "$1.$2").split(/[;\s]+/) : plain.split(/[,\s]+/);
+  const found = words.filter(Boolean).map(Number);
   return found.length && found.every(Number.isFinite) ? found : null;
 }
 
 /**
  * @param {string} label @param {string} id @param {number[]} value @param {(values: number[]) => void} then
- * @param {{least?: number, most?: number, example: string}} how how many numbers it takes
+ * @param {{least?: number, most?: number, isWhole?: boolean, low?: number, example: string}} how how many numbers it takes, and which
  */
-function field(label, id, value, then, { least = 1, most = 1, example }) {
+function field(label, id, value, then, { least = 1, most = 1, isWhole = false, low = -Infinity, example }) {
   const box = h("input", { type: "text", id, value: value.map((one) => String(Number(one.toPrecision(6)))).join(", "), autocomplete: "off", inputmode: "decimal", "data-field": id });
   const wrong = h("span", { class: "field-error", role: "alert" });
   box.addEventListener("change", () => {
     const found = numbers(box.value);
-    const isRight = found && found.length >= least && found.length <= most;
+    const isRight = found && found.length >= least && found.length <= most && found.every((one) => one >= low && (!isWhole || Number.isInteger(one)));
     box.setAttribute("aria-invalid", String(!isRight));
-    wrong.textContent = isRight ? "" : `write ${most === 1 ? "a number" : least === 2 ? "two numbers" : "numbers"} such as ${example}`;
+    wrong.textContent = isRight ? "" : `write ${most === 1 ? (isWhole ? "a whole number" : "a number") : least === 2 ? "two numbers" : "numbers"} such as ${example}`;
     if (found && isRight) then(found);
   });
   return [h("label", { for: id }, label), h("span", null, box, wrong)];
@@ -154,7 +157,7 @@ const motion = (of) => (isHeld(of) ? "held" : isStatic(of) ? "static" : stairs(o
 function moved(of, name) {
   const part = MOTIONS.find((one) => one[0] === name)?.[2] ?? {};
   const [low, high] = [Math.min(...of.pressures_pa), Math.max(...of.pressures_pa)];
-  if (name === "held") return { ...part, held: of.held?.length ? of.held : [...of.contraction], pressures_pa: low < high ? [low, high] : [low / 3, high] };
+  if (name === "held") return { ...part, period_s: of.period_s || 60, held: of.held?.length ? of.held : [...of.contraction], pressures_pa: low < high ? [low, high] : [low / 3, high] };
   const period_s = of.period_s || 60;
   // Each step has two rows, and more time than its hold.
   if (name === "stairs") return { ...part, rows: Math.max(of.rows, 48), period_s: Math.max(period_s, 120) };
@@ -169,7 +172,7 @@ function blockForm(of, i) {
   const bars = (/** @type {number[]} */ values) => values.map((value) => value / 1e5);
   const pascals = (/** @type {number[]} */ values) => values.map((value) => 1e5 * value);
   const mark = h("span", { class: "block-mark", "aria-hidden": "true" });
-  const one = (/** @type {"cycles" | "period_s" | "rows" | "repeats"} */ name, /** @type {string} */ label, /** @type {string} */ example) => field(label, id(name), [of[name]], ([value]) => edit(i, { [name]: name === "period_s" ? value : Math.max(0, Math.round(value)) }), { example });
+  const one = (/** @type {"cycles" | "period_s" | "rows" | "repeats"} */ name, /** @type {string} */ label, /** @type {string} */ example) => field(label, id(name), [of[name]], ([value]) => edit(i, { [name]: value }), { example, low: name === "period_s" ? 0 : 1, isWhole: name !== "period_s" });
   const its = stairs(of);
   const choose = h("select", { id: id("motion"), "data-motion": i }, ...MOTIONS.map(([name, label]) => h("option", { value: name }, label)));
   choose.value = motion(of);
@@ -188,7 +191,7 @@ function blockForm(of, i) {
       ]),
       ...(isStatic(of) ? [] : [...one("period_s", "period [s]", "60"), ...one("cycles", "cycles", "3")]),
       ...(its ? [
-        ...field("steps up", id("steps"), [its.steps], ([steps]) => edit(i, { path: { stairs: { ...its, ...stairs(test().blocks[i]), steps: Math.max(0, Math.round(steps)) } } }), { example: "6" }),
+        ...field("steps up", id("steps"), [its.steps], ([steps]) => edit(i, { path: { stairs: { ...its, ...stairs(test().blocks[i]), steps } } }), { example: "6", isWhole: true, low: 1 }),
         ...field("hold [s]", id("hold"), [its.hold_s], ([hold_s]) => edit(i, { path: { stairs: { ...its, ...stairs(test().blocks[i]), hold_s } } }), { example: "5" }),
       ] : []),
       ...one("rows", isStatic(of) ? "rows" : "rows a cycle", "50"), ...one("repeats", "repeats", "2")),
@@ -201,13 +204,14 @@ const effectRow = (one) => h(
   h("td", { class: "n", title: "least RMS change of the force that is seen, 3.3 standard deviations" }, newtons(one.detection_limit_n)), h("td", { class: "n", title: "standard deviations at its usual size" }, `${number(one.usual_sigma, 2)} σ`),
 );
 
-/** @param {Planned["plan"]} plan @returns {import("./dom.js").Child[]} */
-function answer(plan) {
+/** @param {Planned} of @returns {import("./dom.js").Child[]} */
+function answer({ plan, seconds }) {
   const seen = plan.effects.filter((one) => one.detection_limit_n !== null);
-  const unseen = plan.effects.filter((one) => one.detection_limit_n === null);
+  // What the model has already is no question.
+  const isKnown = (/** @type {PlannedEffect} */ one) => state.effects.some((effect) => effect.name === one.effect);
+  const unseen = plan.effects.filter((one) => one.detection_limit_n === null && !isKnown(one));
   const first = (/** @type {Pair} */ pair) => pair.effects.filter((name) => wanted.has(name)).length;
   const pairs = [...plan.confused].sort((a, b) => first(b) - first(a) || b.cosine - a.cosine);
-  const seconds = test().blocks.reduce((sum, one) => sum + duration(one), 0);
   const head = h("thead", null, h("tr", null, h("th", null, "effect"), h("th", { class: "n" }, "seen from"), h("th", { class: "n" }, "usual size")));
   return [
     h("p", { class: "facts", id: "plan-facts" }, `${counted(plan.rows, "row")} in ${counted(plan.sweeps, "sweep")}`, seconds ? `, ${seconds < 120 ? `${number(seconds)} s` : seconds < 7200 ? `${number(seconds / 60)} min` : `${number(seconds / 3600)} h`}` : "", `; noise: ${plan.noise.says}`),
@@ -229,16 +233,16 @@ function draw() {
     const drawnBefore = state.session?.view.plan?.blocks;
     fill(
       byId("plan-panel"),
-      h("p", { class: "empty" }, drawnBefore ? "Drag a rectangle for loops at three pressures, an upright line for one pressure, a level one for a held length." : "What would a test show that is not made yet? This is about the one of the data. Drag to add to it, or clear it and draw another: a rectangle for loops at three pressures, an upright line for one pressure, a level one for a held length."),
+      h("p", { class: "empty" }, drawnBefore ? "Drag a rectangle for loops at three pressures, an upright line for one pressure, a level one for a held length." : "What would a test show that is not made yet? This is about the one of the data, as far as blocks describe it. Drag to add to it, or clear it and draw another: a rectangle for loops at three pressures, an upright line for one pressure, a level one for a held length."),
       h("div", { id: "plan-room" }),
       h("div", { class: "row" },
         h("button", { type: "button", class: "small", id: "add-block", onclick: () => keep({ blocks: [...test().blocks, block({ ...test().blocks.at(-1) })] }) }, "Add a block"),
-        h("button", { type: "button", class: "small", id: "plan-data", disabled: !state.rows, onclick: () => keep({ blocks: state.rows ? [asMeasured(state.rows)] : [] }) }, "As the data"),
+        h("button", { type: "button", class: "small", id: "plan-data", disabled: !state.rows, onclick: () => keep({ blocks: state.rows ? asMeasured(state.rows) : [] }) }, "About as the data"),
         h("button", { type: "button", class: "small", id: "clear-plan", disabled: !blocks.length, onclick: () => keep({ blocks: [] }) }, "Clear"),
         h("button", { type: "button", class: "small", id: "save-protocol", disabled: !planned, onclick: () => planned && download(new Blob([planned.toml], { type: "application/toml" }), "protocol.toml") }, "Save as TOML")),
-      ...blocks.map((one, i) => blockForm(one, i)),
-      h("div", { class: "fields" }, ...field("noise of the force [N]", "plan-noise", [noise()], ([value]) => keepField({ noise_n: Math.max(0, value) }), { example: "2" })),
       h("p", { class: "error", id: "plan-error", role: "alert" }),
+      ...blocks.map((one, i) => blockForm(one, i)),
+      h("div", { class: "fields" }, ...field("noise of the force [N]", "plan-noise", [noise()], ([value]) => keepField({ noise_n: value }), { example: "2, or 0 for that of the muscle's file", low: 0 })),
       h("div", { id: "plan-answer" }),
     );
     drawPlane();
@@ -263,7 +267,7 @@ function drawAnswer() {
   const place = byId("plan-answer");
   place.classList.toggle("pending", isPlanning);
   place.setAttribute("aria-busy", String(isPlanning));
-  keepingFocus(place, () => fill(place, ...(planned && test().blocks.length ? answer(planned.plan) : isPlanning ? [h("p", { class: "facts" }, "Looking at what it would show.")] : [])));
+  keepingFocus(place, () => fill(place, ...(planned && test().blocks.length ? answer(planned) : isPlanning ? [h("p", { class: "facts" }, "Looking at what it would show.")] : [])));
 }
 
 export function startPlan() {

@@ -40,13 +40,15 @@ function levels(values, range) {
   return [...new Set(some)];
 }
 
-/** The test that was made, about: what each sweep holds, and what it goes over. @param {Rows} rows @returns {Block} */
-export function asMeasured(rows) {
-  const { pressure, contraction, sweep, time, direction } = rows.of;
-  /** @type {Map<number, {p: [number, number], c: [number, number], t: [number, number], count: number, turns: number, way: number}>} */
+/** @typedef {{p: [number, number], c: [number, number], t: [number, number], count: number, turns: number, way: number, rates: number[]}} Sweep */
+
+/** @param {Rows} rows @returns {Sweep[]} */
+function sweepsOf(rows) {
+  const { pressure, contraction, sweep, time, direction, rate } = rows.of;
+  /** @type {Map<number, Sweep>} */
   const sweeps = new Map();
   for (let i = 0; i < rows.count; i += 1) {
-    const its = sweeps.get(sweep[i]) ?? { p: [Infinity, -Infinity], c: [Infinity, -Infinity], t: [Infinity, -Infinity], count: 0, turns: 0, way: 0 };
+    const its = sweeps.get(sweep[i]) ?? { p: [Infinity, -Infinity], c: [Infinity, -Infinity], t: [Infinity, -Infinity], count: 0, turns: 0, way: 0, rates: [] };
     for (const [range, value] of /** @type {[[number, number], number][]} */ ([[its.p, pressure[i]], [its.c, contraction[i]], [its.t, time ? time[i] : 0]])) {
       range[0] = Math.min(range[0], value);
       range[1] = Math.max(range[1], value);
@@ -55,23 +57,50 @@ export function asMeasured(rows) {
     const way = direction ? direction[i] : 0;
     if (way && its.way && way !== its.way) its.turns += 1;
     if (way) its.way = way;
+    if (rate && Number.isFinite(rate[i])) its.rates.push(Math.abs(rate[i]));
     sweeps.set(sweep[i], its);
   }
-  const all = [...sweeps.values()];
-  const ends = (/** @type {[number, number][]} */ of) => /** @type {[number, number]} */ ([Math.min(...of.map((one) => one[0])), Math.max(...of.map((one) => one[1]))]);
-  const [p, c] = [ends(all.map((one) => one.p)), ends(all.map((one) => one.c))];
-  const spread = (/** @type {[number, number]} */ [low, high]) => high - low;
-  const middle = (/** @type {number[]} */ values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
+  return [...sweeps.values()];
+}
+
+const spread = (/** @type {[number, number]} */ [low, high]) => high - low;
+const ends = (/** @type {[number, number][]} */ of) => /** @type {[number, number]} */ ([Math.min(...of.map((one) => one[0])), Math.max(...of.map((one) => one[1]))]);
+const middle = (/** @type {number[]} */ values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
+
+/** How all of some sweeps move. @param {Sweep[]} all @param {boolean} isTimed @returns {Partial<Block>} */
+function motionOf(all, isTimed) {
+  if (!isTimed) return { path: "static", rows: Math.max(2, Math.min(1000, middle(all.map((one) => one.count)))), period_s: 0 };
   // To and fro is one turn.
   const cycles = Math.max(1, middle(all.map((one) => Math.round((one.turns + 1) / 2))));
   const period = middle(all.map((one) => spread(one.t))) / cycles;
-  const rest = { cycles, period_s: period > 0 ? round(period) : 60, rows: Math.max(8, Math.min(1000, Math.round(middle(all.map((one) => one.count)) / cycles))) };
-  const contractions = /** @type {[number, number]} */ (c.map((value) => round(value) / 100));
+  // The mean speed of a sine is 2/pi of its largest one; at even speed both are alike.
+  const evenness = middle(all.filter((one) => one.rates.length > 4).map(({ rates }) => rates.reduce((sum, one) => sum + one, 0) / rates.length / [...rates].sort((a, b) => a - b)[Math.floor(0.95 * rates.length)]));
+  return { path: evenness < 0.8 ? "sine" : "triangle", cycles, period_s: period > 0 ? round(period) : 60, rows: Math.max(8, Math.min(1000, Math.round(middle(all.map((one) => one.count)) / cycles))) };
+}
+
+/** The test that was made, about: what each sweep holds, and what it goes over; one block for all pressures with the same range. @param {Rows} rows @returns {Block[]} */
+export function asMeasured(rows) {
+  const all = sweepsOf(rows);
+  const isTimed = Boolean(rows.of.time);
+  const [p, c] = [ends(all.map((one) => one.p)), ends(all.map((one) => one.c))];
+  const share = (/** @type {number} */ percent) => round(percent) / 100;
   if (all.every((one) => spread(one.c) <= HELD * spread(c)) || spread(c) < 1e-3) {
     const held = levels(all.map((one) => (one.c[0] + one.c[1]) / 2), Math.max(spread(c), 1));
-    return block({ held: held.map((value) => value / 100), pressures_pa: p.map((bar) => 1e5 * Math.max(0.01, round(bar))), contraction: contractions, ...rest });
+    return [block({ ...motionOf(all, true), held: held.map((value) => value / 100), pressures_pa: p.map((bar) => 1e5 * Math.max(0.01, round(bar))), contraction: [share(c[0]), share(c[1])] })];
   }
-  const means = all.filter((one) => spread(one.p) <= HELD * Math.max(spread(p), one.p[1])).map((one) => (one.p[0] + one.p[1]) / 2);
-  const pressures = levels(means.length ? means : [p[0], (p[0] + p[1]) / 2, p[1]], Math.max(spread(p), 1)).filter((bar) => bar > 0);
-  return block({ pressures_pa: pressures.map((bar) => 1e5 * bar), contraction: contractions, ...(time ? rest : { path: "static", rows: 20 }) });
+  const isHeldPressure = (/** @type {Sweep} */ one) => spread(one.p) <= HELD * Math.max(spread(p), one.p[1]);
+  const isobaric = all.filter(isHeldPressure);
+  /** @type {Map<string, Sweep[]>} */
+  const alike = new Map();
+  for (const one of isobaric) {
+    const name = one.c.map((value) => Math.round((20 * value) / Math.max(spread(c), 1e-9))).join(" ");
+    alike.set(name, [...(alike.get(name) ?? []), one]);
+  }
+  const groups = alike.size && alike.size <= MOST_LEVELS ? [...alike.values()] : [isobaric.length ? isobaric : all];
+  return groups.map((group) => {
+    const means = group.filter(isHeldPressure).map((one) => (one.p[0] + one.p[1]) / 2);
+    const range = ends(group.map((one) => one.c));
+    const pressures = levels(means.length ? means : [p[0], (p[0] + p[1]) / 2, p[1]], Math.max(spread(p), 1)).filter((bar) => bar > 0);
+    return block({ ...motionOf(group, isTimed), pressures_pa: pressures.map((bar) => 1e5 * bar), contraction: [share(range[0]), share(range[1])] });
+  });
 }

@@ -152,7 +152,7 @@
  * @property {{structured: boolean, misfit_n: number, misfit_interval_n: [number, number] | null, hints: any[]}} remaining
  * @property {{says: string, as_stated_rmse_n: number | null}} geometry
  * @property {any[]} not_looked_for
- * @property {{says: string, separates: string[], protocol?: import("./protocol.js").Protocol | null} | null} next_experiment
+ * @property {{says: string, separates: string[], repeats: number, protocol?: import("./protocol.js").Protocol | null} | null} next_experiment
  * @property {string[]} warnings
  */
 

@@ -12,7 +12,7 @@ import { interval as intervalOf, newtons, number, percent, quantity, sentence } 
  * @property {(names: string[]) => void} accept
  * @property {(claim: string, rival: string) => void} tryInstead
  * @property {(names: string[]) => void} showMe
- * @property {(protocol: import("./protocol.js").Protocol) => void} plan
+ * @property {(protocol: import("./protocol.js").Protocol, repeats: number) => void} plan
  */
 
 /** Rivals that are offered. */
@@ -25,7 +25,7 @@ const fittedName = (claim) => claim.fitted ?? claim.effect;
 export function verdict(found, does) {
   const names = found.missing.map(fittedName);
   return [
-    h("div", { class: `verdict ${found.verdict}`, id: "verdict", "data-verdict": found.verdict }, found.says.startsWith(found.verdict) ? null : h("h3", null, found.verdict.replaceAll("-", " ")), h("p", { class: "headline" }, found.says)),
+    h("div", { class: `verdict ${found.verdict}`, id: "verdict", "data-verdict": found.verdict }, found.says.startsWith(found.verdict) ? null : h("h3", null, found.verdict.replaceAll("-", " ")), h("p", { class: "headline" }, found.says), found.ladder.some((rung) => rung.bent && rung.adequate) ? h("p", { class: "facts" }, "In the form that these data want, that is: by the formulas alone something is left, see the steps.") : null),
     names.length > 1 ? h(
       "div", { class: "row" },
       h("button", { type: "button", class: "primary", id: "accept-all", onclick: () => does.accept(names), disabled: names.every(does.has) }, `Accept all ${names.length}`),
@@ -98,7 +98,7 @@ function ladder(found) {
   // What its data sheets leave open is fitted along; the headline's error is that of the muscle as stated.
   const isFitted = stated !== null && first !== null && Math.abs(stated - first) > 0.01 * stated;
   const asked = isFitted ? "with what the files leave open fitted" : "as asked";
-  return h("table", { class: "steps" }, h("caption", null, "steps"), h("thead", null, h("tr", null, h("th", null, "model"), h("th", { class: "n" }, "error"), h("th", { class: "n" }, "held out"), h("th", null, "adequate"))), h("tbody", null, isFitted ? h("tr", null, h("td", null, "as stated"), h("td", { class: "n" }, newtons(stated)), h("td", { class: "n" }, ""), h("td", null, "")) : null, ...found.ladder.map((rung) => h(
+  return h("table", { class: "steps" }, h("caption", null, "steps"), h("thead", null, h("tr", null, h("th", null, "model"), h("th", { class: "n" }, "error"), h("th", { class: "n" }, "held out"), h("th", null, "adequate"))), h("tbody", null, isFitted ? h("tr", null, h("td", null, "exactly as stated"), h("td", { class: "n" }, newtons(stated)), h("td", { class: "n" }, ""), h("td", null, "")) : null, ...found.ladder.map((rung) => h(
     "tr", null, h("td", null, rung.added ? `+ ${rung.added}${rung.bent ? ", as the data want it" : ""}` : asked), h("td", { class: "n" }, newtons(rung.rmse_n)), h("td", { class: "n" }, newtons(rung.held_out_rmse_n)), h("td", null, rung.adequate ? "yes" : "no"),
   ))));
 }
@@ -130,6 +130,6 @@ function next(found, does) {
   const protocol = found.next_experiment?.protocol;
   return says ? h(
     "div", { class: "next", id: "next-experiment" }, h("h4", null, "next experiment"), h("p", null, says),
-    protocol ? h("div", { class: "row" }, h("button", { type: "button", class: "small", id: "plan-next", onclick: () => does.plan(protocol) }, "Draw it in the plan")) : null,
+    protocol ? h("div", { class: "row" }, h("button", { type: "button", class: "small", id: "plan-next", onclick: () => does.plan(protocol, found.next_experiment?.repeats ?? 1) }, "Draw it in the plan")) : null,
   ) : null;
 }

@@ -86,6 +86,9 @@ pub(crate) struct Change {
     pub(crate) own_effects: Text,
     pub(crate) excluded: Option<Vec<usize>>,
     pub(crate) view: Option<serde_json::Value>,
+    /// Whether it goes on with the change before it, as a slider does that is still held: both are one step then.
+    #[serde(default)]
+    pub(crate) goes_on: bool,
 }
 
 /// Another muscle: a shipped one by name, or a file.

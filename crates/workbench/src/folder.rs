@@ -33,6 +33,9 @@ pub(crate) struct Kept {
     pub(crate) view: Value,
     /// The word that ends the address: a page that is open finds the session again when it is served anew at the same port.
     pub(crate) token: String,
+    /// The port at which it was served last: a page that is open looks for it there.
+    #[serde(default)]
+    pub(crate) port: u16,
     /// What was stated when it was opened last: whoever states the same again goes on.
     #[serde(default)]
     pub(crate) stated: Option<Choices>,
@@ -52,6 +55,7 @@ impl Kept {
     pub(crate) fn new(choices: Choices, token: String) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
+            port: 0,
             stated: Some(choices.clone()),
             choices,
             past: Vec::new(),

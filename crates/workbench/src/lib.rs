@@ -48,7 +48,7 @@ pub struct Start {
     /// Whether they were asked for: then a session that is there goes on with them, unless they are those that it was opened with before; else it goes on with its
     /// own.
     pub is_stated: bool,
-    /// Port to listen on; 0: any that is free.
+    /// Port to listen on; 0: the one that the session had before, or any that is free.
     pub port: u16,
     /// Folder of the session; none: a temporary one.
     pub session: Option<PathBuf>,
@@ -92,14 +92,22 @@ pub fn serve(start: Start, ready: impl FnOnce(&str)) -> Result<(), WorkbenchErro
     let path = start.session.clone().unwrap_or_else(std::env::temp_dir);
     let folder =
         Folder::open(start.session.as_deref()).map_err(|source| WorkbenchError::Folder { path, source })?;
-    let session = Session::open(folder, start.choices, start.is_stated, new_token()?)
+    let mut session = Session::open(folder, start.choices, start.is_stated, new_token()?)
         .map_err(|refusal| WorkbenchError::Session(refusal.error))?;
     let runtime =
         tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(WorkbenchError::Ended)?;
     let outcome = runtime.block_on(async {
         let of_port = |source| WorkbenchError::Port { port: start.port, source };
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, start.port)).await.map_err(of_port)?;
+        let at = |port| TcpListener::bind((Ipv4Addr::LOCALHOST, port));
+        // Where none is stated, the port that it had before, so that a page that is open goes on.
+        let before =
+            if start.port == 0 && session.port() != 0 { at(session.port()).await.ok() } else { None };
+        let listener = match before {
+            Some(listener) => listener,
+            None => at(start.port).await.map_err(of_port)?,
+        };
         let port = listener.local_addr().map_err(of_port)?.port();
+        session.keep_port(port).map_err(|refusal| WorkbenchError::Session(refusal.error))?;
         let guard = Guard::new(port, session.token().to_owned());
         let address = guard.address();
         let served = axum::serve(listener, router(Arc::new(Workbench::new(guard, session))));

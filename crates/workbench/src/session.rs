@@ -102,6 +102,17 @@ impl Session {
         &self.kept.token
     }
 
+    /// The port at which it was served last; 0: none.
+    pub(crate) fn port(&self) -> u16 {
+        self.kept.port
+    }
+
+    /// Keeps the port at which it is served.
+    pub(crate) fn keep_port(&mut self, port: u16) -> Result<(), Refusal> {
+        self.kept.port = port;
+        self.folder.keep(&self.kept)
+    }
+
     pub(crate) fn revision(&self) -> u64 {
         self.revision
     }
@@ -141,6 +152,10 @@ impl Session {
                 ));
             }
             self.kept.view = view;
+        }
+        if change.goes_on && next != self.kept.choices && !self.kept.past.is_empty() {
+            drop(self.go_to(next));
+            return self.folder.keep(&self.kept);
         }
         self.step(next)
     }

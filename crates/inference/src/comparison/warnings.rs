@@ -46,9 +46,15 @@ impl Analysis<'_> {
             let larger =
                 format!("the error on unseen data larger ({held_out:.1} N instead of {lowest:.1} N)");
             let held = held_amiss(ladder);
+            let all: Vec<String> =
+                last.held.iter().map(|held| format!("`{}.{}`", held.effect, held.name)).collect();
+            let or_held = match all.len() {
+                0 => String::new(),
+                _ => format!(", or what is held ({}) is far from what the data want", all.join(", ")),
+            };
             warnings.push(if held.is_empty() {
                 format!(
-                    "the last effect, `{}`, makes {larger}: it follows these rows, not the muscle",
+                    "the last effect, `{}`, makes {larger}: it follows these rows, not the muscle{or_held}",
                     last.added.as_deref().unwrap_or("")
                 )
             } else {

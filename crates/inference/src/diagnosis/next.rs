@@ -35,6 +35,18 @@ pub struct NextLimits {
     pub contraction: Option<[f64; 2]>,
 }
 
+/// How proposals say their number of pressures.
+const COUNTS: [&str; 8] = [
+    ", at two pressures",
+    " at the lowest and the highest pressure",
+    " at two pressures",
+    " at three pressures",
+    ", at four pressures",
+    " at six pressures",
+    " at one pressure",
+    " of eight pressures",
+];
+
 /// Highest gauge pressure \[Pa\], and contractions that a bench can set, as for a protocol.
 const MOST_PRESSURE: f64 = 1e8;
 const CONTRACTIONS: [f64; 2] = [-1.0, 0.6];
@@ -114,6 +126,13 @@ impl Limits {
     fn pressures_in_words(&self) -> String {
         let [low, high] = self.pressure_pa.map(|p| significant(p / 1e5, 3));
         if low == high { format!("at {low} bar") } else { format!("between {low} and {high} bar") }
+    }
+
+    /// A proposal in words, without its number of pressures where only one may be used.
+    fn without_count(&self, says: &str) -> String {
+        let one = self.pressures(2).len() == 1;
+        let counts = COUNTS.iter().find(|counts| one && says.contains(**counts));
+        counts.map_or_else(|| says.to_owned(), |counts| says.replacen(counts, "", 1))
     }
 
     fn pressures(&self, count: usize) -> Vec<f64> {
@@ -305,7 +324,7 @@ pub(crate) fn next_experiment(
     Some(NextExperiment {
         says: format!(
             "measure {}, {} and between {} and {} % of contraction, {times}: that tells `{named}` from {} ({} sigma){but}",
-            best.says,
+            limits.without_count(best.says),
             limits.pressures_in_words(),
             significant(100.0 * limits.contraction[0], 2),
             significant(100.0 * limits.contraction[1], 3),
@@ -424,6 +443,18 @@ fn separations(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn with_one_pressure_no_proposal_speaks_of_several() {
+        let limits = |high| Limits { pressure_pa: [2e5, high], contraction: [0.0, 0.2], period_s: 60.0 };
+        for proposal in proposals(&limits(2e5)) {
+            let says = limits(2e5).without_count(proposal.says);
+            assert!(!says.contains("pressures") || says.contains("from the lowest pressure"), "{says}");
+            let pressures = proposal.protocol.blocks.iter().filter(|block| block.held.is_empty());
+            assert!(pressures.into_iter().all(|block| block.pressures_pa == [2e5]), "{says}");
+            assert_eq!(limits(4e5).without_count(proposal.says), proposal.says);
+        }
+    }
 
     #[test]
     fn a_rival_that_no_test_tells_does_not_take_the_others_away() {

@@ -183,10 +183,16 @@ fn right(missing: &Missing) -> String {
     if simulated.claims == 0 {
         return format!("{} of the time", chance(missing.confidence));
     }
+    // With other claims beside it a claim is right less often than alone.
+    let together = if missing.confidence < simulated.interval[0] {
+        format!("{} of the time with all that is named together; alone ", chance(missing.confidence))
+    } else {
+        String::new()
+    };
     let [low, high] = simulated.interval.map(|end| format!("{:.0}", 100.0 * end));
     format!(
-        "{} of the time ({} on simulated data like these: 95 % interval {low} to {high} %); the class holds the right effect {} of the time",
-        chance(missing.confidence),
+        "{together}{} of the time ({} on simulated data like these: 95 % interval {low} to {high} %); the class holds the right effect {} of the time",
+        chance(simulated.named),
         count(simulated.claims, "such claim"),
         chance(simulated.class)
     )

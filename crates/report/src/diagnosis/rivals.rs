@@ -107,8 +107,14 @@ fn draw(svg: &mut Svg, panel: &Panel, (missing, rival, drawn): (&Missing, &Rival
 pub(super) fn says(diagnosis: &Diagnosis) -> String {
     let of = |missing: &Missing| {
         let others: Vec<String> = others_in_class(missing).map(str::to_owned).collect();
-        if others.is_empty() {
-            format!("{} stands alone", missing.effect)
+        if others.is_empty() && missing.forms.is_empty() {
+            format!("{} is told from all others by the weight of the evidence", missing.effect)
+        } else if others.is_empty() {
+            format!(
+                "{} is told from all others but other forms of it, {}",
+                missing.effect,
+                and(&missing.forms)
+            )
         } else {
             format!("these data cannot tell {} from {}", missing.effect, and(&others))
         }
