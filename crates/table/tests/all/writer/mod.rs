@@ -1,6 +1,5 @@
 //! Tables for the tests, written from nothing but the documentation of the format, and what they hold, by dual numbers.
 
-#![allow(dead_code, reason = "each test uses its part")]
 #![expect(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use std::array;
