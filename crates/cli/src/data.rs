@@ -101,12 +101,23 @@ impl DataArguments {
         Call {
             data: self.names().into_iter().chain(more.iter().map(|name| (*name).to_owned())).collect(),
             columns: self.columns.clone(),
-            exclude: self.exclude.clone(),
+            exclude: self.exclude.as_deref().map(|lines| self.lines_of(lines, !more.is_empty())),
             muscle: muscle.to_owned(),
             effects: effects.map(|path| path.display().to_string()),
             with: with.iter().map(|name| name.trim().to_owned()).collect(),
             restrictions: Vec::new(),
         }
+    }
+
+    /// Lines to leave out, as they are stated beside other files: each with its file.
+    fn lines_of(&self, lines: &str, beside_others: bool) -> String {
+        let [only] = &self.data[..] else { return lines.to_owned() };
+        let ranges = lines.split(',').map(str::trim).filter(|range| !range.is_empty());
+        let named = |range: &str| match range.contains(':') || !beside_others {
+            true => range.to_owned(),
+            false => format!("{}:{range}", only.display()),
+        };
+        ranges.map(named).collect::<Vec<_>>().join(",")
     }
 
     /// The names of the files, as they were given.
@@ -171,4 +182,22 @@ fn columns(reading: &Reading) -> String {
     }
     out.push_str("  wrong? say which column is which: --columns \"force=Force_N [N], ...\"\n");
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn beside_another_file_lines_have_the_name_of_theirs() {
+        let data = |exclude: &str| DataArguments {
+            data: vec![PathBuf::from("a.csv")],
+            columns: None,
+            exclude: Some(exclude.to_owned()),
+        };
+        let exclude = |lines: &str, more: &[&str]| data(lines).call("m.toml", &[], None, more).exclude;
+        assert_eq!(exclude("12, 33-40", &[]).as_deref(), Some("12,33-40"));
+        assert_eq!(exclude("12,33-40", &["NEW.csv"]).as_deref(), Some("a.csv:12,a.csv:33-40"));
+        assert_eq!(exclude("a.csv:12", &["NEW.csv"]).as_deref(), Some("a.csv:12"));
+    }
 }

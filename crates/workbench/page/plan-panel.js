@@ -241,9 +241,10 @@ function draw() {
         h("button", { type: "button", class: "small", id: "clear-plan", disabled: !blocks.length, onclick: () => keep({ blocks: [] }) }, "Clear"),
         h("button", { type: "button", class: "small", id: "save-protocol", disabled: !planned, onclick: () => planned && download(new Blob([planned.toml], { type: "application/toml" }), "protocol.toml") }, "Save as TOML")),
       h("p", { class: "error", id: "plan-error", role: "alert" }),
+      h("div", { id: "plan-answer" }),
+      h("h4", null, "the test"),
       ...blocks.map((one, i) => blockForm(one, i)),
       h("div", { class: "fields" }, ...field("noise of the force [N]", "plan-noise", [noise()], ([value]) => keepField({ noise_n: value }), { example: "2, or 0 for that of the muscle's file", low: 0 })),
-      h("div", { id: "plan-answer" }),
     );
     drawPlane();
     drawAnswer();
