@@ -222,6 +222,23 @@ fn a_number_is_held_and_fitted_again() {
     assert_eq!(page.errors(), fitted);
 }
 
+/// However far a slider is dragged: undo takes the whole drag back.
+#[test]
+fn one_drag_is_one_step() {
+    let (_folder, page) = opened();
+    page.put(&effects(&["coulomb-friction"]));
+    let fitted = page.errors();
+    for (force, goes_on) in [(5.0, false), (7.0, true), (9.0, true)] {
+        let hold = json!([{"name": "coulomb-friction", "hold": {"force": force}}]);
+        page.put(&json!({"effects": hold, "goes_on": goes_on}));
+    }
+    assert_eq!(page.get("session").json()["effects"][0]["hold"]["force"], 9.0);
+    page.ask("POST", "api/undo", b"");
+    assert_eq!(page.errors(), fitted);
+    let redone = page.ask("POST", "api/redo", b"").json();
+    assert_eq!(redone["effects"][0]["hold"]["force"], 9.0);
+}
+
 /// The bulge is that of the model: clamped ends are narrower than a cylinder's.
 #[test]
 fn the_shape_follows_what_was_learnt() {
