@@ -95,13 +95,29 @@ function drawCatalogue() {
   fill(byId("catalogue"), ...groups, state.cards.length && !found.length ? h("p", { class: "empty" }, `No effect holds “${sought}”.`) : null);
 }
 
+let isPressed = false;
+let isWaiting = false;
+
 function draw() {
+  // A switch doesn't go away below the finger that presses it.
+  isWaiting = isPressed;
+  if (isPressed) return;
   // While a slider is held its element must stay.
   if (!document.querySelector("#active [data-held-by-hand]")) keepingFocus(byId("active"), drawActive);
   keepingFocus(byId("catalogue"), drawCatalogue);
 }
 
 export function startEffects() {
+  byId("effects-panel").addEventListener("pointerdown", () => {
+    isPressed = true;
+  });
+  for (const end of ["pointerup", "pointercancel"]) {
+    addEventListener(end, () => {
+      isPressed = false;
+      // After the click that follows.
+      if (isWaiting) setTimeout(draw);
+    });
+  }
   on("session", draw);
   on("documents", draw);
   on("held-out", draw);

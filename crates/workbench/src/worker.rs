@@ -3,6 +3,7 @@
 //! A question that nobody waits for any more is passed over, so that the last one asked is answered first.
 
 use bulge_inference::{Comparing, Comparison, Rows};
+use rayon::ThreadPoolBuilder;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -100,7 +101,16 @@ impl Worker {
     /// Starts it; `held_out`: whether it computes errors on held-out data.
     pub(crate) fn start(held_out: bool) -> Self {
         let (tasks, waiting) = channel();
-        thread::spawn(move || work(&waiting, held_out));
+        thread::spawn(move || {
+            // Held-out errors take long: they leave half of the cores to what a person waits for.
+            let half = thread::available_parallelism().map_or(1, |cores| cores.get().div_ceil(2));
+            let apart = held_out.then(|| ThreadPoolBuilder::new().num_threads(half).build());
+            match apart {
+                Some(Ok(pool)) => pool.install(|| work(&waiting, held_out)),
+                // Without threads of its own it works on those of all.
+                _ => work(&waiting, held_out),
+            }
+        });
         Self(tasks)
     }
 
