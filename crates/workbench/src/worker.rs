@@ -106,7 +106,7 @@ impl Worker {
             let half = thread::available_parallelism().map_or(1, |cores| cores.get().div_ceil(2));
             let apart = held_out.then(|| ThreadPoolBuilder::new().num_threads(half).build());
             match apart {
-                Some(Ok(pool)) => pool.install(|| work(&waiting, held_out)),
+                Some(Ok(pool)) => pool.install(move || work(&waiting, held_out)),
                 // Without threads of its own it works on those of all.
                 _ => work(&waiting, held_out),
             }
