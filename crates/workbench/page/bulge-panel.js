@@ -11,7 +11,8 @@ import { on, report, state } from "./store.js";
 
 /** @typedef {import("./types.js").Shape} Shape */
 
-const WAIT_MS = 50;
+// A fit of its own goes before it: it waits until nothing is switched.
+const WAIT_MS = 300;
 
 /** @type {import("./scene.js").BulgeScene | null} */
 let scene = null;

@@ -307,7 +307,9 @@ fn a_plan_is_that_of_the_library() {
     let by_library = |muscle: &Muscle| {
         let catalogue = Catalogue::builtin();
         let known = known(muscle, &catalogue).unwrap();
-        serde_json::to_value(bulge_inference::plan(muscle, &known, &catalogue, &protocol).unwrap()).unwrap()
+        let plan = bulge_inference::plan(muscle, &known, &catalogue, &protocol).unwrap();
+        // By way of the text, as the page has it: reading it may round a last digit.
+        serde_json::from_str::<Value>(&serde_json::to_string(&plan).unwrap()).unwrap()
     };
     assert_eq!(stated["plan"], by_library(&muscle));
     assert_eq!(stated["plan"]["rows"], 2 * 80 + 2 * 30);
