@@ -11,8 +11,9 @@ import { on, report, state } from "./store.js";
 
 /** @typedef {import("./types.js").Shape} Shape */
 
-// A fit of its own goes before it: it waits until nothing is switched.
-const WAIT_MS = 300;
+const WAIT_MS = 50;
+/** A fit of its own goes before the bulge of another model: it waits until nothing is switched. */
+const REST_MS = 400;
 
 /** @type {import("./scene.js").BulgeScene | null} */
 let scene = null;
@@ -52,6 +53,7 @@ async function ask() {
 }
 
 const askSoon = afterRest(WAIT_MS, () => void ask());
+const askAtRest = afterRest(REST_MS, () => void ask());
 
 function draw() {
   if (!scene || !shape) return;
@@ -121,7 +123,7 @@ export function startBulge() {
   on("documents", () => {
     setRanges();
     if (selection.hovered !== null) follow(selection.hovered);
-    askSoon();
+    askAtRest();
     if (isLoading) return;
     isLoading = true;
     setTimeout(() => void loadScene(), 0);
