@@ -256,7 +256,9 @@ fn bad_manifests_are_caught() {
     assert!(forbidden_imports("fibre", manifest).is_empty());
     for (folder, bad, part) in [
         ("fibre", "bulge-effects.workspace = true", "imports `effects`"),
-        ("fibre", "bulge = { path = \"../cli\" }", "imports `cli`"),
+        ("fibre", "bulge = { path = \"../bulge\" }", "imports `bulge`"),
+        ("fibre", "bulge-cli = { path = \"../cli\" }", "imports `cli`"),
+        ("workbench", "clap = \"4\"", "only `cli`"),
         ("numerics", "bulge-muscles = { workspace = true }", "imports `muscles`"),
         ("fibre", "net = { package = \"bulge-membrane\", path = \"../membrane\" }", "imports `membrane`"),
         ("fibre", "[dev-dependencies]\nbulge-report.workspace = true", "in [dev-dependencies]"),
