@@ -113,9 +113,12 @@ impl DataArguments {
     fn lines_of(&self, lines: &str, beside_others: bool) -> String {
         let [only] = &self.data[..] else { return lines.to_owned() };
         let ranges = lines.split(',').map(str::trim).filter(|range| !range.is_empty());
-        let named = |range: &str| match range.contains(':') || !beside_others {
-            true => range.to_owned(),
-            false => format!("{}:{range}", only.display()),
+        let named = |range: &str| {
+            if range.contains(':') || !beside_others {
+                range.to_owned()
+            } else {
+                format!("{}:{range}", only.display())
+            }
         };
         ranges.map(named).collect::<Vec<_>>().join(",")
     }
