@@ -305,17 +305,18 @@ class Story:
         shown = page.run("return [...document.querySelectorAll('#active .number .value')].map((v) => v.textContent)")
         self.expect("the numbers of the effects are shown", len(shown) >= 2, shown)
 
-    def time_switches(self, name, times, limit):
-        """Effects are switched on for the first time and off again, by a hand that rests on each switch for a quarter of a second."""
+    def time_switches(self, name, times, limit, reads, skip=0):
+        """Effects are switched on for the first time and off again: a person reads for some seconds, then a hand rests on each switch for a quarter of a second."""
         page = self.page
         page.run("performance.clearMeasures('switch'); performance.clearMeasures('draw')")
         usable = page.run("return [...document.querySelectorAll('#catalogue [role=switch]:not(:disabled)[aria-checked=false]')].map((s) => s.dataset.effect)")
         # Of all stages, and not those alone that stand first.
-        some = usable[:: max(1, len(usable) // max(1, times // 2))][: times // 2]
+        some = usable[skip :: max(1, len(usable) // max(1, times // 2))][: times // 2]
+        time.sleep(reads)
         for effect in [effect for effect in some for _ in ("on", "off")]:
             before = page.run("return performance.getEntriesByName('switch').length")
             page.press(f"#catalogue [role=switch][data-effect={effect}]")
-            page.wait(f"performance.getEntriesByName('switch').length > {before}", "the plots are redrawn")
+            page.wait(f"performance.getEntriesByName('switch').length > {before}", f"the plots are redrawn with {effect}")
             page.is_ready()
         self.measured(name, page.run("return performance.getEntriesByName('switch').map((m) => m.duration)"), limit)
         self.measured(f"{name}: of it drawing", page.run("return performance.getEntriesByName('draw').map((m) => m.duration)"))
@@ -462,7 +463,8 @@ class Story:
         self.expect("all points are drawn at rest", page.text("#plot-force .note") == "", page.text("#plot-force .note"))
         if folder:
             page.shot(folder / "workbench-many.png")
-        self.time_switches("a switch at 1e5 rows", 6, 1000)
+        self.time_switches("a switch at 1e5 rows, at once", 6, None, 0)
+        self.time_switches("a switch at 1e5 rows", 6, 1000, 60, 1)
 
     def table(self):
         print("\n| what | median [ms] | 95 % [ms] | times | to reach [ms] |\n|---|---|---|---|---|")
@@ -532,7 +534,8 @@ def play(page, checks, arguments, address, folder):
         ("rows are brushed", story.look_closely), ("it is diagnosed", story.diagnose), ("a test is planned", story.plan), ("undo, redo, reload", story.undo), ("bad input", story.bad_input),
     ):
         story.part(what, part)
-    story.part("switches are timed", lambda: story.time_switches("a switch", arguments.switches, 100))
+    story.part("switches are timed", lambda: story.time_switches("a switch at once", 10, None, 0))
+    story.part("switches are timed after reading", lambda: story.time_switches("a switch", arguments.switches, 100, 15, 1))
     checks.check("all controls have names", page.run(NAMELESS))
     story.part("pictures", lambda: story.pictures(arguments.pictures))
     if arguments.big:

@@ -2,14 +2,18 @@
 
 use bulge_effects::known;
 use bulge_inference::{ConfusedPair, CorrelationTime, Plan, PlannedEffect, Protocol, plan};
+use bulge_measurements::Data;
+use bulge_model::read_options;
+use bulge_muscles::{Muscle, Quantity};
 use clap::Args;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::arguments;
 use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::untested::reasons;
 use crate::failure::Failure;
+use crate::files;
 use crate::text::{significant, table};
 use bulge_report::shell_word;
 
@@ -36,8 +40,14 @@ pub(crate) struct PlanCommand {
     #[arg(long)]
     muscle: String,
     /// What the test bench does: a TOML file as for `bulge simulate` (its help has an example)
+    #[arg(long, value_name = "PROTOCOL.toml", required_unless_present = "like")]
+    protocol: Option<PathBuf>,
+    /// Instead of a protocol: measurements; it is about the test that they come from, as far as blocks describe it
+    #[arg(long, value_name = "DATA", conflicts_with = "protocol")]
+    like: Option<PathBuf>,
+    /// Writes the test as a protocol file, to begin from
     #[arg(long, value_name = "PROTOCOL.toml")]
-    protocol: PathBuf,
+    out: Option<PathBuf>,
     /// Your own effects, as expressions in a TOML file
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
@@ -50,10 +60,35 @@ impl PlanCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
-        let protocol = Protocol::read(&self.protocol)?;
+        let protocol = self.test(&muscle)?;
         let known = known(&muscle, &catalogue)?;
         let found = plan(&muscle, &known, &catalogue, &protocol)?;
+        if let Some(path) = &self.out {
+            files::write(path, protocol.to_toml().as_bytes())?;
+        }
         if self.json { Ok(serde_json::to_string_pretty(&found)? + "\n") } else { Ok(self.text(&found)) }
+    }
+
+    /// The protocol, or that of some measurements.
+    fn test(&self, muscle: &Muscle) -> Result<Protocol, Failure> {
+        if let Some(out) = &self.out {
+            let read = [
+                ("the protocol", self.protocol.as_deref()),
+                ("the data file", self.like.as_deref()),
+                ("the muscle file", Some(Path::new(&self.muscle))),
+                ("the file of --effects", self.effects.as_deref()),
+            ];
+            let read: Vec<files::Named<'_>> =
+                read.into_iter().filter_map(|(what, path)| Some((what, path?))).collect();
+            files::are_apart(&[("--out", out)], &read)?;
+            files::can_be_written(out)?;
+        }
+        if let Some(path) = &self.like {
+            let data = Data::read_with(&[path], &read_options(muscle, None)?)?;
+            return Ok(Protocol::like(&data, muscle.length().si()));
+        }
+        // The one or the other is there: the parser of the command line sees to it.
+        Ok(Protocol::read(self.protocol.as_deref().unwrap_or(Path::new("")))?)
     }
 
     /// The plan for people.
@@ -69,12 +104,17 @@ impl PlanCommand {
             format!(" --effects {}", shell_word(&path.display().to_string()))
         });
         let hidden = plan.effects.first().map_or("coulomb-friction", |effect| effect.effect.as_str());
-        let _ = writeln!(
-            out,
-            "\n  to try it, hide an effect and look for it:\n    bulge simulate {} --protocol {}{own} --with {hidden} --out trial",
-            shell_word(&self.muscle),
-            shell_word(&self.protocol.display().to_string())
-        );
+        match self.out.as_ref().or(self.protocol.as_ref()) {
+            Some(protocol) => {
+                let _ = writeln!(
+                    out,
+                    "\n  to try it, hide an effect and look for it:\n    bulge simulate {} --protocol {}{own} --with {hidden} --out trial",
+                    shell_word(&self.muscle),
+                    shell_word(&protocol.display().to_string())
+                );
+            }
+            None => out.push_str("\n  --out protocol.toml writes this test as a file, to begin from\n"),
+        }
         out
     }
 }

@@ -3,6 +3,7 @@
 pub(crate) mod bench;
 pub(crate) mod file;
 pub(crate) mod hidden;
+pub(crate) mod like;
 pub(crate) mod planned;
 pub(crate) mod simulation;
 pub(crate) mod truth;

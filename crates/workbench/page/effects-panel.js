@@ -41,6 +41,14 @@ function switchOf(name, title, isUsable) {
   }, h("span", { class: "knob" }));
 }
 
+/** As the session has it. @param {HTMLButtonElement} control */
+function setSwitch(control) {
+  const name = control.dataset.effect ?? "";
+  const checked = isOn(name);
+  control.setAttribute("aria-checked", String(checked));
+  control.disabled = Boolean(state.card(name)?.unsuitable) && !checked;
+}
+
 /** @param {Card} card @param {boolean} isActive */
 function item(card, isActive) {
   const isUsable = !card.unsuitable;
@@ -81,10 +89,21 @@ function drawActive() {
   fill(byId("active"), cards.length ? h("h3", null, `On (${cards.length})`) : null, cards.length ? h("ul", { class: "effects" }, ...cards.map((card) => item(card, true))) : h("p", { class: "empty" }, "No effect is on: the model is the muscle as stated."));
 }
 
+/** What the catalogue shows, but for the state of its switches. @type {{key: string, cards: Card[]}} */
+let shown = { key: "", cards: [] };
+
 function drawCatalogue() {
   const sought = input("search").value.trim().toLowerCase();
-  const found = state.cards.filter((card) => matches(card, sought));
-  const stages = [...new Set([...STAGES, ...state.cards.map((card) => card.stage)])];
+  const { cards } = state;
+  const key = [sought, ...open].join(" ");
+  if (key === shown.key && cards === shown.cards) {
+    // Of all that is there nothing but the switches has changed.
+    for (const control of byId("catalogue").querySelectorAll("[role=switch]")) setSwitch(/** @type {HTMLButtonElement} */ (control));
+    return;
+  }
+  shown = { key, cards };
+  const found = cards.filter((card) => matches(card, sought));
+  const stages = [...new Set([...STAGES, ...cards.map((card) => card.stage)])];
   const groups = stages.flatMap((stage) => {
     const its = found.filter((card) => card.stage === stage);
     if (!its.length) return [];
@@ -92,7 +111,7 @@ function drawCatalogue() {
     const sorted = [...its.filter((card) => !card.unsuitable), ...its.filter((card) => card.unsuitable)];
     return [h("section", { class: "stage", "data-stage": stage }, h("h3", null, stage, h("span", { class: "facts" }, ` ${its.length}`)), h("ul", { class: "effects" }, ...sorted.map((card) => item(card, false))))];
   });
-  fill(byId("catalogue"), ...groups, state.cards.length && !found.length ? h("p", { class: "empty" }, `No effect holds “${sought}”.`) : null);
+  fill(byId("catalogue"), ...groups, cards.length && !found.length ? h("p", { class: "empty" }, `No effect holds “${sought}”.`) : null);
 }
 
 let isPressed = false;

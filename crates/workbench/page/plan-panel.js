@@ -1,11 +1,11 @@
 // @ts-check
 // Plan: a test before it is made, drawn over pressure and contraction, and what it would show and tell apart.
 
-import { isAborted, post, Refusal } from "./api.js";
+import { get, isAborted, post, Refusal } from "./api.js";
 import { afterRest, button, byId, download, fill, h, keepingFocus } from "./dom.js";
 import { counted, newtons, number, withoutExcerpt } from "./format.js";
 import { blockColour, plane } from "./plan-plane.js";
-import { asMeasured, block, duration, isHeld, isStatic, protocol, stairs } from "./protocol.js";
+import { block, duration, isHeld, isStatic, protocol, stairs } from "./protocol.js";
 import { keepView, on, report, state } from "./store.js";
 import { showTab } from "./tabs.js";
 
@@ -27,12 +27,33 @@ let askedFor = "";
 /** Effects of the last diagnosis: pairs of them come first. @type {Set<string>} */
 let wanted = new Set();
 
+/** The test that the data come from, about, with what it belongs to. @type {{of: string, blocks: Block[]}} */
+let measured = { of: "", blocks: [] };
+
 const isShown = () => !byId("plan-panel").hidden;
+
+/** Asks for the test that the data come from, unless it is there. */
+async function lookAtData() {
+  const { session } = state;
+  const of = JSON.stringify([session?.data, session?.columns, session?.muscle.toml]);
+  if (!isShown() || !session || !state.rows || measured.of === of) return;
+  measured = { of, blocks: [] };
+  try {
+    const { blocks } = await get("protocol");
+    if (measured.of !== of) return;
+    measured = { of, blocks };
+    draw();
+    ask();
+  } catch (error) {
+    measured = { of: "", blocks: [] };
+    report(error);
+  }
+}
 
 /** The test that is planned; as long as nobody has drawn one, that of the data. @returns {{blocks: Block[], noise_n: number | null}} */
 function test() {
   const kept = state.session?.view.plan;
-  return { blocks: kept?.blocks ?? (state.rows ? asMeasured(state.rows) : []), noise_n: kept?.noise_n ?? null };
+  return { blocks: kept?.blocks ?? measured.blocks, noise_n: kept?.noise_n ?? null };
 }
 
 /** The noise that is stated, else what the data show. */
@@ -237,7 +258,7 @@ function draw() {
       h("div", { id: "plan-room" }),
       h("div", { class: "row" },
         h("button", { type: "button", class: "small", id: "add-block", onclick: () => keep({ blocks: [...test().blocks, block({ ...test().blocks.at(-1) })] }) }, "Add a block"),
-        h("button", { type: "button", class: "small", id: "plan-data", disabled: !state.rows, onclick: () => keep({ blocks: state.rows ? asMeasured(state.rows) : [] }) }, "About as the data"),
+        h("button", { type: "button", class: "small", id: "plan-data", disabled: !measured.blocks.length, onclick: () => keep({ blocks: measured.blocks }) }, "About as the data"),
         h("button", { type: "button", class: "small", id: "clear-plan", disabled: !blocks.length, onclick: () => keep({ blocks: [] }) }, "Clear"),
         h("button", { type: "button", class: "small", id: "save-protocol", disabled: !planned, onclick: () => planned && download(new Blob([planned.toml], { type: "application/toml" }), "protocol.toml") }, "Save as TOML")),
       h("p", { class: "error", id: "plan-error", role: "alert" }),
@@ -277,10 +298,12 @@ export function startPlan() {
     if (state.session?.view.plan && document.getElementById("plan-room")) drawPlane();
     else draw();
     ask();
+    void lookAtData();
   });
   on("tab", () => {
     draw();
     ask();
+    void lookAtData();
   });
   on("diagnosed", (names) => {
     wanted = new Set(names);

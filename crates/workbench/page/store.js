@@ -93,9 +93,10 @@ const content = (of) => JSON.stringify([of.data, of.columns, of.muscle.toml, of.
 function take(next, again = false) {
   if (session && next.revision < session.revision && !again) return;
   session = { ...next, view: { ...next.view, ...unsaved } };
+  // The documents are on their way while the choices are drawn.
+  if (!next.problem && (again || content(next) !== computedFor)) void compute(content(next));
   tell("session");
   if (next.problem) refuseAll(next.problem);
-  else if (again || content(next) !== computedFor) void compute(content(next));
 }
 
 /** What is drawn belongs to older choices: plots are shown as such, and no number stands under a name that it wasn't computed for. */

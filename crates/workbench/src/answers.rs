@@ -2,14 +2,14 @@
 
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
-use bulge_effects::{CardDocument, Catalogue, Effect, Known, known};
-use bulge_inference::{Comparison, Diagnosis, Plan, Protocol, fit_effects};
+use bulge_effects::{CardDocument, Catalogue, Effect, known};
+use bulge_inference::{Comparison, Diagnosis, Fitting, Plan, Protocol};
 use bulge_measurements::written;
-use bulge_muscles::{Muscle, PRESETS, from_toml};
+use bulge_muscles::{PRESETS, Quantity, from_toml};
 use bulge_report::{Learnt, rows};
 use serde::Serialize;
 use std::path::Path;
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 use tokio::sync::oneshot;
 
 use crate::choices::{Choices, ChosenEffect};
@@ -17,8 +17,7 @@ use crate::diagnosis::{self, Listener};
 use crate::folder::Diagnosed;
 use crate::inputs::{Inputs, MUSCLE, With, catalogue};
 use crate::refusal::{Place, Refusal};
-use crate::server::Workbench;
-use crate::surface::{self, State, Surface};
+use crate::server::{Shaped, Workbench};
 use crate::worker::{Question, Worker};
 
 /// What is analysed, at one revision.
@@ -152,51 +151,64 @@ pub(crate) fn muscles() -> Muscles {
     Muscles { muscles: shipped.collect() }
 }
 
-/// The muscle as it was learnt, where effects are on and can be fitted; else as it is stated.
-fn muscle(workbench: &Workbench) -> Result<Arc<(Muscle, Vec<Known>)>, Refusal> {
-    let (revision, toml, own, has_effects) = {
-        let session = workbench.session();
-        let choices = session.choices();
-        (
-            session.revision(),
-            choices.muscle.toml.clone(),
-            choices.own_effects.clone(),
-            !choices.effects.is_empty(),
-        )
-    };
-    let mut last = workbench.shaped.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, found)) = last.as_ref().filter(|(of, _)| *of == revision) {
-        return Ok(Arc::clone(found));
+/// What the muscle of one revision has learnt.
+pub(crate) struct Learning {
+    revision: u64,
+    /// None where nothing is switched on, where it can't be fitted (the ladder says why), or where the muscle of this revision is there already.
+    fitting: Option<Box<Fitting>>,
+}
+
+/// The last rung of the ladder.
+async fn fitting(workbench: &Workbench) -> Result<Learning, Refusal> {
+    let asked = asked(workbench)?;
+    if asked.with.effects.is_empty() {
+        return Err(Refusal::new(Place::Effects, "nothing was learnt yet: switch an effect on"));
     }
-    // What can't be learnt has a shape all the same: the ladder says why it can't.
-    let toml = if has_effects { learnt(workbench).unwrap_or(toml) } else { toml };
+    let found = ask(&workbench.quick, &asked, asked.with.clone(), Question::Fitting).await?;
+    Ok(Learning { revision: asked.revision, fitting: Some(found) })
+}
+
+/// The same for [`muscle`].
+pub(crate) async fn learning(workbench: &Workbench) -> Learning {
+    let revision = workbench.session().revision();
+    if workbench.shaped(revision).is_some() {
+        return Learning { revision, fitting: None };
+    }
+    fitting(workbench).await.unwrap_or(Learning { revision, fitting: None })
+}
+
+/// The muscle with what it has learnt; else as it is stated.
+pub(crate) fn muscle(workbench: &Workbench, learning: Learning) -> Result<Shaped, Refusal> {
+    if let Some(found) = workbench.shaped(learning.revision) {
+        return Ok(found);
+    }
+    let (stated, own) = {
+        let session = workbench.session();
+        (session.choices().muscle.toml.clone(), session.choices().own_effects.clone())
+    };
+    let learnt = learning.fitting.and_then(|fitting| Learnt::of(*fitting).ok());
+    let toml = learnt.map_or(stated, |learnt| learnt.model);
     let muscle = from_toml(&toml, MUSCLE).map_err(Refusal::at(Place::Muscle))?;
     let known = known(&muscle, &catalogue(own.as_deref())?).map_err(Refusal::at(Place::Muscle))?;
     let found = Arc::new((muscle, known));
-    *last = Some((revision, Arc::clone(&found)));
+    workbench.keep_shaped(learning.revision, &found);
     Ok(found)
 }
 
-/// The bulge.
-pub(crate) fn surface(workbench: &Workbench, state: State) -> Result<Surface, Refusal> {
-    let found = muscle(workbench)?;
-    surface::surface(&found.0, &found.1, state)
-}
-
-/// The bulge as a VTK file.
-pub(crate) fn vtp(workbench: &Workbench, state: State) -> Result<Vec<u8>, Refusal> {
-    let found = muscle(workbench)?;
-    surface::vtp(&found.0, &found.1, state)
+/// The fit of the effects that are on.
+pub(crate) async fn learnt(workbench: &Workbench) -> Result<Box<Fitting>, Refusal> {
+    fitting(workbench).await?.fitting.ok_or_else(|| Refusal::new(Place::Effects, "nothing was learnt yet"))
 }
 
 /// The muscle with what was learnt, as `bulge fit` writes it.
-pub(crate) fn learnt(workbench: &Workbench) -> Result<String, Refusal> {
-    let (inputs, options) = workbench.session().options(false)?;
-    if options.effects.is_empty() {
-        return Err(Refusal::new(Place::Effects, "nothing was learnt yet: switch an effect on"));
-    }
-    let fitting = fit_effects(&inputs.data, &inputs.muscle, &options).map_err(Refusal::at(Place::Effects))?;
-    Ok(Learnt::of(fitting).map_err(Refusal::at(Place::Effects))?.model)
+pub(crate) fn model(fitting: Box<Fitting>) -> Result<String, Refusal> {
+    Ok(Learnt::of(*fitting).map_err(Refusal::at(Place::Effects))?.model)
+}
+
+/// The test that the data come from, about.
+pub(crate) fn protocol(workbench: &Workbench) -> Result<Protocol, Refusal> {
+    let inputs = workbench.session().inputs()?;
+    Ok(Protocol::like(&inputs.data, inputs.muscle.length().si()))
 }
 
 /// A protocol as a file, and what it would show of the muscle with what was learnt.
@@ -207,20 +219,19 @@ pub(crate) struct Planned {
 }
 
 /// Before measuring: what a protocol would show.
-pub(crate) fn plan(workbench: &Workbench, protocol: &Protocol) -> Result<Planned, Refusal> {
+pub(crate) fn plan(workbench: &Workbench, shaped: &Shaped, protocol: &Protocol) -> Result<Planned, Refusal> {
     let toml = protocol.to_toml();
     // A file's reader says what is wrong, and what to write instead.
     let protocol = Protocol::from_toml(&toml, "the protocol").map_err(Refusal::at(Place::Plan))?;
-    let found = muscle(workbench)?;
     let catalogue = catalogue(workbench.session().choices().own_effects.as_deref())?;
-    let plan = bulge_inference::plan(&found.0, &found.1, &catalogue, &protocol);
+    let plan = bulge_inference::plan(&shaped.0, &shaped.1, &catalogue, &protocol);
     Ok(Planned { toml, plan: plan.map_err(Refusal::at(Place::Plan))? })
 }
 
 /// Begins a diagnosis.
 pub(crate) fn diagnose(workbench: &Workbench) -> Result<Listener, Refusal> {
     let (inputs, options) = workbench.session().options(true)?;
-    Ok(diagnosis::begin(inputs, options))
+    Ok(diagnosis::begin(inputs, options, workbench.waiting.begin()))
 }
 
 /// Keeps a diagnosis with its report, and tells all pages of it.

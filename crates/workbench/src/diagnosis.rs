@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
+use crate::ahead::Waited;
 use crate::inputs::Inputs;
 use crate::refusal::{Place, Refusal};
 use crate::worker::of_all;
@@ -45,7 +46,7 @@ impl Drop for Listener {
 }
 
 /// Begins a diagnosis; it goes on as long as the listener is there.
-pub(crate) fn begin(inputs: Arc<Inputs>, options: Options) -> Listener {
+pub(crate) fn begin(inputs: Arc<Inputs>, options: Options, waited: Waited) -> Listener {
     let (told, news) = unbounded_channel();
     let given_up = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&given_up);
@@ -55,6 +56,7 @@ pub(crate) fn begin(inputs: Arc<Inputs>, options: Options) -> Listener {
             Ok(found) => News::Found(Box::new(found)),
             Err(refusal) => News::Failed(refusal),
         }));
+        drop(waited);
     });
     Listener { news, given_up }
 }

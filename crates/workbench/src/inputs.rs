@@ -22,6 +22,14 @@ pub(crate) struct With {
     pub(crate) restrictions: Vec<Restriction>,
 }
 
+impl With {
+    /// What tells it from others.
+    pub(crate) fn key(&self) -> String {
+        let names: Vec<&str> = self.effects.iter().map(|effect| effect.card().name).collect();
+        format!("{names:?} {:?}", self.restrictions)
+    }
+}
+
 /// Rows, muscle and catalogue of some choices. Two analyses of the same `Arc` of it differ in their model alone.
 #[derive(Debug)]
 pub(crate) struct Inputs {

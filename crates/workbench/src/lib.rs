@@ -5,13 +5,14 @@
 //! process loses nothing; undo goes back through its steps.
 //!
 //! - `choices`, `session`, `folder`: what was chosen, how it came about, where it is kept,
-//! - `inputs`, `worker`, `diagnosis`: rows, muscle and catalogue, and the threads that compute with them,
+//! - `inputs`, `worker`, `ahead`, `diagnosis`: rows, muscle and catalogue, and the threads that compute with them,
 //! - `answers`, `surface`, `command`: the documents,
 //! - `server`, `stream`, `guard`, `assets`: HTTP, and who may ask.
 //!
 //! Deliberately absent: physics, files of the user (it reads those that are named, and writes into its session's folder alone), any other address than this
 //! machine's.
 
+mod ahead;
 mod answers;
 mod assets;
 mod choices;

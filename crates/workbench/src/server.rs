@@ -18,6 +18,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::io::AsyncWriteExt;
 use tokio::sync::watch;
 
+use crate::ahead::Waiting;
 use crate::answers;
 use crate::assets::asset;
 use crate::choices::ChosenEffect;
@@ -26,6 +27,7 @@ use crate::guard::Guard;
 use crate::refusal::{Place, Refusal};
 use crate::session::Session;
 use crate::stream;
+use crate::surface;
 use crate::worker::Worker;
 
 /// Most bytes of a file of measurements: what the library reads.
@@ -46,10 +48,11 @@ pub(crate) type Shaped = Arc<(Muscle, Vec<Known>)>;
 pub(crate) struct Workbench {
     guard: Guard,
     session: Mutex<Session>,
+    pub(crate) waiting: Waiting,
     pub(crate) quick: Worker,
     pub(crate) held_out: Worker,
     /// The muscle whose shape was asked for last, with the revision that it belongs to.
-    pub(crate) shaped: Mutex<Option<(u64, Shaped)>>,
+    shaped: Mutex<Option<(u64, Shaped)>>,
     pub(crate) revision: watch::Sender<u64>,
     received: AtomicU64,
 }
@@ -57,11 +60,13 @@ pub(crate) struct Workbench {
 impl Workbench {
     pub(crate) fn new(guard: Guard, session: Session) -> Self {
         let revision = watch::Sender::new(session.revision());
+        let waiting = Waiting::default();
         Self {
             guard,
             session: Mutex::new(session),
-            quick: Worker::start(false),
-            held_out: Worker::start(true),
+            quick: Worker::quick(&waiting),
+            held_out: Worker::held_out(&waiting),
+            waiting,
             shaped: Mutex::default(),
             revision,
             received: AtomicU64::new(0),
@@ -71,6 +76,16 @@ impl Workbench {
     /// The session; a thread that panicked leaves a whole one.
     pub(crate) fn session(&self) -> MutexGuard<'_, Session> {
         self.session.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The muscle whose shape was asked for last, if it is the one of this revision.
+    pub(crate) fn shaped(&self, revision: u64) -> Option<Shaped> {
+        let last = self.shaped.lock().unwrap_or_else(PoisonError::into_inner);
+        last.as_ref().filter(|(of, _)| *of == revision).map(|(_, found)| Arc::clone(found))
+    }
+
+    pub(crate) fn keep_shaped(&self, revision: u64, found: &Shaped) {
+        *self.shaped.lock().unwrap_or_else(PoisonError::into_inner) = Some((revision, Arc::clone(found)));
     }
 
     /// Makes a change, tells all pages of it, and answers with the session.
@@ -149,14 +164,21 @@ async fn api(workbench: Arc<Workbench>, call: &str, parts: &Parts, body: Body) -
         ("GET", "muscles") => json(&answers::muscles()),
         ("GET", "shape") => {
             let state = state(&asked)?;
-            blocking(workbench, move |w| json(&answers::surface(&w, state)?)).await
+            let learning = answers::learning(&workbench).await;
+            blocking(workbench, move |w| json(&surface::surface(&answers::muscle(&w, learning)?, state)?))
+                .await
         }
         ("GET", "shape.vtp") => {
             let state = state(&asked)?;
-            let bytes = blocking(workbench, move |w| answers::vtp(&w, state)).await?;
+            let learning = answers::learning(&workbench).await;
+            let bytes =
+                blocking(workbench, move |w| surface::vtp(&answers::muscle(&w, learning)?, state)).await?;
             Ok(([(header::CONTENT_TYPE, "application/xml")], bytes).into_response())
         }
-        ("GET", "learnt.toml") => Ok(blocking(workbench, |w| answers::learnt(&w)).await?.into_response()),
+        ("GET", "learnt.toml") => {
+            let fitting = answers::learnt(&workbench).await?;
+            Ok(blocking(workbench, |_| answers::model(fitting)).await?.into_response())
+        }
         ("GET", "report") => Ok(report(answers::report(&workbench).await?)),
         ("GET", "diagnosis-report") => {
             blocking(workbench, |w| w.session().diagnosis().map(|found| report(found.report))).await
@@ -164,9 +186,14 @@ async fn api(workbench: Arc<Workbench>, call: &str, parts: &Parts, body: Body) -
         ("GET", "diagnosis.json") => {
             blocking(workbench, |w| w.session().diagnosis().map(|found| as_json(found.document))).await
         }
+        ("GET", "protocol") => blocking(workbench, |w| json(&answers::protocol(&w)?)).await,
         ("POST", "plan") => {
             let protocol: Protocol = parsed(body).await?;
-            blocking(workbench, move |w| json(&answers::plan(&w, &protocol)?)).await
+            let learning = answers::learning(&workbench).await;
+            let planned = move |w: Arc<Workbench>| {
+                json(&answers::plan(&w, &answers::muscle(&w, learning)?, &protocol)?)
+            };
+            blocking(workbench, planned).await
         }
         ("POST", "diagnose") => {
             let about = workbench.session().choices().clone();
@@ -266,13 +293,13 @@ fn decoded(text: &str) -> String {
 }
 
 /// Where a shape is looked at.
-fn state(asked: &HashMap<String, String>) -> Result<crate::surface::State, Refusal> {
+fn state(asked: &HashMap<String, String>) -> Result<surface::State, Refusal> {
     let number = |name: &str| {
         let value =
             asked.get(name).and_then(|text| text.parse::<f64>().ok()).filter(|value| value.is_finite());
         value.ok_or_else(|| Refusal::new(Place::Shape, format!("`{name}` must be a number")))
     };
-    Ok(crate::surface::State { pressure_pa: number("pressure_pa")?, contraction: number("contraction")? })
+    Ok(surface::State { pressure_pa: number("pressure_pa")?, contraction: number("contraction")? })
 }
 
 async fn bytes(body: Body) -> Result<Bytes, Refusal> {

@@ -1,6 +1,5 @@
 //! The bulge of a muscle: points, triangles and fields, as VTK files have them.
 
-use bulge_effects::Known;
 use bulge_fibre::{Approach, Given};
 use bulge_model::{Equilibrium, Extended};
 use bulge_muscles::{Muscle, Pressure, Quantity};
@@ -8,6 +7,7 @@ use bulge_vtk::{Bulge, Style, vtp_bytes};
 use serde::Serialize;
 
 use crate::refusal::{Place, Refusal};
+use crate::server::Shaped;
 
 /// Points of a meridian: smooth on any screen.
 const POINTS: usize = 81;
@@ -46,8 +46,8 @@ pub(crate) struct Surface {
 }
 
 /// The equilibrium of a muscle with what its file states.
-fn equilibrium(muscle: &Muscle, known: &[Known], state: State) -> Result<(Muscle, Equilibrium), Refusal> {
-    let extended = Extended::new(muscle, known).map_err(Refusal::at(Place::Shape))?;
+fn equilibrium(shaped: &Shaped, state: State) -> Result<(Muscle, Equilibrium), Refusal> {
+    let extended = Extended::new(&shaped.0, &shaped.1).map_err(Refusal::at(Place::Shape))?;
     let given = Given::Contraction(state.contraction);
     let pressure = Pressure::from_si(state.pressure_pa);
     let found = Equilibrium::new(&extended, pressure, given, Approach::Auto, POINTS);
@@ -55,8 +55,8 @@ fn equilibrium(muscle: &Muscle, known: &[Known], state: State) -> Result<(Muscle
 }
 
 /// The surface for the page.
-pub(crate) fn surface(muscle: &Muscle, known: &[Known], state: State) -> Result<Surface, Refusal> {
-    let (muscle, found) = equilibrium(muscle, known, state)?;
+pub(crate) fn surface(shaped: &Shaped, state: State) -> Result<Surface, Refusal> {
+    let (muscle, found) = equilibrium(shaped, state)?;
     let shape = &found.shape;
     let mesh = Bulge::of(&muscle, shape, Style::natural(&muscle, shape, None))
         .mesh()
@@ -93,8 +93,8 @@ fn short(values: &[f64]) -> Vec<f32> {
 }
 
 /// The same as a VTK file.
-pub(crate) fn vtp(muscle: &Muscle, known: &[Known], state: State) -> Result<Vec<u8>, Refusal> {
-    let (muscle, found) = equilibrium(muscle, known, state)?;
+pub(crate) fn vtp(shaped: &Shaped, state: State) -> Result<Vec<u8>, Refusal> {
+    let (muscle, found) = equilibrium(shaped, state)?;
     let shape = &found.shape;
     vtp_bytes(&Bulge::of(&muscle, shape, Style::natural(&muscle, shape, None)))
         .map_err(Refusal::at(Place::Shape))

@@ -2,7 +2,7 @@
 //!
 //! A question that nobody waits for any more is passed over, so that the last one asked is answered first.
 
-use bulge_inference::{Comparing, Comparison, Rows};
+use bulge_inference::{Comparing, Comparison, Fitting, Options, Rows};
 use rayon::ThreadPoolBuilder;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -10,6 +10,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use tokio::sync::oneshot;
 
+use crate::ahead::{self, Waiting, Wish};
 use crate::inputs::{Inputs, With};
 use crate::refusal::{Place, Refusal};
 
@@ -25,6 +26,8 @@ pub(crate) enum Question {
     Unsuitable(oneshot::Sender<Result<Vec<Option<String>>, Refusal>>),
     /// To be ready for the questions that may follow.
     Prepared(oneshot::Sender<Result<(), Refusal>>),
+    /// The last rung.
+    Fitting(oneshot::Sender<Result<Box<Fitting>, Refusal>>),
 }
 
 impl Question {
@@ -35,6 +38,7 @@ impl Question {
             Self::Report(to) => to.is_closed(),
             Self::Unsuitable(to) => to.is_closed(),
             Self::Prepared(to) => to.is_closed(),
+            Self::Fitting(to) => to.is_closed(),
         }
     }
 
@@ -47,6 +51,7 @@ impl Question {
             Self::Report(to) => drop(to.send(Err(refusal))),
             Self::Unsuitable(to) => drop(to.send(Err(refusal))),
             Self::Prepared(to) => drop(to.send(Err(refusal))),
+            Self::Fitting(to) => drop(to.send(Err(refusal))),
         }
     }
 
@@ -67,8 +72,12 @@ impl Question {
                 };
                 drop(to.send(of_all(|| both().map_err(&refused))));
             }
-            Self::Prepared(to) => {
-                drop(to.send(of_all(|| comparing.with(effects, restrictions).map(drop).map_err(&refused))));
+            // Only the one that fits ahead gets ready.
+            Self::Prepared(to) => drop(to.send(Ok(()))),
+            Self::Fitting(to) => {
+                let found =
+                    of_all(|| comparing.fitting(effects, restrictions).map(Box::new).map_err(&refused));
+                drop(to.send(found));
             }
             Self::Unsuitable(to) => {
                 drop(to.send(of_all(|| {
@@ -98,17 +107,26 @@ struct Task {
 pub(crate) struct Worker(Sender<Task>);
 
 impl Worker {
-    /// Starts it; `held_out`: whether it computes errors on held-out data.
-    pub(crate) fn start(held_out: bool) -> Self {
-        let (tasks, waiting) = channel();
+    /// Starts the one that answers at once, and fits ahead while a person waits for nothing.
+    pub(crate) fn quick(waiting: &Waiting) -> Self {
+        let (tasks, asked) = channel();
+        let waiting = waiting.clone();
+        thread::spawn(move || each_inputs(&asked, |task| quickly(task, &asked, &waiting)));
+        Self(tasks)
+    }
+
+    /// Starts the one that computes errors on held-out data.
+    pub(crate) fn held_out(waiting: &Waiting) -> Self {
+        let (tasks, asked) = channel();
+        let waiting = waiting.clone();
         thread::spawn(move || {
+            let work = move || each_inputs(&asked, |task| with_held_out(task, &asked, &waiting));
             // Held-out errors take long: they leave half of the cores to what a person waits for.
             let half = thread::available_parallelism().map_or(1, |cores| cores.get().div_ceil(2));
-            let apart = held_out.then(|| ThreadPoolBuilder::new().num_threads(half).build());
-            match apart {
-                Some(Ok(pool)) => pool.install(move || work(&waiting, held_out)),
+            match ThreadPoolBuilder::new().num_threads(half).build() {
+                Ok(pool) => pool.install(work),
                 // Without threads of its own it works on those of all.
-                _ => work(&waiting, held_out),
+                Err(_) => work(),
             }
         });
         Self(tasks)
@@ -121,37 +139,80 @@ impl Worker {
     }
 }
 
-fn work(waiting: &Receiver<Task>, held_out: bool) {
+/// Works on questions about the same inputs, then on those about the next ones.
+fn each_inputs(asked: &Receiver<Task>, work: impl Fn(Task) -> Option<Task>) {
     let mut first = None;
-    while let Some(task) = first.take().or_else(|| waiting.recv().ok()) {
+    while let Some(task) = first.take().or_else(|| asked.recv().ok()) {
         if !task.question.is_given_up() {
-            first = work_on(task, waiting, held_out);
+            first = work(task);
         }
     }
 }
 
-/// Answers as long as the questions are about the same inputs; returns the first that isn't.
-fn work_on(task: Task, waiting: &Receiver<Task>, held_out: bool) -> Option<Task> {
-    let inputs = Arc::clone(&task.inputs);
-    let options = inputs.options(With::default(), held_out);
-    let begun =
-        of_all(|| Comparing::new(&inputs.data, &inputs.muscle, &options).map_err(Refusal::at(Place::Data)));
-    let comparing = match begun {
-        Ok(comparing) => comparing,
+/// What is compared with the inputs of a task; one that can't be compared refuses it.
+fn begun<'a>(
+    task: Task,
+    inputs: &'a Inputs,
+    options: &'a Options,
+    waiting: &Waiting,
+) -> Result<(Comparing<'a>, Task), ()> {
+    let _waited = waiting.begin();
+    let comparing =
+        of_all(|| Comparing::new(&inputs.data, &inputs.muscle, options).map_err(Refusal::at(Place::Data)));
+    match comparing {
+        Ok(comparing) => Ok((comparing, task)),
         Err(refusal) => {
             task.question.refuse(refusal);
-            return None;
+            Err(())
         }
-    };
-    task.question.answer(&comparing, &task.with);
-    while let Ok(task) = waiting.recv() {
-        if task.question.is_given_up() {
-            continue;
-        }
-        if !Arc::ptr_eq(&task.inputs, &inputs) {
-            return Some(task);
-        }
-        task.question.answer(&comparing, &task.with);
     }
-    None
+}
+
+fn with_held_out(task: Task, asked: &Receiver<Task>, waiting: &Waiting) -> Option<Task> {
+    let inputs = Arc::clone(&task.inputs);
+    let options = inputs.options(With::default(), true);
+    let (comparing, task) = begun(task, &inputs, &options, waiting).ok()?;
+    answered(task, asked, |Task { with, question, .. }| {
+        let _waited = waiting.begin();
+        question.answer(&comparing, &with);
+    })
+}
+
+fn quickly(task: Task, asked: &Receiver<Task>, waiting: &Waiting) -> Option<Task> {
+    let inputs = Arc::clone(&task.inputs);
+    let options = inputs.options(With::default(), false);
+    let (comparing, task) = begun(task, &inputs, &options, waiting).ok()?;
+    thread::scope(|threads| {
+        // It goes when the last answer is given: then nothing is fitted ahead any more.
+        let (ahead, wishes) = channel();
+        let (comparing, catalogue) = (&comparing, &inputs.catalogue);
+        threads.spawn(move || ahead::work(comparing, catalogue, waiting, &wishes));
+        let wish = |wish: Wish| drop(ahead.send(wish));
+        answered(task, asked, |Task { with, question, .. }| match question {
+            Question::Prepared(told) => wish(Wish::One(with, told)),
+            question => {
+                let is_model = matches!(question, Question::Comparison(_));
+                let waited = waiting.begin_with(&with);
+                question.answer(comparing, &with);
+                drop(waited);
+                if is_model {
+                    wish(Wish::After(with));
+                }
+            }
+        })
+    })
+}
+
+/// Answers as long as the questions are about the same inputs; returns the first that isn't.
+fn answered(mut task: Task, asked: &Receiver<Task>, answer: impl Fn(Task)) -> Option<Task> {
+    let inputs = Arc::clone(&task.inputs);
+    loop {
+        if !task.question.is_given_up() {
+            if !Arc::ptr_eq(&task.inputs, &inputs) {
+                return Some(task);
+            }
+            answer(task);
+        }
+        task = asked.recv().ok()?;
+    }
 }

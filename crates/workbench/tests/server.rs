@@ -13,7 +13,7 @@ mod schema;
 use bulge_effects::{Catalogue, known};
 use bulge_inference::{Options, Protocol, compare};
 use bulge_measurements::Data;
-use bulge_muscles::{Muscle, from_toml};
+use bulge_muscles::{Muscle, Quantity, from_toml};
 use bulge_workbench::{Choices, DataFile, MuscleFile, Start, serve};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -313,6 +313,9 @@ fn a_plan_is_that_of_the_library() {
     };
     assert_eq!(stated["plan"], by_library(&muscle));
     assert_eq!(stated["plan"]["rows"], 2 * 80 + 2 * 30);
+    let data = Data::from_csv(DATA, "loops.csv").unwrap();
+    let like = Protocol::like(&data, muscle.length().si());
+    assert_eq!(page.get("protocol").json(), serde_json::to_value(&like).unwrap());
     page.put(&effects(&["coulomb-friction"]));
     let learnt = String::from_utf8(page.get("learnt.toml").body).unwrap();
     let found = plan(&asked).json();

@@ -4,8 +4,10 @@
 
 mod pages;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// What each crate may import of ours, by folder name.
 const MAY_IMPORT: &[(&str, &[&str])] = &[
@@ -227,6 +229,32 @@ fn sources_are_tidy() {
         })
         .collect();
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+/// Each package in the build of some crates, with its features.
+fn built(of: &[&str]) -> BTreeSet<String> {
+    let edges = ["-e", "normal,build,dev", "--prefix", "none", "-f", "{p} {f}", "--manifest-path"];
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--quiet"])
+        .args(of)
+        .args(edges)
+        .arg(root().join("Cargo.toml"))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines().map(|line| line.trim_end_matches(" (*)").to_owned()).collect()
+}
+
+/// Else the tests of the Python package would compile for minutes what the tests of the workspace have compiled with more features.
+#[test]
+fn a_wheel_is_made_of_what_the_tests_have_built() {
+    let (all, wheel) = (built(&["--workspace"]), built(&["-p", "bulge-python"]));
+    let anew: Vec<_> = wheel.difference(&all).collect();
+    assert!(
+        !wheel.is_empty() && anew.is_empty(),
+        "state in crates/python/Cargo.toml the features of {anew:?}"
+    );
 }
 
 /// A list with a hole or a misspelt name would allow what it should forbid.

@@ -48,6 +48,29 @@ fn limits_are_those_of_an_estimate_by_hand() {
 }
 
 #[test]
+fn a_test_like_the_one_that_was_made_is_written_as_a_protocol() {
+    let folder = Folder::new("plan-like");
+    let (data, out) =
+        (concat!(env!("CARGO_MANIFEST_DIR"), "/data/braid-loops.csv"), folder.path("like.toml"));
+    let arguments = ["plan", "--muscle", MUSCLE, "--like", data, "--out", &out, "--json"];
+    let plan = json(&arguments);
+    assert_eq!((plan["rows"].as_u64(), plan["sweeps"].as_u64()), (Some(750), Some(5)));
+    assert_eq!(json(&["plan", "--muscle", MUSCLE, "--protocol", &out, "--json"]), plan);
+    let written = fs::read_to_string(&out).unwrap();
+    for part in [
+        "pressures = [\"2 bar\", \"3 bar\", \"4 bar\", \"5 bar\", \"6 bar\"]",
+        "cycles = 3",
+        "wave = \"sine\"",
+    ] {
+        assert!(written.contains(part), "{part:?} is not in {written}");
+    }
+    let (_, says) = failure(&["plan", "--muscle", MUSCLE, "--like", data, "--out", data]);
+    assert!(says.contains("the data file, which is read"), "{says}");
+    let (_, says) = failure(&["plan", "--muscle", MUSCLE]);
+    assert!(says.contains("--protocol"), "{says}");
+}
+
+#[test]
 fn effects_that_look_alike_are_named() {
     let arguments = ["plan", "--muscle", MUSCLE, "--protocol", PROTOCOL];
     let plan = json(&[&arguments[..], &["--json"]].concat());

@@ -4,12 +4,12 @@ use bulge_effects::Effect;
 use bulge_measurements::{Data, Finding, QualityOptions};
 use bulge_model::{Model, ModelError, Restriction};
 use bulge_muscles::{Muscle, Quantity};
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use crate::comparison::analysis::{Analysis, Climbed};
 use crate::comparison::document::{Comparison, DataSummary, NoiseFloor, Rung};
 use crate::comparison::options::Options;
+use crate::comparison::recent::Recent;
 use crate::comparison::row_by_row::Rows;
 use crate::comparison::specimens::note;
 use crate::comparison::warnings::without_state;
@@ -58,13 +58,17 @@ pub struct Comparing<'a> {
     quality: Vec<Finding>,
     base: Arc<Step>,
     /// By the effects up to each, in their order, with what is stated of their numbers.
-    steps: Known<Step>,
+    steps: Recent<Step>,
     /// What was answered, by the same.
-    answers: Known<Comparison>,
+    answers: Recent<Comparison>,
 }
 
-/// Rungs and answers that are kept at most: each rung holds the force of every row.
-const MOST_STEPS: usize = 64;
+/// Rungs and answers that are kept at most: some changes for each effect of the catalogue.
+const MOST_KEPT: usize = 256;
+/// Forces of rows that they may hold: a rung holds that of every row, an answer about as much. 256 MB.
+const MOST_FORCES: usize = 1 << 25;
+/// Rungs that are kept of the longest record: a ladder.
+const FEWEST_KEPT: usize = 12;
 
 /// By what rungs and answers are known: each effect with what is stated of its numbers, in their order.
 fn key(effects: &[Arc<dyn Effect>], restrictions: &[Restriction]) -> Vec<String> {
@@ -74,22 +78,6 @@ fn key(effects: &[Arc<dyn Effect>], restrictions: &[Restriction]) -> Vec<String>
         if own.is_empty() { name.to_owned() } else { format!("{name} {own:?}") }
     };
     effects.iter().map(one).collect()
-}
-
-type Known<T> = Mutex<HashMap<Vec<String>, Arc<T>>>;
-
-fn locked<T>(known: &Known<T>) -> MutexGuard<'_, HashMap<Vec<String>, Arc<T>>> {
-    // A thread that panicked leaves whole entries.
-    known.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Keeps something for the next question. Of what leads elsewhere some goes when there is too much: memory doesn't grow with the number of questions.
-fn keep<T>(known: &Known<T>, key: &[String], found: &Arc<T>) {
-    let mut known = locked(known);
-    if known.len() >= MOST_STEPS {
-        known.retain(|other, _| key.starts_with(other));
-    }
-    known.insert(key.to_vec(), Arc::clone(found));
 }
 
 /// A rung with what it predicts.
@@ -134,7 +122,9 @@ impl<'a> Comparing<'a> {
         let climbed = if first.fit.is_some() { analysis.climb(0, Some(&first))? } else { first };
         let base = Arc::new(Step { rung: analysis.rung(0, &climbed), climbed });
         let quality = quality(&analysis.data, analysis.muscle);
-        Ok(Self { analysis, floor, quality, base, steps: Mutex::default(), answers: Mutex::default() })
+        let most = (MOST_FORCES / analysis.record.len()).clamp(FEWEST_KEPT, MOST_KEPT);
+        let (steps, answers) = (Recent::new(most), Recent::new(most));
+        Ok(Self { analysis, floor, quality, base, steps, answers })
     }
 
     /// Compares with these effects, in this order, instead of those of the options; numbers are restricted by these statements beside those of the options.
@@ -149,15 +139,11 @@ impl<'a> Comparing<'a> {
         if let Some(options) = self.of_other_base(effects, restrictions) {
             return rayon::scope(|_| self.begun_with(&options)?.asked());
         }
-        let key = key(effects, restrictions);
-        let known = locked(&self.answers).get(&key).map(Arc::clone);
-        if let Some(known) = known {
-            return Ok(Comparison::clone(&known));
-        }
-        let analysis = self.analysis.with_effects(effects, restrictions)?;
-        let found = rayon::scope(|_| self.compared(&analysis, restrictions, true))?;
-        keep(&self.answers, &key, &Arc::new(found.clone()));
-        Ok(found)
+        let found = self.answers.of(&key(effects, restrictions), || {
+            let analysis = self.analysis.with_effects(effects, restrictions)?;
+            rayon::scope(|_| self.compared(&analysis, restrictions, true))
+        })?;
+        Ok(Comparison::clone(&found))
     }
 
     /// The options of a comparison whose base isn't this one's: a statement is about one of its numbers, say an error of the rig that is fitted along.
@@ -225,6 +211,49 @@ impl<'a> Comparing<'a> {
         })
     }
 
+    /// The last rung alone, as [`fit_effects`] answers with these effects and restrictions.
+    ///
+    /// # Errors
+    /// As [`compare`].
+    pub fn fitting(
+        &self,
+        effects: &[Arc<dyn Effect>],
+        restrictions: &[Restriction],
+    ) -> Result<Fitting, InferenceError> {
+        rayon::scope(|_| match self.of_other_base(effects, restrictions) {
+            Some(options) => {
+                let other = self.begun_with(&options)?;
+                other.fitted(&other.analysis, &[], false)
+            }
+            None => self.fitted(&self.analysis.with_effects(effects, restrictions)?, restrictions, true),
+        })
+    }
+
+    fn fitted(
+        &self,
+        analysis: &Analysis<'_>,
+        restrictions: &[Restriction],
+        again: bool,
+    ) -> Result<Fitting, InferenceError> {
+        let ladder = self.ladder(analysis, restrictions, again)?;
+        let (base, last) = (&self.base, &ladder[ladder.len() - 1]);
+        let Climbed { prepared, theta, fit, force, failed } = &last.climbed;
+        let mut fit = fit.clone().unwrap_or_else(|| nothing_fitted(analysis, theta.clone(), force));
+        fit.warnings.extend(failed.as_ref().map(|error| not_fitted("the fit", error)));
+        fit.warnings.extend(last.rung.without_state.as_ref().map(|left| without_state("the fit", left)));
+        fit.warnings.extend(note(&analysis.data, analysis.muscle));
+        fit.warnings.splice(0..0, analysis.findings.iter().map(ToString::to_string));
+        Ok(Fitting {
+            held: held(&prepared.model, &fit.theta),
+            model: prepared.model.clone(),
+            fit,
+            data: analysis.summary(),
+            before_rmse_n: base.rung.rmse_n,
+            rmse_n: last.rung.rmse_n,
+            noise_floor: self.floor.clone(),
+        })
+    }
+
     /// The rows with the force of the base and the last rung, or of all rungs.
     fn rungs(
         &self,
@@ -280,15 +309,7 @@ impl<'a> Comparing<'a> {
         again: bool,
         climb: impl FnOnce() -> Result<Step, InferenceError>,
     ) -> Result<Arc<Step>, InferenceError> {
-        let known = locked(&self.steps).get(key).map(Arc::clone);
-        if let Some(known) = known {
-            return Ok(known);
-        }
-        let step = Arc::new(climb()?);
-        if again {
-            keep(&self.steps, key, &step);
-        }
-        Ok(step)
+        if again { self.steps.of(key, climb) } else { Ok(Arc::new(climb()?)) }
     }
 
     fn compared(
@@ -374,37 +395,15 @@ pub struct Fitting {
     pub noise_floor: Option<NoiseFloor>,
 }
 
-/// Fits the effects to the data, without the ladder.
+/// Fits the effects to the data: the last rung of the ladder of [`compare`], without held-out errors and what else stands beside it.
 ///
 /// # Errors
 /// As [`compare`].
 pub fn fit_effects(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
-    rayon::scope(|_| fitted(data, muscle, options))
-}
-
-fn fitted(data: &Data, muscle: &Muscle, options: &Options) -> Result<Fitting, InferenceError> {
-    let mut analysis = Analysis::new(data, muscle, options)?;
-    analysis.ask()?;
-    let base = analysis.climb(0, None)?;
-    let noise_floor = analysis.measure_noise(&base);
-    analysis.bound_tails(&base);
-    let climbed = analysis.climb(options.effects.len(), None)?;
-    let rmse_n = residuals::summary(&analysis, &climbed.force).rmse;
-    let left = analysis.without_state(&climbed);
-    let Climbed { prepared, theta, fit, force, failed } = climbed;
-    let mut fit = fit.unwrap_or_else(|| nothing_fitted(&analysis, theta, &force));
-    fit.warnings.extend(failed.map(|error| not_fitted("the fit", &error)));
-    fit.warnings.extend(left.map(|left| without_state("the fit", &left)));
-    fit.warnings.extend(note(&analysis.data, muscle));
-    fit.warnings.splice(0..0, analysis.findings.iter().map(ToString::to_string));
-    Ok(Fitting {
-        held: held(&prepared.model, &fit.theta),
-        model: prepared.model,
-        fit,
-        data: analysis.summary(),
-        before_rmse_n: residuals::summary(&analysis, &base.force).rmse,
-        rmse_n,
-        noise_floor,
+    let options = Options { held_out: false, ..options.clone() };
+    rayon::scope(|_| {
+        let comparing = Comparing::of(Analysis::new(data, muscle, &options)?)?;
+        comparing.fitted(&comparing.analysis, &[], false)
     })
 }
 

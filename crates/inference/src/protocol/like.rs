@@ -1,0 +1,226 @@
+//! The test that some measurements come from, about: what its sweeps held, and what they went over.
+
+use bulge_measurements::{Data, History, Sweep, SweepKind};
+use bulge_muscles::units::rounded;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use crate::protocol::bench::{Block, Path, Protocol};
+
+/// Levels of a block: of many that were measured those that are spread over their range.
+const MOST_LEVELS: usize = 8;
+/// Rows of a cycle.
+const ROWS: Range<f64> = 8.0..1000.0;
+/// Part of the range of all within which levels, and ends of ranges, are alike.
+const ALIKE: f64 = 0.05;
+/// The mean rate of a sine is 2/pi of its largest, that of a triangle all of it: what lies below their middle is a sine.
+const EVEN: f64 = 0.82;
+/// Time of a cycle where none was measured \[s\].
+const USUAL_PERIOD: f64 = 60.0;
+
+/// What one sweep does.
+struct Moved {
+    pressure: [f64; 2],
+    contraction: [f64; 2],
+    rows: usize,
+    seconds: f64,
+    /// Ways to or fro.
+    ways: usize,
+    /// The mean rate by the largest; none if it isn't known.
+    evenness: Option<f64>,
+}
+
+fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+}
+
+fn ends_of(ranges: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
+    [ends(ranges.clone().map(|range| range[0]))[0], ends(ranges.map(|range| range[1]))[1]]
+}
+
+fn width([low, high]: [f64; 2]) -> f64 {
+    (high - low).max(0.0)
+}
+
+fn middle([low, high]: [f64; 2]) -> f64 {
+    f64::midpoint(low, high)
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+impl Moved {
+    fn of(sweep: &Sweep, (pressure, contraction): (&[f64], &[f64]), history: &History) -> Self {
+        let rows = sweep.rows.clone();
+        let of = |values: &[f64]| ends(values[rows.clone()].iter().copied());
+        let ways = rows.clone().map(|row| history.approach[row]).filter(|way| *way != 0.0);
+        let turns = ways.clone().zip(ways.skip(1)).filter(|(a, b)| a * b < 0.0).count();
+        let mut rates: Vec<f64> = rows.clone().map(|row| history.rate[row].abs()).collect();
+        rates.sort_by(f64::total_cmp);
+        let largest = rates.get(rates.len() * 19 / 20).copied().unwrap_or(0.0);
+        Self {
+            pressure: of(pressure),
+            contraction: of(contraction),
+            rows: rows.len(),
+            seconds: width(of(&history.time)),
+            ways: turns + 1,
+            evenness: (largest > 0.0).then(|| rates.iter().sum::<f64>() / rates.len() as f64 / largest),
+        }
+    }
+}
+
+/// Values that differ, in ascending order, as a person would set them; of many those that are spread over their range.
+fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    let (Some(first), Some(last)) = (sorted.first(), sorted.last()) else { return Vec::new() };
+    let apart = ALIKE * (last - first).max(ALIKE * last.abs());
+    let mut groups: Vec<Vec<f64>> = vec![vec![*first]];
+    for value in &sorted[1..] {
+        match groups.last_mut() {
+            Some(group) if value - group[0] <= apart => group.push(*value),
+            _ => groups.push(vec![*value]),
+        }
+    }
+    let means: Vec<f64> =
+        groups.iter().map(|group| rounded(group.iter().sum::<f64>() / group.len() as f64, 2)).collect();
+    if means.len() <= MOST_LEVELS {
+        return means;
+    }
+    (0..MOST_LEVELS).map(|place| means[place * (means.len() - 1) / (MOST_LEVELS - 1)]).collect()
+}
+
+/// Ends as a person would set them, of contractions to a hundredth of a percent.
+fn contractions(range: [f64; 2]) -> [f64; 2] {
+    range.map(|value| (value * 1e4).round() / 1e4)
+}
+
+fn pressures(range: [f64; 2]) -> Vec<f64> {
+    range.map(|value| rounded(value.max(1e3), 2)).to_vec()
+}
+
+/// A count that lies in a range.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to small numbers")]
+fn count(value: f64, range: Range<f64>) -> u32 {
+    value.round().clamp(range.start, range.end) as u32
+}
+
+/// A block moves as most of its sweeps do.
+fn moving(block: Block, sweeps: &[&Moved], kept: usize) -> Block {
+    let of = |value: &dyn Fn(&Moved) -> f64| median(sweeps.iter().map(|sweep| value(sweep))).unwrap_or(0.0);
+    // To and fro is one cycle; of a single way the other one is added.
+    let cycles = count(of(&|sweep| sweep.ways as f64 / 2.0), 1.0..1e4);
+    let period = of(&|sweep| 2.0 * sweep.seconds / sweep.ways as f64);
+    let evenness = median(sweeps.iter().filter_map(|sweep| sweep.evenness));
+    Block {
+        path: if evenness.is_some_and(|evenness| evenness < EVEN) { Path::Sine } else { Path::Triangle },
+        cycles,
+        period_s: if period > 0.0 { rounded(period, 2) } else { USUAL_PERIOD },
+        rows: count(of(&|sweep| 2.0 * sweep.rows as f64 / sweep.ways as f64), ROWS),
+        repeats: count(sweeps.len() as f64 / kept.max(1) as f64, 1.0..1e4),
+        ..block
+    }
+}
+
+impl Protocol {
+    /// The test that some measurements come from, about, of one specimen and without noise: sweeps that hold the same pressures over the same range are one
+    /// block, as are those that hold their length. Numbers are rounded to what a person would set. `l0` is the length of the unpressurised muscle \[m\].
+    ///
+    /// Loops under a held load are taken for loops at the pressures that they go over: a protocol holds pressures or lengths. A static map without time is one,
+    /// with as many contractions at each pressure as were read on average. Without a row there is no block.
+    #[must_use]
+    pub fn like(data: &Data, l0: f64) -> Self {
+        let (pressure, contraction, history) = (data.pressure(), data.contraction(l0), data.history(l0));
+        let specimens = data.specimens().len().max(1);
+        if data.is_empty() {
+            return Self::new(Vec::new());
+        }
+        if !data.is_path() {
+            let at = levels(pressure.iter().copied().filter(|p| *p > 0.0));
+            let each = data.len() as f64 / (at.len().max(1) * specimens) as f64;
+            let range = contractions(ends(contraction.iter().copied()));
+            let map = Block::map(at, range, count(each, 2.0..ROWS.end));
+            return Self::new(vec![map]);
+        }
+        let moved = |sweep: &Sweep| Moved::of(sweep, (pressure, &contraction), &history);
+        let of_first = data.sweeps().iter().filter(|sweep| sweep.specimen == data.sweeps()[0].specimen);
+        let (held, other): (Vec<_>, Vec<_>) = of_first
+            .map(|sweep| (sweep.kind, moved(sweep)))
+            .partition(|(kind, _)| *kind == SweepKind::Isometric);
+        let mut blocks = Vec::new();
+        let all = ends_of(other.iter().map(|(_, sweep)| sweep.contraction));
+        // By the ends of the range, in steps that are alike.
+        let mut alike: BTreeMap<Vec<i64>, Vec<&Moved>> = BTreeMap::new();
+        let mut under_load: Vec<&Moved> = Vec::new();
+        for (kind, sweep) in &other {
+            if *kind == SweepKind::Isotonic {
+                under_load.push(sweep);
+                continue;
+            }
+            #[expect(clippy::cast_possible_truncation, reason = "small")]
+            let step = |value: f64| (value / (ALIKE * width(all)).max(1e-4)).round() as i64;
+            alike.entry(sweep.contraction.map(step).to_vec()).or_default().push(sweep);
+        }
+        if alike.len() > MOST_LEVELS {
+            // No two are alike: as one.
+            alike = BTreeMap::from([(Vec::new(), alike.into_values().flatten().collect())]);
+        }
+        for sweeps in alike.into_values() {
+            let at = levels(sweeps.iter().map(|sweep| middle(sweep.pressure)).filter(|p| *p > 0.0));
+            let kept = at.len();
+            let range = contractions(ends_of(sweeps.iter().map(|sweep| sweep.contraction)));
+            blocks.push(moving(Block::loops(at, range, USUAL_PERIOD), &sweeps, kept));
+        }
+        if !under_load.is_empty() {
+            let [low, high] = ends_of(under_load.iter().map(|sweep| sweep.pressure));
+            let at = levels([low, f64::midpoint(low, high), high].into_iter().filter(|p| *p > 0.0));
+            let range = contractions(ends_of(under_load.iter().map(|sweep| sweep.contraction)));
+            blocks.push(moving(Block::loops(at, range, USUAL_PERIOD), &under_load, under_load.len()));
+        }
+        if !held.is_empty() {
+            let sweeps: Vec<&Moved> = held.iter().map(|(_, sweep)| sweep).collect();
+            let at = levels(sweeps.iter().map(|sweep| middle(sweep.contraction)));
+            let kept = at.len();
+            let [low, high] = ends_of(sweeps.iter().map(|sweep| sweep.pressure));
+            let range = pressures([low, high]);
+            let block = Block::isometric([range[0], range[1]], at, USUAL_PERIOD);
+            blocks.push(moving(block, &sweeps, kept));
+        }
+        blocks.retain(|block| !block.pressures_pa.is_empty());
+        Self::new(blocks)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::simulation::simulate;
+    use bulge_model::Model;
+    use bulge_muscles::{Quantity, preset};
+
+    /// What is measured in a test, read as a file.
+    fn again(blocks: Vec<Block>) -> Vec<Block> {
+        let muscle = preset("dmsp-20-250").unwrap();
+        let found = simulate(&Model::new(&muscle), &[], &Protocol::new(blocks), 7).unwrap();
+        Protocol::like(&found.data, muscle.length().si()).blocks
+    }
+
+    #[test]
+    fn a_test_is_found_again_in_what_it_measures() {
+        let loops = Block { cycles: 2, ..Block::loops(vec![2e5, 4e5], [0.01, 0.15], 50.0) };
+        let sine = Block { path: Path::Sine, repeats: 3, ..Block::loops(vec![3e5], [0.0, 0.1], 20.0) };
+        for blocks in [
+            vec![loops.clone()],
+            vec![sine.clone()],
+            vec![Block::isometric([1e5, 5e5], vec![0.02, 0.1], 30.0)],
+            vec![Block::map(vec![1e5, 2e5, 3e5], [0.0, 0.2], 12)],
+        ] {
+            assert_eq!(again(blocks.clone()), blocks);
+        }
+        let both = again(vec![loops.clone(), sine.clone()]);
+        assert!(both.contains(&loops) && both.contains(&sine), "{both:?}");
+    }
+}
