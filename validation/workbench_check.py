@@ -322,6 +322,17 @@ class Story:
         self.measured(f"{name}: of it drawing", page.run("return performance.getEntriesByName('draw').map((m) => m.duration)"))
         page.settle()
 
+    def time_held_out(self, name, limit):
+        """From the click to the error on held-out data, for some effects that are there already and one more."""
+        page = self.page
+        page.run("performance.clearMeasures('held-out')")
+        for effect in page.run("return [...document.querySelectorAll('#catalogue [role=switch]:not(:disabled)[aria-checked=false]')].slice(-3).map((s) => s.dataset.effect)"):
+            for _ in ("on", "off"):
+                page.press(f"#catalogue [role=switch][data-effect={effect}]")
+                page.is_ready()
+                page.settle()
+        self.measured(name, page.run("return performance.getEntriesByName('held-out').map((m) => m.duration)"), limit)
+
     def look_closely(self):
         page = self.page
         page.click("[data-tool=rectangle]")
@@ -465,6 +476,7 @@ class Story:
             page.shot(folder / "workbench-many.png")
         self.time_switches("a switch at 1e5 rows, at once", 6, None, 0)
         self.time_switches("a switch at 1e5 rows", 6, 1000, 60, 1)
+        self.time_held_out("the error on held-out data at 1e5 rows, from the click", 5000)
 
     def table(self):
         print("\n| what | median [ms] | 95 % [ms] | times | to reach [ms] |\n|---|---|---|---|---|")
@@ -536,6 +548,7 @@ def play(page, checks, arguments, address, folder):
         story.part(what, part)
     story.part("switches are timed", lambda: story.time_switches("a switch at once", 10, None, 0))
     story.part("switches are timed after reading", lambda: story.time_switches("a switch", arguments.switches, 100, 15, 1))
+    story.part("held-out errors are timed", lambda: story.time_held_out("the error on held-out data, from the click", 1000))
     checks.check("all controls have names", page.run(NAMELESS))
     story.part("pictures", lambda: story.pictures(arguments.pictures))
     if arguments.big:

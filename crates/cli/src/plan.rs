@@ -85,7 +85,9 @@ impl PlanCommand {
         }
         if let Some(path) = &self.like {
             let data = Data::read_with(&[path], &read_options(muscle, None)?)?;
-            return Ok(Protocol::like(&data, muscle.length().si()));
+            let like = Protocol::like(&data, muscle.length().si());
+            // As it is read again from a file.
+            return Ok(Protocol::from_toml(&like.to_toml(), "the test of these data")?);
         }
         // The one or the other is there: the parser of the command line sees to it.
         Ok(Protocol::read(self.protocol.as_deref().unwrap_or(Path::new("")))?)

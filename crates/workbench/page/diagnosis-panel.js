@@ -1,7 +1,7 @@
 // @ts-check
 // Diagnose: a run with its progress, then the verdict as an offer. A preview switches the plots to a claim until it is kept or discarded.
 
-import { diagnose, get, isAborted } from "./api.js";
+import { diagnose, get, isAborted, Lost } from "./api.js";
 import { byId, button, fill, h, keepingFocus } from "./dom.js";
 import { notice } from "./notices.js";
 import { drawInPlan } from "./plan-panel.js";
@@ -29,6 +29,7 @@ let progress = { share: 0, what: "" };
 /** Takes what a diagnosis has found. @param {Diagnosis} result */
 function take(result) {
   found = result;
+  failure = "";
   founds += 1;
   document.body.dataset.diagnosis = "done";
   tell("diagnosed", [...result.missing, ...(result.nearest ?? [])].flatMap((claim) => [claim.effect, ...(claim.class ?? []), ...(claim.rivals ?? []).slice(0, 3).map((rival) => rival.effect)]));
@@ -46,6 +47,7 @@ async function run() {
   askedWith = state.effects;
   askedFor = subject();
   found = null;
+  failure = "";
   founds += 1;
   await endPreview(true);
   document.body.dataset.diagnosis = "running";
@@ -62,14 +64,14 @@ async function run() {
     if (mine !== running) return;
     document.body.dataset.diagnosis = "failed";
     if (!isAborted(error)) {
-      failure = error instanceof Error ? error.message : "";
+      // It is told until there is another answer: once the program runs again, this one is still missing.
+      failure = error instanceof Lost ? "The diagnosis was interrupted, because the program ended: begin it again." : error instanceof Error ? error.message : "";
       report(error, "diagnosis");
     }
   } finally {
     if (mine === running) {
       running = null;
       draw();
-      failure = "";
     }
   }
 }

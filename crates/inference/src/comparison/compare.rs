@@ -350,6 +350,7 @@ impl<'a> Comparing<'a> {
             let why = "with the numbers of the last fit the muscle has no state before all effects are in";
             warnings.push(format!("what each effect contributes can't be shown one by one: {why}"));
         }
+        warnings.extend(floor.as_ref().and_then(|floor| beyond_sheet(analysis.muscle, floor)));
         let Analysis { muscle, options, .. } = analysis;
         Ok(Comparison {
             schema: "bulge.comparison/1",
@@ -370,6 +371,22 @@ impl<'a> Comparing<'a> {
             ladder: rungs,
         })
     }
+}
+
+/// Times the noise of the data sheet from which the scatter of the readings is another one.
+const BEYOND_SHEET: f64 = 4.0;
+
+/// Fits weight rows by the noise of the data sheet, where there is one: what it means that the readings scatter far more.
+fn beyond_sheet(muscle: &Muscle, floor: &NoiseFloor) -> Option<String> {
+    let stated = muscle.instruments().force.map(|force| force.noise()).filter(|sd| *sd > 0.0)?;
+    let times = floor.sd_n / stated;
+    (times > BEYOND_SHEET).then(|| {
+        format!(
+            "the readings of the force scatter by {:.1} N, {times:.0} times the noise of {stated:.2} N that the muscle file states of its sensor: check that number: fits \
+             weigh their rows by it",
+            floor.sd_n
+        )
+    })
 }
 
 fn not_fitted(name: &str, error: &ModelError) -> String {

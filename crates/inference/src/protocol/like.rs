@@ -65,7 +65,8 @@ impl Moved {
             pressure: of(pressure),
             contraction: of(contraction),
             rows: rows.len(),
-            seconds: width(of(&history.time)),
+            // A reading stands for the time until the next one.
+            seconds: width(of(&history.time)) * rows.len() as f64 / (rows.len() as f64 - 1.0).max(1.0),
             ways: turns + 1,
             evenness: (largest > 0.0).then(|| rates.iter().sum::<f64>() / rates.len() as f64 / largest),
         }
@@ -93,9 +94,9 @@ fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
     (0..MOST_LEVELS).map(|place| means[place * (means.len() - 1) / (MOST_LEVELS - 1)]).collect()
 }
 
-/// Ends as a person would set them, of contractions to a hundredth of a percent.
+/// Ends as a person would set them, of contractions to a tenth of a percent.
 fn contractions(range: [f64; 2]) -> [f64; 2] {
-    range.map(|value| (value * 1e4).round() / 1e4)
+    range.map(|value| (value * 1e3).round() / 1e3)
 }
 
 fn pressures(range: [f64; 2]) -> Vec<f64> {

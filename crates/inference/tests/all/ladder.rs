@@ -291,6 +291,17 @@ fn the_floor_is_the_noise_and_not_below_the_resolution() {
     assert!(coarse >= 80.0 / 12.0_f64.sqrt() - 1e-6, "{coarse}");
 }
 
+/// Readings that scatter far more than their data sheet says: the fit goes on with the sheet, and says so.
+#[test]
+fn noise_beyond_the_data_sheet_is_said() {
+    let says = |noise: &str| {
+        let sheet = format!("[instruments]\nforce = {{ noise = \"{noise}\" }}");
+        let found = climbed(&loops(|row, _| alternating(row)), &muscle(&sheet), &[]).warnings;
+        found.iter().filter(|text| text.contains("times the noise of")).count()
+    };
+    assert_eq!(["2 N", "0.6 N", "0.25 N"].map(says), [0, 0, 1]);
+}
+
 /// Where the model lacks something, the rig errors of the data sheet may not make up for it in silence.
 #[test]
 fn a_rig_error_beyond_its_data_sheet_is_said() {
