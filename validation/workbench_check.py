@@ -46,6 +46,20 @@ return [...document.querySelectorAll('button, a[href], input, select, textarea, 
 """
 
 # Zooms a plot by one notch of the wheel for each frame, and tells the times between frames.
+# A slider is dragged in steps and let go; where it stands after that, frame by frame, until nothing is under way.
+DRAG = """
+const done = arguments[arguments.length - 1];
+const at = () => document.querySelector('[data-slider=bladder-elasticity-modulus]');
+const seen = [];
+let v = 320, frames = 0;
+const step = () => {
+  if (v <= 620) { at().value = v; at().dispatchEvent(new Event('input')); v += 20; if (v > 620) at().dispatchEvent(new Event('change')); }
+  else { seen.push(at().value); frames += 1; }
+  if (frames > 90 && document.body.dataset.state !== 'busy') done(seen);
+  else requestAnimationFrame(step);
+};
+requestAnimationFrame(step);
+"""
 ZOOM = """
 const done = arguments[arguments.length - 1];
 const plot = document.querySelector('#plot-force'), box = plot.getBoundingClientRect();
@@ -285,6 +299,9 @@ class Story:
         page.run("const s = document.querySelector('[data-slider=bladder-elasticity-modulus]'); s.value = 300; s.dispatchEvent(new Event('input')); s.dispatchEvent(new Event('change'))")
         page.wait("document.querySelector('[data-hold=bladder-elasticity-modulus]').getAttribute('aria-pressed') === 'true'", "the number is held")
         page.settle()
+        seen = page.later(DRAG)
+        self.expect("a slider that is let go stays where it was let go", seen and all(at == seen[-1] == "620" for at in seen), seen)
+        page.settle()
         page.click("[data-hold=bladder-elasticity-modulus]")
         page.wait("document.querySelector('[data-hold=bladder-elasticity-modulus]').getAttribute('aria-pressed') === 'false'", "the number is fitted again")
         page.settle()
@@ -382,6 +399,17 @@ class Story:
         page.wait("!document.querySelector('#preview') && document.querySelectorAll('#ladder .rung').length > 1", "the claim is accepted")
         page.settle()
         self.expect("with what was found the error is near the noise", page.error() < 0.05 * base, page.error())
+        page.run("document.querySelector('#active [role=switch]').click()")
+        page.wait("document.querySelector('#tab-effects').textContent.includes('on)')", "an effect is switched off")
+        page.settle()
+        page.run("document.querySelector('#catalogue [role=switch][data-effect=force-gain]').click()")
+        page.wait("document.querySelector('#diagnosed-with')", "a verdict on other effects says so")
+        page.settle()
+        page.click("#undo")
+        page.settle()
+        page.click("#undo")
+        page.wait("!document.querySelector('#diagnosed-with')", "undone, the verdict is about what is on")
+        page.settle()
 
     def plan(self):
         """A test is drawn, and what it would show is told; a wrong number is told at its field, an impossible one in the library's words."""
@@ -439,6 +467,20 @@ class Story:
         page.click("#muscle-revert")
         page.wait("!document.querySelector('#muscle-form .field-error')", "the complaint is gone")
         page.click("#muscle-raw summary")
+        typed = "const b = document.querySelector('#muscle-form input[data-key={}]'); b.value = '{}'; b.dispatchEvent(new Event('change'))"
+        before = page.error()
+        page.run(typed.format("radius", "11,5 mm"))
+        page.wait("document.querySelector('#muscle-form .field-error')", "the field complains again")
+        page.run("document.querySelector('#catalogue [role=switch][data-effect=force-gain]').click()")
+        page.is_ready()
+        self.expect("another change leaves the complaint", page.run("return document.querySelector('#muscle-form input[data-key=radius]').value === '11,5 mm' && Boolean(document.querySelector('#muscle-form .field-error'))"))
+        page.run("document.querySelector('#catalogue [role=switch][data-effect=force-gain]').click()")
+        page.run(typed.format("radius", "10.5 mm"))
+        page.wait("!document.querySelector('#muscle-form .field-error')", "a right number takes the place of a wrong one")
+        page.settle()
+        self.expect("and is what is computed", page.error() != before, (before, page.error()))
+        page.click("#undo")
+        page.settle()
         page.run("document.querySelector('#own').open = true; const b = document.querySelector('#own-toml'); b.value = '[effects.x]\\nforce = \"k *\"'; b.dispatchEvent(new Event('input'))")
         page.wait("document.querySelector('#own-says').dataset.kind === 'bad'", "a wrong formula is told")
         page.run("document.querySelector('#own').open = false")

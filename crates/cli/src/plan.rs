@@ -5,7 +5,7 @@ use bulge_inference::{ConfusedPair, CorrelationTime, Plan, PlannedEffect, Protoc
 use bulge_measurements::Data;
 use bulge_model::read_options;
 use bulge_muscles::{Muscle, Quantity};
-use clap::Args;
+use clap::{ArgGroup, Args};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -35,15 +35,16 @@ const UNTESTED: &str = "  cannot be seen ";
 
 /// Before measuring: detection limits, and which effects this test could not tell apart.
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("test").required(true).args(["protocol", "like"])))]
 pub(crate) struct PlanCommand {
     /// A muscle file or the name of a shipped muscle
     #[arg(long)]
     muscle: String,
     /// What the test bench does: a TOML file as for `bulge simulate` (its help has an example)
-    #[arg(long, value_name = "PROTOCOL.toml", required_unless_present = "like")]
+    #[arg(long, value_name = "PROTOCOL.toml")]
     protocol: Option<PathBuf>,
     /// Instead of a protocol: measurements; it is about the test that they come from, as far as blocks describe it
-    #[arg(long, value_name = "DATA", conflicts_with = "protocol")]
+    #[arg(long, value_name = "DATA")]
     like: Option<PathBuf>,
     /// Writes the test as a protocol file, to begin from
     #[arg(long, value_name = "PROTOCOL.toml")]

@@ -16,7 +16,7 @@ export class Refusal extends Error {
   }
 }
 
-const ENDED = "bulge open has ended; start it again: this page reconnects.";
+const ENDED = "bulge open has ended. Start it again: with --session FOLDER this page goes on, else open the address that it prints.";
 
 /** Nobody answers: `bulge open` has ended. */
 export class Lost extends Error {}

@@ -12,6 +12,9 @@ import { verdict } from "./verdict.js";
 /** @typedef {import("./types.js").Diagnosis} Diagnosis */
 /** @typedef {import("./types.js").ChosenEffect} ChosenEffect */
 
+/** In the browser's own memory of this tab while a diagnosis runs. */
+const UNDER_WAY = "diagnosis under way";
+
 /** @type {Diagnosis | null} */
 let found = null;
 /** How often there was another one, or none. */
@@ -29,7 +32,6 @@ let progress = { share: 0, what: "" };
 /** Takes what a diagnosis has found. @param {Diagnosis} result */
 function take(result) {
   found = result;
-  failure = "";
   founds += 1;
   document.body.dataset.diagnosis = "done";
   tell("diagnosed", [...result.missing, ...(result.nearest ?? [])].flatMap((claim) => [claim.effect, ...(claim.class ?? []), ...(claim.rivals ?? []).slice(0, 3).map((rival) => rival.effect)]));
@@ -52,6 +54,8 @@ async function run() {
   await endPreview(true);
   document.body.dataset.diagnosis = "running";
   draw();
+  // Who leaves the page ends it; whoever comes back is told.
+  sessionStorage.setItem(UNDER_WAY, "1");
   try {
     const result = await diagnose(mine.signal, (now) => {
       if (mine !== running) return;
@@ -71,6 +75,7 @@ async function run() {
   } finally {
     if (mine === running) {
       running = null;
+      sessionStorage.removeItem(UNDER_WAY);
       draw();
     }
   }
@@ -132,8 +137,12 @@ function fillPanel() {
     return;
   }
   const isStale = askedFor !== subject();
+  const on = askedWith.map((one) => one.name);
+  const claimed = [...on, ...found.missing.map((claim) => claim.effect)];
+  const isOther = !isStale && !(on.every((name) => state.effects.some((one) => one.name === name)) && state.effects.every((one) => claimed.includes(one.name)));
   fill(
-    panel, isStale ? h("p", { class: "remark" }, "Data or muscle have changed since this diagnosis.") : null,
+    panel, failure ? h("p", { class: "error" }, failure) : null, isStale ? h("p", { class: "remark" }, "Data or muscle have changed since this diagnosis.") : null,
+    isOther ? h("p", { class: "remark", id: "diagnosed-with" }, `This is about the model with ${on.length ? on.join(", ") : "no effect"} on; since then effects were switched.`) : null,
     preview ? previewBox(preview) : null,
     ...verdict(found, { has: isKept, accept, tryInstead, showMe, plan: drawInPlan }),
     h("div", { class: "row end" }, h("button", { type: "button", id: "diagnose-again", class: "primary", onclick: () => void run() }, "Go on: diagnose again with what is on"), h("a", { href: "api/diagnosis-report", target: "_blank", rel: "noopener", class: "button small" }, "Report")),
@@ -203,6 +212,8 @@ async function endPreview(isKept) {
 }
 
 export function startDiagnosis() {
+  if (sessionStorage.getItem(UNDER_WAY)) failure = "The last diagnosis was given up, because the page was left: begin it again.";
+  sessionStorage.removeItem(UNDER_WAY);
   button("diagnose").addEventListener("click", () => (running ? showTab("diagnosis") : void run()));
   on("session", () => {
     // An undo, or a switch, may take a preview away.

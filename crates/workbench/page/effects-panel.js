@@ -5,6 +5,7 @@ import { details } from "./effect-card.js";
 import { byId, fill, h, input, keepingFocus } from "./dom.js";
 import { numbersOfEffect } from "./numbers.js";
 import { change, on, prepare, state } from "./store.js";
+import { scrollColumn } from "./tabs.js";
 
 /** @typedef {import("./types.js").Card} Card */
 
@@ -121,9 +122,13 @@ function draw() {
   // A switch doesn't go away below the finger that presses it.
   isWaiting = isPressed;
   if (isPressed) return;
+  const { top } = byId("catalogue").getBoundingClientRect();
   // While a slider is held its element must stay.
   if (!document.querySelector("#active [data-held-by-hand]")) keepingFocus(byId("active"), drawActive);
   keepingFocus(byId("catalogue"), drawCatalogue);
+  byId("tab-effects").textContent = state.effects.length ? `Effects (${state.effects.length} on)` : "Effects";
+  // What is on grows above the list: the switch that was pressed stays below the pointer.
+  if (byId("catalogue").matches(":hover")) scrollColumn(byId("catalogue").getBoundingClientRect().top - top);
 }
 
 export function startEffects() {

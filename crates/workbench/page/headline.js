@@ -58,10 +58,11 @@ export function startHeadline() {
   byId("undo").addEventListener("click", () => void step("undo"));
   byId("redo").addEventListener("click", () => void step("redo"));
   document.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
+    const key = event.key.toLowerCase();
+    if (!(event.ctrlKey || event.metaKey) || !["z", "y"].includes(key)) return;
     // Within a text the key undoes what was typed.
     if (event.target instanceof HTMLElement && event.target.matches("input:not([type=range]):not([type=checkbox]), textarea")) return;
     event.preventDefault();
-    void step(event.shiftKey ? "redo" : "undo");
+    void step(event.shiftKey || key === "y" ? "redo" : "undo");
   });
 }

@@ -5,6 +5,9 @@ import { byId, fill, h, keepingFocus } from "./dom.js";
 import { newtons, number } from "./format.js";
 import { change, on, state } from "./store.js";
 
+/** How an error has changed. @param {number} change */
+const percentOf = (change) => (Math.abs(change) < 5e-4 ? "0 %" : `${change > 0 ? "+" : ""}${number(100 * change, 2)} %`);
+
 /** Decades of error that a bar may show below the largest one. */
 const MOST_DECADES = 4;
 
@@ -49,7 +52,7 @@ function draw() {
       h("span", { class: "rung-name" }, rung.added ? `+ ${rung.added}` : "muscle as stated"),
       bar,
       h("span", { class: "rung-error" }, newtons(rung.rmse_n)),
-      h("span", { class: "rung-fall" }, before ? `${number(100 * (rung.rmse_n / before - 1), 2)} %` : ""),
+      h("span", { class: "rung-fall" }, before ? percentOf(rung.rmse_n / before - 1) : ""),
       h("span", { class: state.heldOutIsPending ? "rung-held pending" : "rung-held" }, held),
     ));
   }));

@@ -11,15 +11,28 @@ import { fieldNamed, numbersOf, replaced } from "./toml.js";
 /** The text as it is edited here; it becomes the muscle once the server takes it. */
 let draft = "";
 let drawnFor = "";
+/** What stands in the fields and isn't taken yet, by table and key. @type {Map<string, string>} */
+const edits = new Map();
+
+/** @param {{table: string, key: string}} field */
+const nameOf = (field) => `${field.table} ${field.key}`;
+
+/** The muscle of the server with what stands in the fields. */
+function edited() {
+  let text = state.session?.muscle.toml ?? "";
+  for (const [name, value] of edits) {
+    const field = numbersOf(text).find((one) => nameOf(one) === name);
+    if (field) text = replaced(text, field, value);
+  }
+  return text;
+}
 
 /** @param {string} toml @returns {Promise<boolean>} */
 function send(toml) {
   draft = toml;
   if (toml === state.session?.muscle.toml) {
     // Back to what the server has: there is nothing to ask and no complaint left.
-    clearComplaints();
-    drawnFor = "";
-    draw();
+    startAnew();
     return Promise.resolve(true);
   }
   return change(() => ({ muscle: { toml } }), "muscle");
@@ -54,14 +67,17 @@ function drawForm() {
 
 /** @param {import("./toml.js").Field} field @param {string} value */
 async function edit(field, value) {
-  // Where the field stands may have moved since the form was drawn.
-  const now = numbersOf(draft).find((one) => one.key === field.key && one.table === field.table);
-  if (now && value && now.value !== value) await send(replaced(draft, now, value));
+  if (!value) return;
+  const taken = numbersOf(state.session?.muscle.toml ?? "").find((one) => nameOf(one) === nameOf(field));
+  if (taken?.value === value) edits.delete(nameOf(field));
+  else edits.set(nameOf(field), value);
+  await send(edited());
 }
 
 /** @param {string} says */
 function showRefusal(says) {
-  const field = fieldNamed(numbersOf(draft), says);
+  // Of a field that holds no number the server's muscle knows where it stands.
+  const field = fieldNamed(numbersOf(state.session?.muscle.toml ?? ""), says) ?? fieldNamed(numbersOf(draft), says);
   for (const old of document.querySelectorAll("#muscle-form .field-error")) old.remove();
   const box = field && [...document.querySelectorAll("#muscle-form input")].find((one) => one instanceof HTMLInputElement && one.dataset.key === field.key && one.dataset.table === field.table);
   input("muscle-toml").value = draft;
@@ -79,14 +95,26 @@ function clearComplaints() {
   for (const old of document.querySelectorAll("#muscle-form .field-error")) old.remove();
 }
 
+/** The form as the server's muscle has it. */
+function startAnew() {
+  edits.clear();
+  clearComplaints();
+  drawnFor = "";
+  draw();
+}
+
 /** @param {Blob} file */
 async function takeFile(file) {
+  edits.clear();
   await send(await file.text());
 }
 
 export async function startMusclePanel() {
   on("session", (why) => {
     if (why === "refused") return;
+    // What stands in the fields and isn't taken keeps its complaint, whatever else is changed.
+    if (edits.size && drawnFor === state.session?.muscle.toml) return;
+    edits.clear();
     clearComplaints();
     draw();
   });
@@ -99,12 +127,11 @@ export async function startMusclePanel() {
     input("muscle-file").value = "";
   });
   addEventListener("muscle-file", (event) => void takeFile(/** @type {CustomEvent<File>} */ (event).detail));
-  byId("muscle-apply").addEventListener("click", () => void send(input("muscle-toml").value));
-  byId("muscle-revert").addEventListener("click", () => {
-    drawnFor = "";
-    showAt("muscle", "");
-    draw();
+  byId("muscle-apply").addEventListener("click", () => {
+    edits.clear();
+    void send(input("muscle-toml").value);
   });
+  byId("muscle-revert").addEventListener("click", startAnew);
   const choice = select("shipped");
   choice.addEventListener("change", () => {
     const shipped = choice.value;

@@ -3,7 +3,7 @@
 
 import { h } from "./dom.js";
 import { interval, quantity } from "./format.js";
-import { change, changeSoon, state, tell } from "./store.js";
+import { change, changeSoon, state, tell, whenSlid } from "./store.js";
 
 /** @typedef {import("./types.js").Fitted} Fitted */
 /** @typedef {import("./types.js").Parameter} Parameter */
@@ -105,13 +105,15 @@ function slider({ effect, name, value, bounds: [low, high], unit, isLog, shown, 
     box.dataset.moved = "true";
     changeSoon((now) => ({ ...holding(effect, name, next)(now), goes_on: goesOn }));
   });
-  const release = () => {
+  const release = async () => {
     if (!box.dataset.heldByHand) return;
-    delete box.dataset.heldByHand;
     delete box.dataset.moved;
+    // Until its last position is drawn the panel would show an older one.
+    await whenSlid();
+    delete box.dataset.heldByHand;
     tell("numbers");
   };
-  box.addEventListener("change", release);
-  box.addEventListener("blur", release);
+  box.addEventListener("change", () => void release());
+  box.addEventListener("blur", () => void release());
   return box;
 }

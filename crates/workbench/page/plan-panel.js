@@ -27,6 +27,9 @@ let askedFor = "";
 /** Effects of the last diagnosis: pairs of them come first. @type {Set<string>} */
 let wanted = new Set();
 
+/** The blocks that were cleared last. @type {Block[]} */
+let cleared = [];
+
 /** The test that the data come from, about, with what it belongs to. @type {{of: string, blocks: Block[]}} */
 let measured = { of: "", blocks: [] };
 
@@ -259,7 +262,11 @@ function draw() {
       h("div", { class: "row" },
         h("button", { type: "button", class: "small", id: "add-block", onclick: () => keep({ blocks: [...test().blocks, block({ ...test().blocks.at(-1) })] }) }, "Add a block"),
         h("button", { type: "button", class: "small", id: "plan-data", disabled: !measured.blocks.length, onclick: () => keep({ blocks: measured.blocks }) }, "About as the data"),
-        h("button", { type: "button", class: "small", id: "clear-plan", disabled: !blocks.length, onclick: () => keep({ blocks: [] }) }, "Clear"),
+        h("button", { type: "button", class: "small", id: "clear-plan", disabled: !blocks.length, onclick: () => {
+          cleared = blocks;
+          keep({ blocks: [] });
+        } }, "Clear"),
+        cleared.length && !blocks.length ? h("button", { type: "button", class: "small", id: "unclear-plan", onclick: () => keep({ blocks: cleared }) }, "Bring them back") : null,
         h("button", { type: "button", class: "small", id: "save-protocol", disabled: !planned, onclick: () => planned && download(new Blob([planned.toml], { type: "application/toml" }), "protocol.toml") }, "Save as TOML")),
       h("p", { class: "error", id: "plan-error", role: "alert" }),
       h("div", { id: "plan-answer" }),

@@ -224,6 +224,13 @@ export function prepare(make) {
 let sliding = false;
 /** @type {(() => void) | null} */
 let slideNext = null;
+/** @type {Promise<unknown>} */
+let slid = Promise.resolve();
+
+/** Once the last position of a slider has been drawn. */
+export async function whenSlid() {
+  while (sliding) await slid;
+}
 
 /** For sliders: at most one change is under way until it is drawn, and of those that follow the last one counts. @param {(session: Session) => Record<string, unknown> | null} make */
 export function changeSoon(make) {
@@ -232,7 +239,7 @@ export function changeSoon(make) {
     return;
   }
   sliding = true;
-  void change(make).then(() => drawn).finally(() => {
+  slid = change(make).then(() => drawn).finally(() => {
     sliding = false;
     const next = slideNext;
     slideNext = null;
