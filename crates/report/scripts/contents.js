@@ -130,7 +130,9 @@ export function map(rows, inCells, scale) {
     const share = Math.min(1, Math.max(-1, rows.residual[i] / scale));
     lists[Math.round(((share + 1) / 2) * (STEPS - 1))].push(i);
   }
-  const groups = lists.map((list, i) => ({ name: `residual ${i}`, colour: signedColour((2 * i) / (STEPS - 1) - 1), rows: Uint32Array.from(list) }));
+  const groups = lists.map((list, i) => ({ name: `residual ${i}`, size: Math.abs((2 * i) / (STEPS - 1) - 1), colour: signedColour((2 * i) / (STEPS - 1) - 1), rows: Uint32Array.from(list) }));
+  // Large residuals of either sign lie over small ones.
+  groups.sort((a, b) => a.size - b.size);
   /** @type {Content} */
   const content = { x: side(rows, "pressure"), y: side(rows, "contraction"), groups: [...groups, ...(inCells ? [] : aside(rows))].filter((group) => group.rows.length), lines: [] };
   if (inCells) {

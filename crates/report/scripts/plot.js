@@ -200,10 +200,12 @@ export class Plot {
     if (content.zero) all.push(line("zero", ink.axis, 1, [-1e30, 0, 1e30, 0], 1));
     if (content.cells) all.push(content.cells);
     else {
-      for (const group of content.groups) {
+      for (const [place, group] of content.groups.entries()) {
         all.push({
           type: "scatter", id: group.name, name: group.name, data: pairs(content.x.values, content.y.values, group.rows, every), dimensions: ["x", "y"], symbolSize: group.isAside ? size + 1 : size,
-          symbol: group.isAside ? "emptyCircle" : isLarge ? "rect" : "circle", large: !group.isAside, largeThreshold: 0, progressive: 0, silent: true, clip: true, z: group.isAside ? 2 : 3,
+          symbol: group.isAside ? "emptyCircle" : isLarge ? "rect" : "circle", large: !group.isAside, largeThreshold: 0, progressive: 0, silent: true, clip: true, 
+          // One over the other in their order, whichever of them were there before.
+          z: group.isAside ? 2 : 3 + place / content.groups.length,
           itemStyle: { color: group.colour, opacity: group.isAside ? 0.8 : isLarge ? 0.75 : 0.72, borderColor: group.isAside ? group.colour : "transparent" },
         });
       }
