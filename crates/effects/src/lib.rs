@@ -28,6 +28,9 @@ pub mod user;
 pub use card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 pub use catalogue::{Catalogue, CatalogueError};
 pub use describe::{CardDocument, ParameterDocument, SignatureDocument, TwinDocument, describe, overview};
-pub use effect::{Balance, Effect, Give, Input, Jet, LANES, Moment, Place, Reshaped, Setting};
+pub use effect::{
+    Action, Balance, Effect, Give, Input, InputEffect, Jet, LANES, LoadEffect, Moment, OutputEffect,
+    Reshaped, Row, Setting, ShapeEffect,
+};
 pub use learnt::{Known, known, learnt};
 pub use mechanism::{Form, Mechanism};

@@ -5,7 +5,7 @@
 use bulge_muscles::{Kind, units};
 use bulge_numerics::Real;
 
-use crate::effect::{Balance, Effect, Input, Jet, Moment, Place, Setting};
+use crate::effect::{self, Action, Balance, Effect, Input, Jet, Moment, Setting};
 use crate::probe::SETTING;
 use crate::{load, rig};
 
@@ -82,14 +82,12 @@ fn run(
         if moment.begins {
             memory.fill(Jet::from(0.0));
         }
-        let mut act = |place: Place<'_>| {
-            if let Some(effect) = effect {
-                effect.act(moment, setting, theta, &mut memory, place);
-            }
-        };
+        let action = effect.map(Effect::action);
         let (pressure, contraction) = (offsets[0] + moment.pressure, offsets[1] + moment.contraction);
         let mut input = Input::of(pressure, contraction);
-        act(Place::Input(&mut input));
+        if let Some(Action::Input(effect)) = action {
+            effect.act(effect::Row { moment, setting, theta, memory: &mut memory }, &mut input);
+        }
         let force = pressure * (-contraction + 0.25) * 5e-3;
         let mid_radius = (contraction + 1.0) * 0.014;
         let balance = Balance {
@@ -105,8 +103,12 @@ fn run(
         let (mut added, mut reading) = (Jet::from(0.0), force);
         // Of a joint without load a difference tells no derivative.
         let load = Jet::from(700.0);
-        act(Place::Load(&balance, &mut added));
-        act(Place::Output(&balance, &mut reading));
+        let row = effect::Row { moment, setting, theta, memory: &mut memory };
+        match action {
+            Some(Action::Load(effect)) => effect.act(row, &balance, &mut added),
+            Some(Action::Output(effect)) => effect.act(row, &balance, &mut reading),
+            _ => {}
+        }
         [
             input.pressure,
             input.contraction,

@@ -1,8 +1,8 @@
 //! The whole catalogue: names, cards, what `off` means, and every derivative against differences.
 
 use bulge_effects::{
-    Balance, Card, CardDocument, Catalogue, Effect, Form, Input, Jet, Mechanism, Moment, ParameterCard,
-    Place, Setting, Stage, describe, overview,
+    Action, Balance, Card, CardDocument, Catalogue, Effect, Form, Input, Jet, LoadEffect, Mechanism, Moment,
+    ParameterCard, Row, Setting, Stage, describe, overview,
 };
 use bulge_muscles::{Muscle, PRESETS, Parameter, preset, units};
 use bulge_numerics::Real;
@@ -163,9 +163,13 @@ fn run(
         input.wall = Jet::from(1.1);
         let balance = balance(moment, pressure, contraction);
         let (mut load, mut reading) = (Jet::from(37.0), balance.force);
-        effect.act(moment, setting, theta, &mut memory, Place::Input(&mut input));
-        effect.act(moment, setting, theta, &mut memory, Place::Load(&balance, &mut load));
-        effect.act(moment, setting, theta, &mut memory, Place::Output(&balance, &mut reading));
+        let row = Row { moment, setting, theta, memory: &mut memory };
+        match effect.action() {
+            Action::Shape(effect) => effect.act(row, &mut input),
+            Action::Input(effect) => effect.act(row, &mut input),
+            Action::Load(effect) => effect.act(row, &balance, &mut load),
+            Action::Output(effect) => effect.act(row, &balance, &mut reading),
+        }
         out.extend([input.pressure, input.contraction, input.area, input.wall, input.spread]);
         let gives = [input.give_force, input.give_tension].map(|give| give.under(balance.force));
         out.extend([gives[0], gives[1], load, reading]);
@@ -328,7 +332,13 @@ impl Effect for Nothing {
     fn parameters(&self) -> Vec<ParameterCard<'_>> {
         Vec::new()
     }
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for Nothing {
+    fn act(&self, _: Row<'_>, _: &Balance, _: &mut Jet) {}
 }
 
 #[test]
@@ -388,7 +398,7 @@ fn moves_agree_with_differences() {
     let mut random = Random(0x30FE);
     for effect in effects() {
         let (effect, name) = (effect.as_ref(), effect.card().name.to_owned());
-        let is_shape = effect.card().stage == Stage::Shape;
+        let is_shape = effect.stage() == Stage::Shape;
         let mut reshaped = 0;
         for muscle in muscles(effect) {
             let cards = cards(effect, &muscle);
@@ -423,17 +433,6 @@ fn moves_agree_with_differences() {
         }
         // A textbook cylinder is no shipped muscle.
         assert!(name == "end-taper" || is_shape == (reshaped > 0), "{name}: {reshaped}");
-    }
-}
-
-#[test]
-fn an_effect_of_no_shape_moves_no_number() {
-    for effect in effects().iter().filter(|effect| effect.card().stage != Stage::Shape) {
-        for muscle in muscles(effect.as_ref()) {
-            let typical: Vec<f64> = cards(effect.as_ref(), &muscle).iter().map(|card| card.typical).collect();
-            let same = effect.reshape(&muscle, &typical).unwrap();
-            assert!(same.muscle == muscle && same.moves.is_empty(), "{}", effect.card().name);
-        }
     }
 }
 
