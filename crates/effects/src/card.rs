@@ -137,8 +137,6 @@ pub struct Card<'a> {
     pub evidence: Evidence,
     /// What kind of thing it is.
     pub group: Group,
-    /// Where it acts.
-    pub stage: Stage,
     /// The family of muscle that has it; both if none.
     pub kind: Option<Kind>,
     /// How it shows.

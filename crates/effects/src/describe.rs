@@ -30,7 +30,7 @@ pub fn describe(effect: &dyn Effect) -> String {
     let card = effect.card();
     let mut page = Page::default();
     page.paragraph(0, 2, &format!("{}: {}", card.name, card.title));
-    page.paragraph(0, 0, &belongs(&card));
+    page.paragraph(0, 0, &belongs(&card, effect.stage()));
     page.line("");
     page.paragraph(0, 0, card.about);
     page.line("");
@@ -199,7 +199,7 @@ impl CardDocument {
             equation: card.equation.to_owned(),
             parameters: effect.parameters().iter().map(ParameterDocument::of).collect(),
             group: card.group,
-            stage: card.stage,
+            stage: effect.stage(),
             kind: card.kind,
             signature: SignatureDocument { pressure: pressure.to_owned(), parity, shape: shape.to_owned() },
             twins: twins.collect(),
@@ -253,11 +253,11 @@ impl ParameterDocument {
 }
 
 /// Group, family, muscles and stage of an effect.
-fn belongs(card: &Card<'_>) -> String {
+fn belongs(card: &Card<'_>, stage: Stage) -> String {
     let muscles = card.kind.map_or("pleated and braided", Kind::name);
     let family =
         if card.family == card.name { String::new() } else { format!(", counts under {}", card.family) };
-    let acts = match card.stage {
+    let acts = match stage {
         Stage::Shape => "changes the muscle whose equilibrium is solved",
         Stage::Input => "changes what reaches the muscle",
         Stage::Load => "adds a force to that of the equilibrium",

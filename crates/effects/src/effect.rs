@@ -4,7 +4,7 @@ use bulge_muscles::{Kind, Muscle, MuscleError, Parameter, Quantity};
 use bulge_numerics::{Dual, Real};
 use std::fmt::Debug;
 
-use crate::card::{Card, ParameterCard};
+use crate::card::{Card, ParameterCard, Stage};
 
 /// Derivatives carried in one pass over the rows.
 pub const LANES: usize = 8;
@@ -229,18 +229,86 @@ pub struct Balance {
     pub turn: Jet,
 }
 
-/// The place in the chain at which an effect is called, with what it may read and change there.
+/// What an effect reads of a row, and what it remembers.
 #[derive(Debug)]
-pub enum Place<'a> {
-    /// Before the equilibrium.
-    Input(&'a mut Input),
-    /// After it: the force added to that of the equilibrium \[N\].
-    Load(&'a Balance, &'a mut Jet),
-    /// At the load cell: what it reads \[N\].
-    Output(&'a Balance, &'a mut Jet),
+pub struct Row<'a> {
+    /// What is known of the row.
+    pub moment: &'a Moment,
+    /// The muscle's numbers.
+    pub setting: &'a Setting,
+    /// The numbers of the effect, in SI.
+    pub theta: &'a [Jet],
+    /// [`Effect::memory`] numbers that it keeps from row to row of a sweep; 0 when a sweep begins.
+    pub memory: &'a mut [Jet],
 }
 
-/// A muscle changed by an effect of the stage [`crate::Stage::Shape`].
+/// What an effect does, by the place in the chain from what is set to what is read.
+#[derive(Debug, Clone, Copy)]
+pub enum Action<'a> {
+    /// Changes the muscle whose equilibrium is solved.
+    Shape(&'a dyn ShapeEffect),
+    /// Changes what reaches that muscle.
+    Input(&'a dyn InputEffect),
+    /// Adds a force to that of the equilibrium.
+    Load(&'a dyn LoadEffect),
+    /// Changes what the load cell reads.
+    Output(&'a dyn OutputEffect),
+}
+
+impl Action<'_> {
+    /// Its place in the chain.
+    #[must_use]
+    pub const fn stage(&self) -> Stage {
+        match self {
+            Self::Shape(_) => Stage::Shape,
+            Self::Input(_) => Stage::Input,
+            Self::Load(_) => Stage::Load,
+            Self::Output(_) => Stage::Output,
+        }
+    }
+}
+
+/// An effect that changes the muscle whose equilibrium is solved.
+pub trait ShapeEffect: Debug + Sync {
+    /// The muscle as the effect changes it; `theta` are the numbers of the effect in SI.
+    ///
+    /// With the parameters `off` it must be the same muscle, whatever that states; any other value replaces what it states. An effect
+    /// without parameters has no `off`: it is there or not.
+    ///
+    /// [`Reshaped::moves`] lists only numbers that the muscle it gives has. One that is absent where the effect is off (the modulus of a
+    /// bladder that isn't there, the stiffness of fibres that don't stretch) has no derivative there, and one in which the force is even
+    /// (an angle) has none that says anything: nothing is listed then, and who needs a derivative takes it at a small value beside `off`.
+    /// A parameter that is absent at 0 and has no small values either (a circumference) starts at its `typical` value.
+    ///
+    /// # Errors
+    /// If the muscle can't have the effect, or not with these values.
+    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError>;
+
+    /// Changes what reaches the muscle where the change of its shape makes that another: a contraction counts from the length. Nothing by default.
+    fn act(&self, row: Row<'_>, input: &mut Input) {
+        let _ = (row, input);
+    }
+}
+
+/// An effect that changes what reaches the muscle.
+pub trait InputEffect: Debug + Sync {
+    /// Changes the input of a row; rows come in order, each once. With the parameters `off` nothing may change, bit for bit.
+    fn act(&self, row: Row<'_>, input: &mut Input);
+}
+
+/// An effect that adds a force.
+pub trait LoadEffect: Debug + Sync {
+    /// Adds its force to those of the other effects \[N\]; rows come in order, each once. With the parameters `off` nothing may change, bit for bit.
+    fn act(&self, row: Row<'_>, balance: &Balance, force: &mut Jet);
+}
+
+/// An effect on what the load cell reads.
+pub trait OutputEffect: Debug + Sync {
+    /// Changes the reading \[N\]; rows come in order, each once. With the parameters `off` nothing may change, bit for bit.
+    fn act(&self, row: Row<'_>, balance: &Balance, reading: &mut Jet);
+}
+
+/// A muscle changed by a [`ShapeEffect`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reshaped {
     /// The muscle to solve.
@@ -279,7 +347,7 @@ impl Reshaped {
 /// ([`crate::Catalogue::with`]), so that help, fits, rankings and reports treat it alike.
 ///
 /// ```
-/// use bulge_effects::{Card, Catalogue, Effect, Evidence, Form, Group, Jet, Mechanism, Moment, Needs, ParameterCard, Parity, Place, Setting, Signature, Stage};
+/// use bulge_effects::{Action, Balance, Card, Catalogue, Effect, Evidence, Form, Group, Jet, LoadEffect, Mechanism, Needs, ParameterCard, Parity, Row, Signature};
 ///
 /// /// A hose that pulls like a spring.
 /// #[derive(Debug)]
@@ -298,7 +366,6 @@ impl Reshaped {
 ///             source: "our rig",
 ///             evidence: Evidence::User,
 ///             group: Group::Rig,
-///             stage: Stage::Load,
 ///             kind: None,
 ///             signature: Signature { pressure: "0", parity: Parity::Even, shape: "-eps" },
 ///             twins: &[],
@@ -309,10 +376,14 @@ impl Reshaped {
 ///     fn parameters(&self) -> Vec<ParameterCard<'_>> {
 ///         vec![ParameterCard::new("stiffness", ("N", 1.0), (0.0, 500.0), 50.0, "force per unit contraction")]
 ///     }
-///     fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-///         if let Place::Load(balance, force) = place {
-///             *force = *force - theta[0] * balance.contraction;
-///         }
+///     fn action(&self) -> Action<'_> {
+///         Action::Load(self)
+///     }
+/// }
+///
+/// impl LoadEffect for Hose {
+///     fn act(&self, row: Row<'_>, balance: &Balance, force: &mut Jet) {
+///         *force = *force - row.theta[0] * balance.contraction;
 ///     }
 /// }
 ///
@@ -327,11 +398,8 @@ pub trait Effect: Debug + Send + Sync {
     /// The numbers of the effect; their order is that of `theta`.
     fn parameters(&self) -> Vec<ParameterCard<'_>>;
 
-    /// Acts at its stage: changes what `place` holds. `theta` are the parameters in SI, `memory` keeps [`Effect::memory`] numbers
-    /// from row to row of a sweep (0 when a sweep begins). Called once per row, in order.
-    ///
-    /// With the parameters at their `off` values nothing may change, bit for bit.
-    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>);
+    /// What it does: `Action::Load(self)` of a type that is a [`LoadEffect`], and so on.
+    fn action(&self) -> Action<'_>;
 
     /// Whether it comes anew with each mounting, so that specimens that differ have each their own numbers: the zero of an instrument.
     fn is_of_mounting(&self) -> bool {
@@ -342,21 +410,23 @@ pub trait Effect: Debug + Send + Sync {
     fn memory(&self) -> usize {
         0
     }
+}
 
-    /// The muscle as the effect changes it, for the stage [`crate::Stage::Shape`].
-    ///
-    /// With the parameters `off` it must be the same muscle, whatever that states; any other value replaces what it states. An effect
-    /// without parameters has no `off`: it is there or not.
-    ///
-    /// [`Reshaped::moves`] lists only numbers that the muscle it gives has. One that is absent where the effect is off (the modulus of a
-    /// bladder that isn't there, the stiffness of fibres that don't stretch) has no derivative there, and one in which the force is even
-    /// (an angle) has none that says anything: nothing is listed then, and who needs a derivative takes it at a small value beside `off`.
-    /// A parameter that is absent at 0 and has no small values either (a circumference) starts at its `typical` value.
+impl dyn Effect + '_ {
+    /// Its place in the chain from what is set to what is read.
+    #[must_use]
+    pub fn stage(&self) -> Stage {
+        self.action().stage()
+    }
+
+    /// The muscle as the effect changes it; as it is, if the effect acts at another place.
     ///
     /// # Errors
-    /// If the muscle can't have the effect, or not with these values.
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        let _ = theta;
-        Ok(Reshaped::unchanged(muscle))
+    /// As [`ShapeEffect::reshape`].
+    pub fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
+        match self.action() {
+            Action::Shape(shape) => shape.reshape(muscle, theta),
+            _ => Ok(Reshaped::unchanged(muscle)),
+        }
     }
 }

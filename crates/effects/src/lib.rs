@@ -1,8 +1,8 @@
 //! The catalogue of physical effects of pneumatic muscles: equations, parameters, sources, signatures and laws.
 //!
-//! An effect is one file and one entry of the list of its group. It is called at one [`Stage`]: it changes the muscle whose equilibrium is
-//! solved ([`Stage::Shape`]), what reaches that muscle ([`Stage::Input`]), adds a force ([`Stage::Load`]) or changes what the load cell
-//! reads ([`Stage::Output`]). Everything that a fit, a ranking, the help or a report says about it comes from its [`Card`].
+//! An effect is one file and one entry of the list of its group. Its [`Action`] is one of four: it changes the muscle whose equilibrium is
+//! solved ([`ShapeEffect`]), what reaches that muscle ([`InputEffect`]), adds a force ([`LoadEffect`]) or changes what the load cell
+//! reads ([`OutputEffect`]). Everything that a fit, a ranking, the help or a report says about it comes from its [`Card`].
 //!
 //! Deliberately absent: data. An effect sees one [`Moment`] after the other, never a data set.
 
@@ -28,6 +28,9 @@ pub mod user;
 pub use card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
 pub use catalogue::{Catalogue, CatalogueError};
 pub use describe::{CardDocument, ParameterDocument, SignatureDocument, TwinDocument, describe, overview};
-pub use effect::{Balance, Effect, Give, Input, Jet, LANES, Moment, Place, Reshaped, Setting};
+pub use effect::{
+    Action, Balance, Effect, Give, Input, InputEffect, Jet, LANES, LoadEffect, Moment, OutputEffect,
+    Reshaped, Row, Setting, ShapeEffect,
+};
 pub use learnt::{Known, known, learnt};
 pub use mechanism::{Form, Mechanism};

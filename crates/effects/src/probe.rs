@@ -3,7 +3,7 @@
 use bulge_muscles::Kind;
 use bulge_numerics::Real;
 
-use crate::effect::{Balance, Effect, Input, Jet, Moment, Place, Setting};
+use crate::effect::{Action, Balance, Effect, Input, Jet, Moment, Row, Setting};
 
 /// A braid of 250 mm.
 pub(crate) const SETTING: Setting = Setting {
@@ -37,7 +37,9 @@ pub(crate) fn load(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&mut 
     let theta: Vec<Jet> = theta.iter().map(|v| Jet::from(*v)).collect();
     let mut memory = vec![Jet::from(0.0); effect.memory()];
     let mut force = Jet::from(0.0);
-    effect.act(&moment, &SETTING, &theta, &mut memory, Place::Load(&balance(0.1), &mut force));
+    let row = Row { moment: &moment, setting: &SETTING, theta: &theta, memory: &mut memory };
+    let Action::Load(effect) = effect.action() else { panic!("no load") };
+    effect.act(row, &balance(0.1), &mut force);
     force.value()
 }
 
@@ -73,7 +75,9 @@ pub(crate) fn driven(effect: &dyn Effect, theta: &[f64], rows: &[[f64; 2]]) -> V
         let balance =
             Balance { pressure: Jet::from(pressure), turn: Jet::from(step), ..balance(contraction) };
         let mut force = Jet::from(0.0);
-        effect.act(&moment, &SETTING, &theta, &mut memory, Place::Load(&balance, &mut force));
+        let row = Row { moment: &moment, setting: &SETTING, theta: &theta, memory: &mut memory };
+        let Action::Load(effect) = effect.action() else { panic!("no load") };
+        effect.act(row, &balance, &mut force);
         forces.push(force.value());
         last = [pressure, contraction];
     }
@@ -87,7 +91,12 @@ pub(crate) fn input(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&mut
     let theta: Vec<Jet> = theta.iter().map(|v| Jet::from(*v)).collect();
     let mut memory = vec![Jet::from(0.0); effect.memory()];
     let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
-    effect.act(&moment, &SETTING, &theta, &mut memory, Place::Input(&mut input));
+    let row = Row { moment: &moment, setting: &SETTING, theta: &theta, memory: &mut memory };
+    match effect.action() {
+        Action::Shape(effect) => effect.act(row, &mut input),
+        Action::Input(effect) => effect.act(row, &mut input),
+        _ => panic!("no input"),
+    }
     input
 }
 
@@ -98,6 +107,8 @@ pub(crate) fn reading(effect: &dyn Effect, theta: &[f64], change: impl FnOnce(&m
     let theta: Vec<Jet> = theta.iter().map(|v| Jet::from(*v)).collect();
     let mut memory = vec![Jet::from(0.0); effect.memory()];
     let mut force = Jet::from(500.0);
-    effect.act(&moment, &SETTING, &theta, &mut memory, Place::Output(&balance(0.1), &mut force));
+    let row = Row { moment: &moment, setting: &SETTING, theta: &theta, memory: &mut memory };
+    let Action::Output(effect) = effect.action() else { panic!("no output") };
+    effect.act(row, &balance(0.1), &mut force);
     force.value()
 }

@@ -1,6 +1,6 @@
 //! A model along a history: the force of every row, with exact derivatives.
 
-use bulge_effects::{Effect, Input, Jet, LANES, Moment, Place, Setting, Stage};
+use bulge_effects::{self as effects, Action, Input, Jet, LANES, Moment, Setting, Stage};
 use bulge_muscles::Muscle;
 use bulge_numerics::{Dual, Real};
 use rayon::prelude::*;
@@ -396,7 +396,7 @@ impl Run<'_> {
 
     /// All numbers of effects that change the shape.
     fn shaping(&self) -> impl Iterator<Item = (String, u64)> {
-        let is_of_shape = |chosen: &&Chosen| chosen.effect.card().stage == Stage::Shape;
+        let is_of_shape = |chosen: &&Chosen| chosen.effect.stage() == Stage::Shape;
         let numbers = |chosen: &Chosen| {
             let name = chosen.effect.card().name;
             let own = self.model.parameters().iter().zip(self.theta).filter(move |(p, _)| p.effect == name);
@@ -422,21 +422,17 @@ impl Run<'_> {
         sizes.chain([strands::MEMORY]).map(|size| vec![Jet::from(0.0); size]).collect()
     }
 
-    /// Effects that act at a stage, with their numbers and memory. Effects of the shape may also change the input.
-    pub(crate) fn act(
-        &self,
-        moment: &Moment,
-        pass: &Pass,
-        memory: &mut [Vec<Jet>],
-        stages: &[Stage],
-        mut place: impl FnMut(&dyn Effect, &[Jet], &mut [Jet]),
-    ) {
-        for (chosen, memory) in self.model.effects.iter().zip(memory) {
-            if stages.contains(&chosen.effect.card().stage) {
-                let range = self.model.range(chosen, moment.specimen);
-                place(chosen.effect.as_ref(), &pass.theta[range], memory);
-            }
-        }
+    /// What each effect does with a row, in their order.
+    pub(crate) fn actions<'r>(
+        &'r self,
+        moment: &'r Moment,
+        pass: &'r Pass,
+        memory: &'r mut [Vec<Jet>],
+    ) -> impl Iterator<Item = (Action<'r>, effects::Row<'r>)> {
+        self.model.effects.iter().zip(memory).map(move |(chosen, memory)| {
+            let theta = &pass.theta[self.model.range(chosen, moment.specimen)];
+            (chosen.effect.action(), effects::Row { moment, setting: &self.setting, theta, memory })
+        })
     }
 
     pub(crate) fn input(&self, moment: &Moment, pass: &Pass, memory: &mut [Vec<Jet>]) -> Input {
@@ -448,10 +444,13 @@ impl Run<'_> {
             seeded(moment.pressure, pass.pressure_lane),
             seeded(moment.contraction, pass.contraction_lane),
         );
-        let setting = &self.setting;
-        self.act(moment, pass, memory, &[Stage::Shape, Stage::Input], |effect, theta, memory| {
-            effect.act(moment, setting, theta, memory, Place::Input(&mut input));
-        });
+        for (action, row) in self.actions(moment, pass, memory) {
+            match action {
+                Action::Shape(effect) => effect.act(row, &mut input),
+                Action::Input(effect) => effect.act(row, &mut input),
+                Action::Load(_) | Action::Output(_) => {}
+            }
+        }
         input
     }
 

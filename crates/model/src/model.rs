@@ -337,7 +337,7 @@ impl Model {
         let mut muscle = body.muscle.clone();
         let mut stated = self.muscle.clone();
         let mut moved = Vec::new();
-        for chosen in self.effects.iter().filter(|c| c.effect.card().stage == Stage::Shape) {
+        for chosen in self.effects.iter().filter(|c| c.effect.stage() == Stage::Shape) {
             let range = self.range(chosen, 0);
             let reshape = |muscle: &Muscle| chosen.effect.reshape(muscle, &theta[range.clone()]);
             let mut reshaped = reshape(&muscle).map_err(about(chosen))?;

@@ -1,7 +1,7 @@
 //! One row of a model: the input effects, the equilibrium behind them, the loads and the load cell.
 
 use bulge_effects::law::LawPoint;
-use bulge_effects::{Balance, Give, Input, Jet, Moment, Place, Stage};
+use bulge_effects::{Action, Balance, Give, Input, Jet, Moment};
 use bulge_fibre::Start;
 use bulge_numerics::{Dual, Real};
 
@@ -45,16 +45,19 @@ impl Run<'_> {
             slope: found.slope[0],
             turn: self.strands.turn(moment, &found, contraction, memory.last_mut()),
         };
-        let setting = &self.setting;
         let mut load = Jet::from(0.0);
-        self.act(moment, pass, memory, &[Stage::Load], |effect, theta, memory| {
-            effect.act(moment, setting, theta, memory, Place::Load(&balance, &mut load));
-        });
+        for (action, row) in self.actions(moment, pass, memory) {
+            if let Action::Load(effect) = action {
+                effect.act(row, &balance, &mut load);
+            }
+        }
         let force = found.force + load;
         let mut reading = force;
-        self.act(moment, pass, memory, &[Stage::Output], |effect, theta, memory| {
-            effect.act(moment, setting, theta, memory, Place::Output(&balance, &mut reading));
-        });
+        for (action, row) in self.actions(moment, pass, memory) {
+            if let Action::Output(effect) = action {
+                effect.act(row, &balance, &mut reading);
+            }
+        }
         let is_finite = reading.value().is_finite() && reading.gradient().iter().all(|g| g.is_finite());
         if is_finite {
             Ok(Row { equilibrium: found.force, force, reading })

@@ -28,7 +28,7 @@ pub fn specimen(muscle: &Muscle, name: &str, known: &[Known]) -> Result<(Muscle,
     let about = |source| ModelError::Specimen { specimen: name.to_owned(), source: Box::new(source) };
     let mut own = muscle.of_specimen(name).map_err(about)?;
     let mut all = known.to_vec();
-    for (effect, numbers) in all.iter_mut().filter(|(effect, _)| effect.card().stage == Stage::Shape) {
+    for (effect, numbers) in all.iter_mut().filter(|(effect, _)| effect.stage() == Stage::Shape) {
         let [of_muscle, of_own] = [effect.reshape(muscle, numbers), effect.reshape(&own, numbers)];
         let (of_muscle, of_own) = (of_muscle.map_err(about)?, of_own.map_err(about)?);
         let bits = |muscle: &Muscle, p: Parameter| muscle.get(p).map(f64::to_bits);

@@ -37,6 +37,11 @@ impl Random {
         ((self.bits() >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
     }
 
+    /// Uniform between `low` and `high`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
     /// Normal with mean 0 and variance 1, from uniform u and v (Box and Muller 1958):
     ///
     /// ```text

@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::DEGREE;
 
@@ -25,7 +25,6 @@ impl Effect for BraidAngleError {
             source: "derivative of S2 eq. 12; 23.5 to 28.6 deg are reported for muscles of the same make (S5 and later work)",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            stage: Stage::Shape,
             kind: Some(Kind::Braided),
             signature: Signature {
                 pressure: "1",
@@ -56,8 +55,12 @@ impl Effect for BraidAngleError {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
+    }
+}
 
+impl ShapeEffect for BraidAngleError {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         let stated = muscle.get(Parameter::BraidAngle).unwrap_or(0.0);
         Reshaped::setting(muscle, &[(Parameter::BraidAngle, stated + theta[0])])

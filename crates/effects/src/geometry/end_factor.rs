@@ -2,8 +2,8 @@
 
 use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
 
@@ -26,7 +26,6 @@ impl Effect for EndFactor {
             source: "Tondu and Lopez 2000, as used in S2 eq. 15; k = 1.25 to 1.35 from memory",
             evidence: Evidence::Literature,
             group: Group::Geometry,
-            stage: Stage::Input,
             kind: Some(Kind::Braided),
             signature: Signature { pressure: "1", parity: Parity::Even, shape: "eps dF/d eps" },
             twins: &[
@@ -49,10 +48,14 @@ impl Effect for EndFactor {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            input.contraction = input.contraction * theta[0];
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for EndFactor {
+    fn act(&self, Row { theta, .. }: Row<'_>, input: &mut Input) {
+        input.contraction = input.contraction * theta[0];
     }
 }
 

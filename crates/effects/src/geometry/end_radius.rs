@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Muscle, MuscleError, Parameter};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
@@ -25,7 +25,6 @@ impl Effect for EndRadius {
             source: "S1, eqs. 15 and 24 to 28 and the discussion of figure 12",
             evidence: Evidence::Paper,
             group: Group::Geometry,
-            stage: Stage::Shape,
             kind: None,
             signature: Signature {
                 pressure: "1",
@@ -53,8 +52,12 @@ impl Effect for EndRadius {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
+    }
+}
 
+impl ShapeEffect for EndRadius {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         Reshaped::setting(muscle, &[(Parameter::FittingRadius, theta[0])])
     }

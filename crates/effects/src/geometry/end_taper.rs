@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Ends, Kind, Muscle, MuscleError};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 
 /// `ends = "cylinder"` becomes `ends = "clamped"`: the exact shape of the net; no parameter.
@@ -26,7 +26,6 @@ impl Effect for EndTaper {
             source: "equilibrium of the pinned net, as Adkins and Rivlin 1955, Liu and Rahn 2003; checked by an independent energy method",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            stage: Stage::Shape,
             kind: Some(Kind::Braided),
             signature: Signature {
                 pressure: "1",
@@ -48,8 +47,12 @@ impl Effect for EndTaper {
         Vec::new()
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
+    }
+}
 
+impl ShapeEffect for EndTaper {
     fn reshape(&self, muscle: &Muscle, _: &[f64]) -> Result<Reshaped, MuscleError> {
         Ok(Reshaped { muscle: muscle.clone().with_ends(Ends::Clamped), moves: Vec::new() })
     }

@@ -4,8 +4,8 @@ use bulge_muscles::{Kind, Parameter};
 use bulge_numerics::Real;
 use std::f64::consts::TAU;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Jet, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
 
@@ -36,7 +36,6 @@ impl Effect for FibreCount {
             source: "S1, eqs. 5, 28 and 29; lobes instead of flat cloth are another effect",
             evidence: Evidence::Paper,
             group: Group::Geometry,
-            stage: Stage::Input,
             kind: Some(Kind::Pleated),
             signature: Signature { pressure: "1", parity: Parity::Even, shape: "as the force" },
             twins: &[
@@ -59,9 +58,14 @@ impl Effect for FibreCount {
         ]
     }
 
-    fn act(&self, _: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place
-            && setting.kind == Kind::Pleated
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for FibreCount {
+    fn act(&self, Row { setting, theta, .. }: Row<'_>, input: &mut Input) {
+        if setting.kind == Kind::Pleated
             && let Some(stated) = setting.fibres
         {
             let count = if theta[0].value() < LEAST { Jet::from(LEAST) } else { theta[0] };
@@ -75,14 +79,17 @@ impl Effect for FibreCount {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Input;
+    use crate::effect::{Moment, Setting};
     use crate::probe::SETTING;
 
     fn area(stated: Option<u32>, count: f64) -> f64 {
         let setting = Setting { kind: Kind::Pleated, fibres: stated, ..SETTING };
         let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
         let theta = [Jet::from(count)];
-        FibreCount.act(&Moment::at_rest(2e5, 0.1), &setting, &theta, &mut [], Place::Input(&mut input));
+        FibreCount.act(
+            Row { moment: &Moment::at_rest(2e5, 0.1), setting: &setting, theta: &theta, memory: &mut [] },
+            &mut input,
+        );
         input.area.value()
     }
 

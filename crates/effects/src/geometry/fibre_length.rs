@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Muscle, MuscleError, Parameter};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, Reshaped, Row, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
@@ -26,7 +26,6 @@ impl Effect for FibreLength {
             source: "geometry",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            stage: Stage::Shape,
             kind: None,
             signature: Signature {
                 pressure: "1",
@@ -53,17 +52,21 @@ impl Effect for FibreLength {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            input.contraction = (input.contraction + theta[0]) / (theta[0] + 1.0);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
     }
+}
 
+impl ShapeEffect for FibreLength {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         let stated = muscle.length().to_m();
         let mut reshaped = Reshaped::setting(muscle, &[(Parameter::Length, stated * (1.0 + theta[0]))])?;
         reshaped.moves = vec![(0, Parameter::Length, stated)];
         Ok(reshaped)
+    }
+
+    fn act(&self, Row { theta, .. }: Row<'_>, input: &mut Input) {
+        input.contraction = (input.contraction + theta[0]) / (theta[0] + 1.0);
     }
 }
 

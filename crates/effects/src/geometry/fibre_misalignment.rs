@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::DEGREE;
 
@@ -26,7 +26,6 @@ impl Effect for FibreMisalignment {
             source: "equilibrium of the net, derived; the law of pinned crossings",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            stage: Stage::Shape,
             kind: Some(Kind::Pleated),
             signature: Signature {
                 pressure: "1",
@@ -50,8 +49,12 @@ impl Effect for FibreMisalignment {
         vec![ParameterCard::new("angle", DEGREE, (0.0, 10.0), 3.0, about).prior(0.0, 3.0).plausible(0.0, 6.0)]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
+    }
+}
 
+impl ShapeEffect for FibreMisalignment {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         // At 0 nothing moves: the force is even in the angle.
         if theta[0] == 0.0 {

@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
@@ -28,7 +28,6 @@ impl Effect for Lobes {
             source: "geometry and virtual work, derived",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            stage: Stage::Shape,
             kind: Some(Kind::Pleated),
             signature: Signature {
                 pressure: "1",
@@ -54,8 +53,12 @@ impl Effect for Lobes {
         vec![ParameterCard { typical: 25.0, ..card }.off_at(0.0).prior(25.0, 8.0).plausible(15.0, 45.0)]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
+    }
+}
 
+impl ShapeEffect for Lobes {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         if theta[0] == 0.0 {
             return Ok(Reshaped::unchanged(muscle));

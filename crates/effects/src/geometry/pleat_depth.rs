@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
@@ -26,7 +26,6 @@ impl Effect for PleatDepth {
             source: "equilibrium of the fibres, derived; S1 discusses 11.5 mm against 16 mm",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            stage: Stage::Shape,
             kind: Some(Kind::Pleated),
             signature: Signature {
                 pressure: "1",
@@ -48,8 +47,12 @@ impl Effect for PleatDepth {
         vec![ParameterCard { typical: 0.25, ..card }.off_at(0.0).prior(0.0, 0.3).plausible(0.0, 0.45)]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
+    }
+}
 
+impl ShapeEffect for PleatDepth {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         let stated = muscle.get(Parameter::PleatDepth).unwrap_or(0.0);
         if theta[0] == 0.0 && stated != 0.0 {

@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
@@ -26,7 +26,6 @@ impl Effect for RadiusError {
             source: "S5, table 2: b sin(alpha0)/(2 pi N) = 10.725 mm, the middle of the wall",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            stage: Stage::Shape,
             kind: Some(Kind::Braided),
             signature: Signature {
                 pressure: "1",
@@ -56,8 +55,12 @@ impl Effect for RadiusError {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
+    }
+}
 
+impl ShapeEffect for RadiusError {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         Reshaped::setting(muscle, &[(Parameter::Radius, theta[0])])
     }

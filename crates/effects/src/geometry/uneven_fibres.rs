@@ -2,8 +2,8 @@
 
 use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
@@ -25,7 +25,6 @@ impl Effect for UnevenFibres {
             source: "expansion of the equilibrium for stiff fibres, derived",
             evidence: Evidence::Derived,
             group: Group::Geometry,
-            stage: Stage::Input,
             kind: Some(Kind::Pleated),
             signature: Signature {
                 pressure: "1",
@@ -48,10 +47,14 @@ impl Effect for UnevenFibres {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            input.spread += theta[0];
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for UnevenFibres {
+    fn act(&self, Row { theta, .. }: Row<'_>, input: &mut Input) {
+        input.spread += theta[0];
     }
 }
 

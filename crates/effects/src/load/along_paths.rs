@@ -3,9 +3,9 @@
 #![expect(clippy::float_cmp, reason = "off means the same number, to the bit")]
 
 use bulge_muscles::{Kind, units};
-use bulge_numerics::Real;
+use bulge_numerics::{Random, Real};
 
-use crate::effect::{Balance, Effect, Input, Jet, Moment, Place, Setting};
+use crate::effect::{self, Action, Balance, Effect, Input, Jet, Moment, Setting};
 use crate::probe::SETTING;
 use crate::{load, rig};
 
@@ -16,32 +16,16 @@ const ROWS: usize = 50;
 /// What an effect may change in a row: the seven numbers of the input, the load, the reading.
 type Row = [Jet; 9];
 
-/// Uniform numbers from 0 to 1 (xorshift64*), the same in every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-}
-
 /// Two sweeps that go up and down, with rests, between 0.5 and 30 %.
 fn walk(random: &mut Random) -> Vec<Moment> {
     let (mut moments, mut contraction, mut s) = (Vec::new(), 0.1, 1.0);
     let (mut time, mut cycle, mut largest) = (0.0, 0.0, 0.0_f64);
     for i in 0..ROWS {
         let begins = i % (ROWS / 2) == 0;
-        let pressure = random.within(5e4, 6e5);
-        let since = if begins { 0.0 } else { random.within(0.05, 20.0) };
-        let size = if random.next() < 0.1 { 0.0 } else { random.within(0.0, 0.03) };
-        if random.next() < 0.2 || !(0.005..=0.3).contains(&(contraction + s * size)) {
+        let pressure = random.between(5e4, 6e5);
+        let since = if begins { 0.0 } else { random.between(0.05, 20.0) };
+        let size = if random.uniform() < 0.1 { 0.0 } else { random.between(0.0, 0.03) };
+        if random.uniform() < 0.2 || !(0.005..=0.3).contains(&(contraction + s * size)) {
             s = -s;
             cycle += 0.5;
         }
@@ -51,15 +35,15 @@ fn walk(random: &mut Random) -> Vec<Moment> {
         largest = if begins { contraction } else { largest.max(contraction) };
         moments.push(Moment {
             direction: if step == 0.0 { 0.0 } else { s },
-            rate: if begins { random.within(-0.01, 0.01) } else { step / since },
-            pressure_rate: random.within(-2e3, 2e3),
-            pressure_step: if begins { 0.0 } else { random.within(-1e5, 1e5) },
-            pressure_direction: f64::signum(random.within(-1.0, 1.0)),
+            rate: if begins { random.between(-0.01, 0.01) } else { step / since },
+            pressure_rate: random.between(-2e3, 2e3),
+            pressure_step: if begins { 0.0 } else { random.between(-1e5, 1e5) },
+            pressure_direction: f64::signum(random.between(-1.0, 1.0)),
             time,
             clock: time + 500.0 * cycle,
             since,
             step,
-            temperature: random.within(-5.0, 30.0),
+            temperature: random.between(-5.0, 30.0),
             cycle: f64::floor(cycle),
             largest,
             begins,
@@ -82,14 +66,12 @@ fn run(
         if moment.begins {
             memory.fill(Jet::from(0.0));
         }
-        let mut act = |place: Place<'_>| {
-            if let Some(effect) = effect {
-                effect.act(moment, setting, theta, &mut memory, place);
-            }
-        };
+        let action = effect.map(Effect::action);
         let (pressure, contraction) = (offsets[0] + moment.pressure, offsets[1] + moment.contraction);
         let mut input = Input::of(pressure, contraction);
-        act(Place::Input(&mut input));
+        if let Some(Action::Input(effect)) = action {
+            effect.act(effect::Row { moment, setting, theta, memory: &mut memory }, &mut input);
+        }
         let force = pressure * (-contraction + 0.25) * 5e-3;
         let mid_radius = (contraction + 1.0) * 0.014;
         let balance = Balance {
@@ -105,8 +87,12 @@ fn run(
         let (mut added, mut reading) = (Jet::from(0.0), force);
         // Of a joint without load a difference tells no derivative.
         let load = Jet::from(700.0);
-        act(Place::Load(&balance, &mut added));
-        act(Place::Output(&balance, &mut reading));
+        let row = effect::Row { moment, setting, theta, memory: &mut memory };
+        match action {
+            Some(Action::Load(effect)) => effect.act(row, &balance, &mut added),
+            Some(Action::Output(effect)) => effect.act(row, &balance, &mut reading),
+            _ => {}
+        }
         [
             input.pressure,
             input.contraction,
@@ -191,7 +177,7 @@ fn check_derivatives(effect: &dyn Effect, setting: &Setting, moments: &[Moment],
 
 #[test]
 fn derivatives_are_those_of_differences() {
-    let mut random = Random(20_240_611);
+    let mut random = Random::new(20_240_611, 0);
     each(|effect, setting| {
         let off: Vec<f64> = effect.parameters().iter().map(|card| card.off).collect();
         check_derivatives(effect, setting, &walk(&mut random), &off);
@@ -200,9 +186,9 @@ fn derivatives_are_those_of_differences() {
                 let (low, high) =
                     if draw < 4 { card.plausible } else { None }.unwrap_or((card.low, card.high));
                 if card.logarithmic {
-                    random.within(low.ln(), high.ln()).exp()
+                    random.between(low.ln(), high.ln()).exp()
                 } else {
-                    random.within(low, high)
+                    random.between(low, high)
                 }
             };
             let theta: Vec<f64> = effect.parameters().iter().map(|card| number(card, &mut random)).collect();
@@ -213,7 +199,7 @@ fn derivatives_are_those_of_differences() {
 
 #[test]
 fn off_means_nothing_to_the_bit() {
-    let mut random = Random(42);
+    let mut random = Random::new(42, 0);
     each(|effect, setting| {
         let moments = walk(&mut random);
         let off: Vec<Jet> = effect.parameters().iter().map(|card| Jet::from(card.off)).collect();
@@ -231,7 +217,7 @@ fn off_means_nothing_to_the_bit() {
 
 #[test]
 fn a_sweep_knows_nothing_of_the_one_before() {
-    let mut random = Random(7);
+    let mut random = Random::new(7, 0);
     each(|effect, setting| {
         let moments = walk(&mut random);
         let theta: Vec<Jet> = effect.parameters().iter().map(|card| Jet::from(card.typical)).collect();
@@ -244,7 +230,7 @@ fn a_sweep_knows_nothing_of_the_one_before() {
 
 #[test]
 fn every_effect_acts_at_its_typical_numbers_or_one_deviation_off() {
-    let mut random = Random(3);
+    let mut random = Random::new(3, 0);
     each(|effect, setting| {
         let moments = walk(&mut random);
         let usual = |card: crate::ParameterCard<'_>| {

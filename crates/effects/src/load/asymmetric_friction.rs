@@ -1,7 +1,7 @@
 //! Asymmetric friction: another constant friction in each direction (catalogue F12).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
@@ -23,7 +23,6 @@ impl Effect for AsymmetricFriction {
             source: "Coulomb's law with one constant for each direction; asymmetric loops of fluidic muscles in Liu et al. 2017",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature { pressure: "0", parity: Parity::Mixed, shape: "constant on each branch" },
             twins: &[
@@ -45,11 +44,15 @@ impl Effect for AsymmetricFriction {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(_, force) = place {
-            let (up, down) = (moment.direction.max(0.0), (-moment.direction).max(0.0));
-            *force = *force - theta[0] * up + theta[1] * down;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for AsymmetricFriction {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, _: &Balance, force: &mut Jet) {
+        let (up, down) = (moment.direction.max(0.0), (-moment.direction).max(0.0));
+        *force = *force - theta[0] * up + theta[1] * down;
     }
 }
 

@@ -3,8 +3,8 @@
 use bulge_muscles::Kind;
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::load::filled_bladder::filled;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
@@ -28,7 +28,6 @@ impl Effect for BladderHysteresis {
             source: "loss factors of 0.05 to 0.2 of filled rubber; loops of 3 to 20 % of the bladder's force in filling and venting of fluidic muscles",
             evidence: Evidence::Derived,
             group: Group::Load,
-            stage: Stage::Load,
             kind: Some(Kind::Braided),
             signature: Signature {
                 pressure: "0",
@@ -73,18 +72,22 @@ impl Effect for BladderHysteresis {
         2
     }
 
-    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            let now = filled(balance, setting);
-            let change = if moment.begins { Jet::from(0.0) } else { now - memory[1] };
-            memory[1] = now;
-            if change.value() != 0.0 {
-                let s = change.value().signum();
-                let fades = (-(change * s / theta[1])).exp();
-                memory[0] = (memory[0] - s) * fades + s;
-            }
-            *force = *force - theta[0] * now * memory[0];
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for BladderHysteresis {
+    fn act(&self, Row { moment, setting, theta, memory }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        let now = filled(balance, setting);
+        let change = if moment.begins { Jet::from(0.0) } else { now - memory[1] };
+        memory[1] = now;
+        if change.value() != 0.0 {
+            let s = change.value().signum();
+            let fades = (-(change * s / theta[1])).exp();
+            memory[0] = (memory[0] - s) * fades + s;
         }
+        *force = *force - theta[0] * now * memory[0];
     }
 }
 

@@ -2,8 +2,8 @@
 
 use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::load::filled_bladder::filled;
 use crate::load::relaxed::relaxed;
 use crate::mechanism::{Form, Mechanism};
@@ -27,7 +27,6 @@ impl Effect for BladderRelaxation {
             source: "Zener 1948 for the rubber; exact for a stretch that runs straight between two rows",
             evidence: Evidence::Derived,
             group: Group::Load,
-            stage: Stage::Load,
             kind: Some(Kind::Braided),
             signature: Signature {
                 pressure: "0",
@@ -60,14 +59,18 @@ impl Effect for BladderRelaxation {
         2
     }
 
-    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            let now = filled(balance, setting);
-            let change = if moment.begins { Jet::from(0.0) } else { now - memory[1] };
-            memory[1] = now;
-            memory[0] = relaxed(memory[0], change, moment.since, theta[1]);
-            *force = *force - theta[0] * memory[0];
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for BladderRelaxation {
+    fn act(&self, Row { moment, setting, theta, memory }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        let now = filled(balance, setting);
+        let change = if moment.begins { Jet::from(0.0) } else { now - memory[1] };
+        memory[1] = now;
+        memory[0] = relaxed(memory[0], change, moment.since, theta[1]);
+        *force = *force - theta[0] * memory[0];
     }
 }
 

@@ -2,8 +2,8 @@
 
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
@@ -35,7 +35,6 @@ impl Effect for BoucWen {
             source: "Bouc 1967, Wen 1976; solved in closed form between two rows",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature {
                 pressure: "0",
@@ -66,15 +65,19 @@ impl Effect for BoucWen {
         1
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            let turn = balance.turn;
-            if turn.value() != 0.0 {
-                let s = turn.value().signum();
-                memory[0] = moved(memory[0] * s, turn * s / theta[1]) * s;
-            }
-            *force = *force - theta[0] * memory[0];
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for BoucWen {
+    fn act(&self, Row { theta, memory, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        let turn = balance.turn;
+        if turn.value() != 0.0 {
+            let s = turn.value().signum();
+            memory[0] = moved(memory[0] * s, turn * s / theta[1]) * s;
         }
+        *force = *force - theta[0] * memory[0];
     }
 }
 

@@ -4,8 +4,8 @@ use bulge_muscles::Kind;
 use bulge_numerics::Real;
 use std::f64::consts::PI;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
 
@@ -32,7 +32,6 @@ impl Effect for ContactFriction {
             source: "Tondu and Lopez 2000, as coded in a public repository; f about 0.015 there (24 N/bar at 250 mm), 0.001 for Festo's muscles",
             evidence: Evidence::LookedUp,
             group: Group::Load,
-            stage: Stage::Load,
             kind: Some(Kind::Braided),
             signature: Signature {
                 pressure: "1",
@@ -58,23 +57,27 @@ impl Effect for ContactFriction {
         ]
     }
 
-    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            let (sine, cosine) = setting.braid_angle.sin_cos();
-            let stretch = -balance.contraction + 1.0;
-            let squared = -(stretch * cosine).squared() + 1.0;
-            let squared =
-                if squared.value() < LEAST_SINE_SQUARED { Jet::from(LEAST_SINE_SQUARED) } else { squared };
-            let area =
-                Jet::from(2.0 * PI * setting.radius * setting.length * sine) / (stretch * squared.sqrt());
-            *force = *force - theta[0] * area * balance.pressure * moment.direction;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for ContactFriction {
+    fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        let (sine, cosine) = setting.braid_angle.sin_cos();
+        let stretch = -balance.contraction + 1.0;
+        let squared = -(stretch * cosine).squared() + 1.0;
+        let squared =
+            if squared.value() < LEAST_SINE_SQUARED { Jet::from(LEAST_SINE_SQUARED) } else { squared };
+        let area = Jet::from(2.0 * PI * setting.radius * setting.length * sine) / (stretch * squared.sqrt());
+        *force = *force - theta[0] * area * balance.pressure * moment.direction;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::{Moment, Setting};
     use crate::probe::{SETTING, balance, load};
 
     #[test]
@@ -90,8 +93,11 @@ mod tests {
             let setting = Setting { length, ..SETTING };
             let moment = Moment { direction: -1.0, ..Moment::at_rest(2e5, contraction) };
             let mut force = Jet::from(0.0);
-            let place = Place::Load(&balance(contraction), &mut force);
-            ContactFriction.act(&moment, &setting, &[Jet::from(1e-3)], &mut [], place);
+            ContactFriction.act(
+                Row { moment: &moment, setting: &setting, theta: &[Jet::from(1e-3)], memory: &mut [] },
+                &balance(contraction),
+                &mut force,
+            );
             force.value()
         };
         assert!((run(0.5, 0.1) - 2.0 * run(0.25, 0.1)).abs() < 1e-12);

@@ -1,7 +1,7 @@
 //! Coulomb friction: a constant force against the motion (Chou and Hannaford 1996; catalogue F1).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
@@ -23,7 +23,6 @@ impl Effect for CoulombFriction {
             source: "Chou and Hannaford 1996 (2.5 N); half-widths of 11 to 14 N in S2, tables 3 to 6",
             evidence: Evidence::Paper,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature { pressure: "0", parity: Parity::Odd, shape: "constant" },
             twins: &[
@@ -44,10 +43,14 @@ impl Effect for CoulombFriction {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(_, force) = place {
-            *force = *force - theta[0] * moment.direction;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for CoulombFriction {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, _: &Balance, force: &mut Jet) {
+        *force = *force - theta[0] * moment.direction;
     }
 }
 

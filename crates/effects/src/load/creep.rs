@@ -1,7 +1,7 @@
 //! Creep: the force changes with the logarithm of the time under load (catalogue R5).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
 /// `dF = -A log10(1 + t/1 s)`, t since the sweep began.
@@ -22,7 +22,6 @@ impl Effect for Creep {
             source: "logarithmic relaxation of rubber; data sheets of fluidic muscles state up to 5 % of relaxation",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature {
                 pressure: "0",
@@ -50,10 +49,14 @@ impl Effect for Creep {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(_, force) = place {
-            *force = *force - theta[0] * (1.0 + moment.time).log10();
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for Creep {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, _: &Balance, force: &mut Jet) {
+        *force = *force - theta[0] * (1.0 + moment.time).log10();
     }
 }
 

@@ -3,8 +3,8 @@
 use bulge_muscles::Kind;
 use std::f64::consts::PI;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
@@ -30,7 +30,6 @@ impl Effect for CrossingFriction {
             source: "virtual work on the contacts, which carry p on the whole wall; mu 0.1 to 0.4, rho_e 0.1 to 0.5 mm",
             evidence: Evidence::Derived,
             group: Group::Load,
-            stage: Stage::Load,
             kind: Some(Kind::Braided),
             signature: Signature { pressure: "1", parity: Parity::Odd, shape: "1 - eps" },
             twins: &[
@@ -52,12 +51,16 @@ impl Effect for CrossingFriction {
         ]
     }
 
-    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            let area_per_arm = 4.0 * PI * setting.radius / setting.braid_angle.tan();
-            let loss = theta[0] * area_per_arm * balance.pressure * (-balance.contraction + 1.0);
-            *force = *force - loss * moment.direction;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for CrossingFriction {
+    fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        let area_per_arm = 4.0 * PI * setting.radius / setting.braid_angle.tan();
+        let loss = theta[0] * area_per_arm * balance.pressure * (-balance.contraction + 1.0);
+        *force = *force - loss * moment.direction;
     }
 }
 

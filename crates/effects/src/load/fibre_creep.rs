@@ -2,8 +2,8 @@
 
 use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
 /// `e_f = c T log10(1 + t/1 s)`, T the tension of all fibres together; the contraction seen from the longer fibre grows by `e_f (1 - eps)`.
@@ -28,7 +28,6 @@ impl Effect for FibreCreep {
             source: "aramid (Kevlar 49) creeps by 0.01 to 0.1 % per decade at working loads; equation from the fibre length condition",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Input,
             kind: None,
             signature: Signature {
                 pressure: "2",
@@ -54,21 +53,25 @@ impl Effect for FibreCreep {
         ]
     }
 
-    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            let strain = theta[0] * (1.0 + moment.time).log10();
-            input.give_tension.linear += match setting.kind {
-                Kind::Pleated => strain * (-input.contraction + 1.0),
-                Kind::Braided => strain / setting.braid_angle.cos(),
-            };
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for FibreCreep {
+    fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, input: &mut Input) {
+        let strain = theta[0] * (1.0 + moment.time).log10();
+        input.give_tension.linear += match setting.kind {
+            Kind::Pleated => strain * (-input.contraction + 1.0),
+            Kind::Braided => strain / setting.braid_angle.cos(),
+        };
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Input;
+    use crate::effect::{Jet, Moment, Setting};
     use crate::probe::{SETTING, input};
     use bulge_numerics::Real;
 
@@ -84,7 +87,10 @@ mod tests {
         let setting = Setting { kind: Kind::Pleated, ..SETTING };
         let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
         let moment = Moment { time: 9.0, ..Moment::at_rest(2e5, 0.1) };
-        FibreCreep.act(&moment, &setting, &[Jet::from(6e-8)], &mut [], Place::Input(&mut input));
+        FibreCreep.act(
+            Row { moment: &moment, setting: &setting, theta: &[Jet::from(6e-8)], memory: &mut [] },
+            &mut input,
+        );
         assert!((input.give_tension.linear.value() / 5.4e-8 - 1.0).abs() < 1e-12);
     }
 
@@ -95,7 +101,10 @@ mod tests {
         let setting = Setting { kind: Kind::Pleated, ..SETTING };
         let mut input = Input::of(Jet::from(2e5), Jet::from(eps));
         let moment = Moment { time: 9.0, ..Moment::at_rest(2e5, eps) };
-        FibreCreep.act(&moment, &setting, &[Jet::from(e / 800.0)], &mut [], Place::Input(&mut input));
+        FibreCreep.act(
+            Row { moment: &moment, setting: &setting, theta: &[Jet::from(e / 800.0)], memory: &mut [] },
+            &mut input,
+        );
         let seen = eps + input.give_tension.linear.value() * 800.0;
         assert!((seen - (eps + e) / (1.0 + e)).abs() < 2.0 * e * e);
     }

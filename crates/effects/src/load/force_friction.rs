@@ -1,7 +1,7 @@
 //! Force friction: losses in proportion to the force, as of a rope over a pulley (catalogue F5).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
@@ -23,7 +23,6 @@ impl Effect for ForceFriction {
             source: "rope friction, Euler 1769 and Eytelwein 1808: exp(mu angle) - 1 for small angles; 1 to 2 % in rigs",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature { pressure: "1", parity: Parity::Odd, shape: "as the force" },
             twins: &[
@@ -47,10 +46,14 @@ impl Effect for ForceFriction {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            *force = *force - theta[0] * balance.force * moment.direction;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for ForceFriction {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        *force = *force - theta[0] * balance.force * moment.direction;
     }
 }
 

@@ -1,7 +1,7 @@
 //! Generalised Maxwell solid: rubber with two relaxation times (Wiechert 1893; the relaxing part of Burgers' solid).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::load::relaxed::relaxed;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, NUMBER, PERCENT, SECOND};
@@ -27,7 +27,6 @@ impl Effect for GeneralisedMaxwell {
             source: "Wiechert 1893, two elements; exact for a contraction that runs straight between two rows",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature {
                 pressure: "0",
@@ -71,14 +70,18 @@ impl Effect for GeneralisedMaxwell {
         2
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            let [stiffness, share, time, ratio] = [theta[0], theta[1], theta[2], theta[3]];
-            // Without the factor k, so that the derivative by k is there where k is 0.
-            memory[0] = relaxed(memory[0], balance.turn, moment.since, time);
-            memory[1] = relaxed(memory[1], balance.turn, moment.since, time * ratio);
-            *force = *force - stiffness * (memory[0] * (-share + 1.0) + memory[1] * share);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for GeneralisedMaxwell {
+    fn act(&self, Row { moment, theta, memory, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        let [stiffness, share, time, ratio] = [theta[0], theta[1], theta[2], theta[3]];
+        // Without the factor k, so that the derivative by k is there where k is 0.
+        memory[0] = relaxed(memory[0], balance.turn, moment.since, time);
+        memory[1] = relaxed(memory[1], balance.turn, moment.since, time * ratio);
+        *force = *force - stiffness * (memory[0] * (-share + 1.0) + memory[1] * share);
     }
 }
 

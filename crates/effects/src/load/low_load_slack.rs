@@ -2,8 +2,8 @@
 
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
@@ -28,7 +28,6 @@ impl Effect for LowLoadSlack {
             source: "readings cut off at 0 in a published force map (Martens and Boblan 2017); rounded cut derived",
             evidence: Evidence::Derived,
             group: Group::Load,
-            stage: Stage::Output,
             kind: None,
             signature: Signature {
                 pressure: "all",
@@ -55,14 +54,18 @@ impl Effect for LowLoadSlack {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Output(_, reading) = place {
-            let pull = *reading / theta[1];
-            // ln(1 + exp(-x)) without overflow.
-            let excess =
-                if pull.value() < 0.0 { (pull.exp() + 1.0).ln() - pull } else { ((-pull).exp() + 1.0).ln() };
-            *reading += theta[0] * theta[1] * excess;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Output(self)
+    }
+}
+
+impl OutputEffect for LowLoadSlack {
+    fn act(&self, Row { theta, .. }: Row<'_>, _: &Balance, reading: &mut Jet) {
+        let pull = *reading / theta[1];
+        // ln(1 + exp(-x)) without overflow.
+        let excess =
+            if pull.value() < 0.0 { (pull.exp() + 1.0).ln() - pull } else { ((-pull).exp() + 1.0).ln() };
+        *reading += theta[0] * theta[1] * excess;
     }
 }
 
@@ -71,13 +74,17 @@ mod tests {
     #![expect(clippy::float_cmp, reason = "off means the same number")]
 
     use super::*;
+    use crate::effect::Moment;
     use crate::probe::{SETTING, balance};
 
     fn read(theta: [f64; 2], force: f64) -> Jet {
         let mut reading = Jet::variable(force, 0);
         let moment = Moment::at_rest(2e5, 0.1);
-        let place = Place::Output(&balance(0.1), &mut reading);
-        LowLoadSlack.act(&moment, &SETTING, &theta.map(Jet::from), &mut [], place);
+        LowLoadSlack.act(
+            Row { moment: &moment, setting: &SETTING, theta: &theta.map(Jet::from), memory: &mut [] },
+            &balance(0.1),
+            &mut reading,
+        );
         reading
     }
 

@@ -2,8 +2,8 @@
 
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
@@ -31,7 +31,6 @@ impl Effect for MaxwellSlip {
             source: "Iwan 1966; for fluidic muscles Vo-Minh et al. 2011 (four elements)",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature {
                 pressure: "0",
@@ -70,16 +69,20 @@ impl Effect for MaxwellSlip {
         SLIPS_AT.len()
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            let mut sum = Jet::from(0.0);
-            for (z, part) in memory.iter_mut().zip(SLIPS_AT) {
-                let moved = *z + balance.turn / part / theta[1];
-                *z = if moved.value().abs() > 1.0 { Jet::from(moved.value().signum()) } else { moved };
-                sum += *z;
-            }
-            *force = *force - theta[0] * sum / 4.0;
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for MaxwellSlip {
+    fn act(&self, Row { theta, memory, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        let mut sum = Jet::from(0.0);
+        for (z, part) in memory.iter_mut().zip(SLIPS_AT) {
+            let moved = *z + balance.turn / part / theta[1];
+            *z = if moved.value().abs() > 1.0 { Jet::from(moved.value().signum()) } else { moved };
+            sum += *z;
         }
+        *force = *force - theta[0] * sum / 4.0;
     }
 }
 

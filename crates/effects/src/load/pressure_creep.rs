@@ -1,7 +1,7 @@
 //! Pressure creep: creep in proportion to the pressure (catalogue R5 with A in proportion to p).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
 /// `dF = -a p log10(1 + t/1 s)`, t since the sweep began.
@@ -22,7 +22,6 @@ impl Effect for PressureCreep {
             source: "logarithmic relaxation, up to 3 % of the force per decade",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature {
                 pressure: "1",
@@ -47,10 +46,14 @@ impl Effect for PressureCreep {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            *force = *force - theta[0] * balance.pressure * (1.0 + moment.time).log10();
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for PressureCreep {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        *force = *force - theta[0] * balance.pressure * (1.0 + moment.time).log10();
     }
 }
 

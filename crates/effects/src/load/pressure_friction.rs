@@ -1,7 +1,7 @@
 //! Pressure friction: strands pressed together by the gas rub on each other (S2, tables 3 to 6; catalogue F2).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON_PER_BAR;
 
@@ -23,7 +23,6 @@ impl Effect for PressureFriction {
             source: "half-widths of 1.3 to 1.7 N/bar in S2, tables 3 to 6",
             evidence: Evidence::Paper,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature { pressure: "1", parity: Parity::Odd, shape: "constant" },
             twins: &[
@@ -49,10 +48,14 @@ impl Effect for PressureFriction {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            *force = *force - theta[0] * balance.pressure * moment.direction;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for PressureFriction {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        *force = *force - theta[0] * balance.pressure * moment.direction;
     }
 }
 

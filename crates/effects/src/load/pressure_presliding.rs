@@ -2,8 +2,8 @@
 
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON_PER_BAR, PERCENT};
 
@@ -30,7 +30,6 @@ impl Effect for PressurePresliding {
                      a law for presliding that the pressure drives",
             evidence: Evidence::Derived,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature {
                 pressure: "1",
@@ -72,28 +71,32 @@ impl Effect for PressurePresliding {
         1
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            // Traction and limit per coefficient \[Pa\], so that the derivative by the coefficient is there where that is 0.
-            let limit = balance.pressure;
-            let turn = balance.turn;
-            if turn.value() != 0.0 {
-                let s = turn.value().signum();
-                let fades = (-(turn * s / theta[1])).exp();
-                memory[0] = (memory[0] - limit * s) * fades + limit * s;
-            }
-            if memory[0].value().abs() > limit.value() {
-                memory[0] = limit * memory[0].value().signum();
-            }
-            *force = *force - theta[0] * memory[0];
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for PressurePresliding {
+    fn act(&self, Row { theta, memory, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        // Traction and limit per coefficient \[Pa\], so that the derivative by the coefficient is there where that is 0.
+        let limit = balance.pressure;
+        let turn = balance.turn;
+        if turn.value() != 0.0 {
+            let s = turn.value().signum();
+            let fades = (-(turn * s / theta[1])).exp();
+            memory[0] = (memory[0] - limit * s) * fades + limit * s;
         }
+        if memory[0].value().abs() > limit.value() {
+            memory[0] = limit * memory[0].value().signum();
+        }
+        *force = *force - theta[0] * memory[0];
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Balance;
+    use crate::effect::Moment;
     use crate::probe::{balance, path};
 
     #[test]
@@ -115,8 +118,11 @@ mod tests {
             let mut force = Jet::from(0.0);
             let moment = Moment::at_rest(bar * 1e5, 0.1);
             let theta = [1e-5, 0.001].map(Jet::from);
-            let place = Place::Load(&balance, &mut force);
-            PressurePresliding.act(&moment, &crate::probe::SETTING, &theta, &mut memory, place);
+            PressurePresliding.act(
+                Row { moment: &moment, setting: &crate::probe::SETTING, theta: &theta, memory: &mut memory },
+                &balance,
+                &mut force,
+            );
             force.value()
         };
         let found = [run(6.0, 0.1), run(3.0, 0.0), run(1.0, 0.0), run(6.0, 0.0)];

@@ -1,7 +1,7 @@
 //! Pressure threshold: part of the pressure is spent before the muscle does anything (catalogue E10 and E11).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
@@ -24,7 +24,6 @@ impl Effect for PressureThreshold {
             source: "gap closure of a neo-Hookean tube derived (10 to 450 mbar); a PPAM works from 20 mbar on (S1), so below 2 kPa there",
             evidence: Evidence::Derived,
             group: Group::Load,
-            stage: Stage::Input,
             kind: None,
             signature: Signature {
                 pressure: "0",
@@ -50,10 +49,14 @@ impl Effect for PressureThreshold {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            input.pressure = lowered(input.pressure, theta[0]);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for PressureThreshold {
+    fn act(&self, Row { theta, .. }: Row<'_>, input: &mut Input) {
+        input.pressure = lowered(input.pressure, theta[0]);
     }
 }
 
@@ -62,7 +65,7 @@ mod tests {
     #![expect(clippy::float_cmp, reason = "differences of whole pascals are exact")]
 
     use super::*;
-    use crate::effect::Input;
+    use crate::effect::{Jet, Moment};
     use crate::probe::{SETTING, input};
     use bulge_numerics::Real;
 
@@ -77,7 +80,8 @@ mod tests {
         let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
         let theta = [Jet::variable(0.0, 3)];
         let moment = Moment::at_rest(2e5, 0.1);
-        PressureThreshold.act(&moment, &SETTING, &theta, &mut [], Place::Input(&mut input));
+        PressureThreshold
+            .act(Row { moment: &moment, setting: &SETTING, theta: &theta, memory: &mut [] }, &mut input);
         assert_eq!((input.pressure.value(), input.pressure.gradient()[3]), (2e5, -1.0));
     }
 }

@@ -1,7 +1,7 @@
 //! Pressure viscosity: damping that grows with the pressure (Reynolds et al. 2003; catalogue R2).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
 /// `dF = -c1 p d eps/dt`.
@@ -22,7 +22,6 @@ impl Effect for PressureViscosity {
             source: "three-element models of fluidic muscles with a damper that depends on the pressure, Reynolds et al. 2003 and Serres et al.",
             evidence: Evidence::LookedUp,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature { pressure: "1", parity: Parity::Odd, shape: "as the speed" },
             twins: &[
@@ -44,10 +43,14 @@ impl Effect for PressureViscosity {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            *force = *force - theta[0] * balance.pressure * moment.rate;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for PressureViscosity {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        *force = *force - theta[0] * balance.pressure * moment.rate;
     }
 }
 

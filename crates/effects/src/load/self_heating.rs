@@ -2,8 +2,8 @@
 
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Jet, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{PERCENT, SECOND};
 
@@ -28,7 +28,6 @@ impl Effect for SelfHeating {
             source: "S3, section 4 (the closed end gets hot); first-order heating; 0.34 % of the modulus per kelvin",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Input,
             kind: None,
             signature: Signature {
                 pressure: "0 and 1",
@@ -71,19 +70,23 @@ impl Effect for SelfHeating {
         ]
     }
 
-    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            let warmed = -(-(Jet::from(moment.clock) / theta[1])).exp() + 1.0;
-            let factor = theta[0] * warmed + 1.0;
-            input.wall = input.wall * factor;
-            // F = wall B(p area/wall): both together multiply the force.
-            if setting.has_bladder {
-                let force = theta[2] * warmed + 1.0;
-                input.wall = input.wall * force;
-                input.area = input.area * force;
-            } else {
-                input.area = input.area * factor;
-            }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for SelfHeating {
+    fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, input: &mut Input) {
+        let warmed = -(-(Jet::from(moment.clock) / theta[1])).exp() + 1.0;
+        let factor = theta[0] * warmed + 1.0;
+        input.wall = input.wall * factor;
+        // F = wall B(p area/wall): both together multiply the force.
+        if setting.has_bladder {
+            let force = theta[2] * warmed + 1.0;
+            input.wall = input.wall * force;
+            input.area = input.area * force;
+        } else {
+            input.area = input.area * factor;
         }
     }
 }
@@ -91,7 +94,7 @@ impl Effect for SelfHeating {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Input;
+    use crate::effect::{Moment, Setting};
     use crate::load::temperature::Temperature;
     use crate::probe::{SETTING, input};
 
@@ -109,7 +112,7 @@ mod tests {
     fn a_column_that_goes_up_and_down_is_another_hypothesis() {
         // The change of the bladder's modulus by the size of each, along an hour.
         let setting = Setting { has_bladder: true, ..SETTING };
-        let column = |effect: &dyn Effect, theta: &[f64], size: usize, kelvin: &dyn Fn(f64) -> f64| {
+        let column = |effect: &dyn InputEffect, theta: &[f64], size: usize, kelvin: &dyn Fn(f64) -> f64| {
             let theta: Vec<Jet> = theta.iter().map(|value| Jet::variable(*value, 0)).collect();
             let lanes = |i: usize| if i == size { theta[i] } else { Jet::from(theta[i].value()) };
             let theta: Vec<Jet> = (0..theta.len()).map(lanes).collect();
@@ -117,7 +120,10 @@ mod tests {
                 let clock = 6.0 * f64::from(i);
                 let moment = Moment { clock, temperature: kelvin(clock), ..Moment::at_rest(2e5, 0.1) };
                 let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
-                effect.act(&moment, &setting, &theta, &mut [], Place::Input(&mut input));
+                effect.act(
+                    Row { moment: &moment, setting: &setting, theta: &theta, memory: &mut [] },
+                    &mut input,
+                );
                 input.wall.gradient()[0]
             };
             (0..=600).map(row).collect::<Vec<f64>>()
@@ -144,13 +150,15 @@ mod tests {
         let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
         let moment = Moment { clock: 600.0, ..Moment::at_rest(2e5, 0.1) };
         let theta = [0.034, 600.0, 0.0].map(Jet::from);
-        SelfHeating.act(&moment, &setting, &theta, &mut [], Place::Input(&mut input));
+        SelfHeating
+            .act(Row { moment: &moment, setting: &setting, theta: &theta, memory: &mut [] }, &mut input);
         assert!((input.wall.value() - 1.021_492_099).abs() < 1e-9);
         assert_eq!(input.area, Jet::from(1.0));
         // Of the force it is both.
         let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
         let theta = [0.0, 600.0, 0.034].map(Jet::from);
-        SelfHeating.act(&moment, &setting, &theta, &mut [], Place::Input(&mut input));
+        SelfHeating
+            .act(Row { moment: &moment, setting: &setting, theta: &theta, memory: &mut [] }, &mut input);
         assert!((input.wall.value() - 1.021_492_099).abs() < 1e-9 && input.area == input.wall);
     }
 }

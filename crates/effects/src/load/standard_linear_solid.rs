@@ -1,7 +1,7 @@
 //! Standard linear solid: a spring that relaxes in series with a dashpot (Zener; catalogue R3).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::load::relaxed::relaxed;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, SECOND};
@@ -26,7 +26,6 @@ impl Effect for StandardLinearSolid {
             source: "Zener 1948; exact for a contraction that runs straight between two rows",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature {
                 pressure: "0",
@@ -67,19 +66,23 @@ impl Effect for StandardLinearSolid {
         1
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            // Without the factor k, so that the derivative by k is there where k is 0.
-            memory[0] = relaxed(memory[0], balance.turn, moment.since, theta[1]);
-            *force = *force - theta[0] * memory[0];
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for StandardLinearSolid {
+    fn act(&self, Row { moment, theta, memory, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        // Without the factor k, so that the derivative by k is there where k is 0.
+        memory[0] = relaxed(memory[0], balance.turn, moment.since, theta[1]);
+        *force = *force - theta[0] * memory[0];
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Balance;
+    use crate::effect::Moment;
     use crate::probe::path;
     use bulge_numerics::Real;
 
@@ -114,13 +117,15 @@ mod tests {
                 moment.since = 60.0 / f64::from(n);
                 force = Jet::from(0.0);
                 let balance = Balance { turn: Jet::from(0.05 / f64::from(n)), ..crate::probe::balance(0.1) };
-                let place = Place::Load(&balance, &mut force);
                 StandardLinearSolid.act(
-                    &moment,
-                    &crate::probe::SETTING,
-                    &[150.0, 30.0].map(Jet::from),
-                    &mut memory,
-                    place,
+                    Row {
+                        moment: &moment,
+                        setting: &crate::probe::SETTING,
+                        theta: &[150.0, 30.0].map(Jet::from),
+                        memory: &mut memory,
+                    },
+                    &balance,
+                    &mut force,
                 );
             }
             force.value()

@@ -2,8 +2,8 @@
 
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Jet, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NUMBER, PERCENT};
 
@@ -28,7 +28,6 @@ impl Effect for StressSoftening {
             source: "Mullins 1948; exponential form of conditioning; 10 to 40 % in the first cycle",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Input,
             kind: None,
             signature: Signature {
                 pressure: "0",
@@ -68,14 +67,18 @@ impl Effect for StressSoftening {
         ]
     }
 
-    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            let factor = theta[0] * (-(Jet::from(moment.cycle) / theta[1])).exp() + 1.0;
-            input.wall = input.wall * factor;
-            if !setting.has_bladder {
-                // F = wall B(p area/wall): both together multiply the force.
-                input.area = input.area * factor;
-            }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for StressSoftening {
+    fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, input: &mut Input) {
+        let factor = theta[0] * (-(Jet::from(moment.cycle) / theta[1])).exp() + 1.0;
+        input.wall = input.wall * factor;
+        if !setting.has_bladder {
+            // F = wall B(p area/wall): both together multiply the force.
+            input.area = input.area * factor;
         }
     }
 }
@@ -83,7 +86,7 @@ impl Effect for StressSoftening {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Input;
+    use crate::effect::{Moment, Setting};
     use crate::probe::{SETTING, input};
 
     #[test]
@@ -100,7 +103,10 @@ mod tests {
         let setting = Setting { has_bladder: true, ..SETTING };
         let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
         let moment = Moment { cycle: 2.0, ..Moment::at_rest(2e5, 0.1) };
-        StressSoftening.act(&moment, &setting, &[0.2, 2.0].map(Jet::from), &mut [], Place::Input(&mut input));
+        StressSoftening.act(
+            Row { moment: &moment, setting: &setting, theta: &[0.2, 2.0].map(Jet::from), memory: &mut [] },
+            &mut input,
+        );
         assert!((input.wall.value() - 1.073_575_888).abs() < 1e-9);
         assert_eq!(input.area, Jet::from(1.0));
     }

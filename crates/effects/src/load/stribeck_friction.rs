@@ -2,8 +2,8 @@
 
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT, PERCENT_PER_SECOND};
 
@@ -29,7 +29,6 @@ impl Effect for StribeckFriction {
                      pneumatic cylinders: static friction 1.2 to 2 times sliding friction, below some mm/s",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature {
                 pressure: "0",
@@ -77,17 +76,22 @@ impl Effect for StribeckFriction {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(_, force) = place {
-            let slow = (-(Jet::from(moment.rate) / theta[2]).squared()).exp();
-            *force = *force - theta[0] * (theta[1] * slow + 1.0) * moment.direction;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for StribeckFriction {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, _: &Balance, force: &mut Jet) {
+        let slow = (-(Jet::from(moment.rate) / theta[2]).squared()).exp();
+        *force = *force - theta[0] * (theta[1] * slow + 1.0) * moment.direction;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Moment;
     use crate::load::coulomb_friction::CoulombFriction;
     use crate::probe::load;
 

@@ -1,7 +1,7 @@
 //! Temperature: the force, and the rubber's modulus, change in proportion to the temperature (catalogue T1).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
 /// `F -> F (1 + alpha dT)`; with a bladder also `modulus -> modulus (1 + alpha_b dT)`, dT above the first row.
@@ -23,7 +23,6 @@ impl Effect for Temperature {
             source: "elasticity of rubber from entropy, modulus in proportion to the absolute temperature: 1/293 K = 0.0034 per kelvin",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Input,
             kind: None,
             signature: Signature {
                 pressure: "0 and 1",
@@ -68,15 +67,19 @@ impl Effect for Temperature {
         ]
     }
 
-    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            // F = wall B(p area/wall): both together multiply the force.
-            let force = theta[0] * moment.temperature + 1.0;
-            input.area = input.area * force;
-            input.wall = input.wall * force;
-            if setting.has_bladder {
-                input.wall = input.wall * (theta[1] * moment.temperature + 1.0);
-            }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for Temperature {
+    fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, input: &mut Input) {
+        // F = wall B(p area/wall): both together multiply the force.
+        let force = theta[0] * moment.temperature + 1.0;
+        input.area = input.area * force;
+        input.wall = input.wall * force;
+        if setting.has_bladder {
+            input.wall = input.wall * (theta[1] * moment.temperature + 1.0);
         }
     }
 }
@@ -84,7 +87,7 @@ impl Effect for Temperature {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Input;
+    use crate::effect::{Jet, Moment, Setting};
     use crate::probe::{SETTING, input};
     use bulge_numerics::Real;
 
@@ -101,11 +104,13 @@ mod tests {
         let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
         let moment = Moment { temperature: 10.0, ..Moment::at_rest(2e5, 0.1) };
         Temperature.act(
-            &moment,
-            &setting,
-            &[0.002, 0.0034].map(Jet::from),
-            &mut [],
-            Place::Input(&mut input),
+            Row {
+                moment: &moment,
+                setting: &setting,
+                theta: &[0.002, 0.0034].map(Jet::from),
+                memory: &mut [],
+            },
+            &mut input,
         );
         assert!((input.area.value() - 1.02).abs() < 1e-15);
         assert!((input.wall.value() - 1.02 * 1.034).abs() < 1e-15);

@@ -2,8 +2,8 @@
 
 use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
@@ -25,7 +25,6 @@ impl Effect for TensionFriction {
             source: "rope friction, Euler 1769 and Eytelwein 1808, with the tension of the fibres",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Load,
             kind: Some(Kind::Pleated),
             signature: Signature {
                 pressure: "1",
@@ -50,10 +49,14 @@ impl Effect for TensionFriction {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            *force = *force - theta[0] * balance.tension * moment.direction;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for TensionFriction {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        *force = *force - theta[0] * balance.tension * moment.direction;
     }
 }
 

@@ -1,7 +1,7 @@
 //! Viscous damping: a force against the motion, in proportion to its speed (catalogue R1).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
 /// `dF = -c d eps/dt`.
@@ -22,7 +22,6 @@ impl Effect for ViscousDamping {
             source: "Newton's dashpot; for fluidic muscles Reynolds et al. 2003",
             evidence: Evidence::Literature,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature {
                 pressure: "0",
@@ -50,10 +49,14 @@ impl Effect for ViscousDamping {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(_, force) = place {
-            *force = *force - theta[0] * moment.rate;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for ViscousDamping {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, _: &Balance, force: &mut Jet) {
+        *force = *force - theta[0] * moment.rate;
     }
 }
 

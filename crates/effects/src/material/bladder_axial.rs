@@ -2,8 +2,8 @@
 
 use bulge_muscles::Kind;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
@@ -25,7 +25,6 @@ impl Effect for BladderAxial {
             source: "Chou and Hannaford 1996 (their passive stiffness), by memory",
             evidence: Evidence::Literature,
             group: Group::Material,
-            stage: Stage::Load,
             kind: Some(Kind::Braided),
             signature: Signature { pressure: "0", parity: Parity::Even, shape: "-eps" },
             twins: &[
@@ -48,10 +47,14 @@ impl Effect for BladderAxial {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            *force = *force - theta[0] * balance.contraction;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for BladderAxial {
+    fn act(&self, Row { theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        *force = *force - theta[0] * balance.contraction;
     }
 }
 

@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MEGAPASCAL;
 
@@ -25,7 +25,6 @@ impl Effect for BladderC01 {
             source: "Mooney 1940, Rivlin 1948; latex c10 = 118.4 and c01 = 105.7 kPa after Klute and Hannaford 2000",
             evidence: Evidence::Literature,
             group: Group::Material,
-            stage: Stage::Shape,
             kind: Some(Kind::Braided),
             signature: Signature {
                 pressure: "0",
@@ -51,8 +50,12 @@ impl Effect for BladderC01 {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
+    }
+}
 
+impl ShapeEffect for BladderC01 {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         if theta[0] == 0.0 {
             return Ok(Reshaped::unchanged(muscle));

@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MEGAPASCAL;
 
@@ -26,7 +26,6 @@ impl Effect for BladderElasticity {
             source: "Mooney 1940, Rivlin 1948; energy of the net derived; 285 to 390 kPa fitted to published Festo data",
             evidence: Evidence::Derived,
             group: Group::Material,
-            stage: Stage::Shape,
             kind: Some(Kind::Braided),
             signature: Signature {
                 pressure: "0",
@@ -54,8 +53,12 @@ impl Effect for BladderElasticity {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
+    }
+}
 
+impl ShapeEffect for BladderElasticity {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         // Rubber without modulus is no rubber: there is no derivative by c10 at 0.
         if theta[0] == 0.0 {

@@ -5,8 +5,8 @@ use bulge_numerics::Real;
 use std::f64::consts::TAU;
 
 use super::tube::Tube;
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON_PER_METRE;
 
@@ -30,7 +30,6 @@ impl Effect for BladderPrestrain {
             source: "Ball and Garcia 2016 for the idea, by memory; formula derived",
             evidence: Evidence::Literature,
             group: Group::Material,
-            stage: Stage::Load,
             kind: Some(Kind::Braided),
             signature: Signature { pressure: "0", parity: Parity::Even, shape: "constant to within 7 %" },
             twins: &[
@@ -53,10 +52,14 @@ impl Effect for BladderPrestrain {
         ]
     }
 
-    fn act(&self, _: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place
-            && let Some(tube) = Tube::at(balance.contraction, setting)
-        {
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for BladderPrestrain {
+    fn act(&self, Row { setting, theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        if let Some(tube) = Tube::at(balance.contraction, setting) {
             *force +=
                 theta[0] * tube.hoop.scale_add(2.0, Jet::from(-1.0)) * tube.slope * (TAU * setting.radius);
         }
@@ -66,17 +69,16 @@ impl Effect for BladderPrestrain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Moment;
     use crate::probe::{SETTING, balance};
 
     fn force(tension: f64, contraction: f64) -> f64 {
         let mut force = Jet::from(0.0);
         let (moment, theta) = (Moment::at_rest(2e5, contraction), [Jet::from(tension)]);
         BladderPrestrain.act(
-            &moment,
-            &SETTING,
-            &theta,
-            &mut [],
-            Place::Load(&balance(contraction), &mut force),
+            Row { moment: &moment, setting: &SETTING, theta: &theta, memory: &mut [] },
+            &balance(contraction),
+            &mut force,
         );
         force.value()
     }

@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT_PER_KILONEWTON;
 
@@ -30,7 +30,6 @@ impl Effect for FibreStretch {
             source: "S1 with the elastic fibre length of Daerden 1999; aramid yarn 8 to 12 kN, 40 of them 0.3 to 0.5 MN; nylon braids 0.01 to 0.2 MN",
             evidence: Evidence::Derived,
             group: Group::Material,
-            stage: Stage::Shape,
             kind: None,
             signature: Signature {
                 pressure: "2",
@@ -62,8 +61,12 @@ impl Effect for FibreStretch {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
+    }
+}
 
+impl ShapeEffect for FibreStretch {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         // Fibres that don't stretch have no stiffness: there is no derivative by it.
         if theta[0] == 0.0 {

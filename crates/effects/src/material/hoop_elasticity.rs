@@ -4,8 +4,8 @@ use bulge_muscles::Kind;
 use std::f64::consts::TAU;
 
 use super::tube::Tube;
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::KILONEWTON_PER_METRE;
 
@@ -29,7 +29,6 @@ impl Effect for HoopElasticity {
             source: "virtual work; Martens and Boblan 2017 use it with a modulus that depends on the length (DMSP-20, t = 1.8 mm)",
             evidence: Evidence::LookedUp,
             group: Group::Material,
-            stage: Stage::Load,
             kind: Some(Kind::Braided),
             signature: Signature {
                 pressure: "0",
@@ -55,10 +54,14 @@ impl Effect for HoopElasticity {
         ]
     }
 
-    fn act(&self, _: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place
-            && let Some(tube) = Tube::at(balance.contraction, setting)
-        {
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for HoopElasticity {
+    fn act(&self, Row { setting, theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        if let Some(tube) = Tube::at(balance.contraction, setting) {
             *force += theta[0] * (tube.hoop + -1.0) * tube.slope * (TAU * setting.radius);
         }
     }

@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Kind, Length, LineStiffness, Muscle, MuscleError, Parameter, Quantity, Unfolding};
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Reshaped, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{KILONEWTON_PER_METRE, MILLIMETRE};
 
@@ -26,7 +26,6 @@ impl Effect for LimitedUnfolding {
             source: "S1 (unfolding seen in photographs); derived; 81 kN/m and 52.6 mm fitted to S1, table 1",
             evidence: Evidence::Derived,
             group: Group::Material,
-            stage: Stage::Shape,
             kind: Some(Kind::Pleated),
             signature: Signature {
                 pressure: "0 and 1",
@@ -55,8 +54,12 @@ impl Effect for LimitedUnfolding {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], _: &mut [Jet], _: Place<'_>) {}
+    fn action(&self) -> Action<'_> {
+        Action::Shape(self)
+    }
+}
 
+impl ShapeEffect for LimitedUnfolding {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
         if theta[0] == 0.0 {
             return Ok(Reshaped::unchanged(muscle));

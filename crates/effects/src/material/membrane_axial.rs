@@ -1,7 +1,7 @@
 //! Axial stiffness of the membrane: cloth and coating take a part of the shortening (neglected in S1; catalogue E12).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
@@ -23,7 +23,6 @@ impl Effect for MembraneAxial {
             source: "S1, section 3.1, which assumes it away; linear spring",
             evidence: Evidence::Derived,
             group: Group::Material,
-            stage: Stage::Load,
             kind: None,
             signature: Signature { pressure: "0", parity: Parity::Even, shape: "-eps" },
             twins: &[
@@ -47,10 +46,14 @@ impl Effect for MembraneAxial {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            *force = *force - theta[0] * balance.contraction;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for MembraneAxial {
+    fn act(&self, Row { theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        *force = *force - theta[0] * balance.contraction;
     }
 }
 

@@ -1,7 +1,7 @@
 //! Displacement gain: the displacement sensor's scale is off (catalogue M9).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
@@ -23,7 +23,6 @@ impl Effect for DisplacementGain {
             source: "data sheets of displacement sensors: 0.05 to 1 %",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature { pressure: "1", parity: Parity::Even, shape: "eps dF/d eps" },
             twins: &[
@@ -48,10 +47,14 @@ impl Effect for DisplacementGain {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            input.contraction = input.contraction * (theta[0] + 1.0);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for DisplacementGain {
+    fn act(&self, Row { theta, .. }: Row<'_>, input: &mut Input) {
+        input.contraction = input.contraction * (theta[0] + 1.0);
     }
 }
 

@@ -1,7 +1,7 @@
 //! End slip: the fibres give in their fittings under their tension (catalogue E4).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::rig::frame_compliance::power;
 
@@ -26,7 +26,6 @@ impl Effect for EndSlip {
             source: "shear of the bond: linear; Hertz 1882: a contact gives with the power 2/3",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature { pressure: "2", parity: Parity::Even, shape: "N dF/d eps" },
             twins: &[
@@ -56,16 +55,21 @@ impl Effect for EndSlip {
         ]
     }
 
-    fn act(&self, _: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            (input.give_tension.joint, input.give_tension.power) = (theta[0] / setting.length, theta[1]);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for EndSlip {
+    fn act(&self, Row { setting, theta, .. }: Row<'_>, input: &mut Input) {
+        (input.give_tension.joint, input.give_tension.power) = (theta[0] / setting.length, theta[1]);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Jet;
     use crate::probe::input;
     use bulge_numerics::Real;
 

@@ -1,7 +1,7 @@
 //! Force drift: the load cell's zero moves with the clock (catalogue M6).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 
 /// `reading = F + a t`, t since the first row.
@@ -22,7 +22,6 @@ impl Effect for ForceDrift {
             source: "data sheets of load cells: creep 0.03 % of full scale in half an hour, more while an amplifier warms up",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Output,
             kind: None,
             signature: Signature { pressure: "0", parity: Parity::Even, shape: "in proportion to the clock" },
             twins: &[
@@ -47,10 +46,14 @@ impl Effect for ForceDrift {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Output(_, reading) = place {
-            *reading += theta[0] * moment.clock;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Output(self)
+    }
+}
+
+impl OutputEffect for ForceDrift {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, _: &Balance, reading: &mut Jet) {
+        *reading += theta[0] * moment.clock;
     }
 }
 

@@ -1,7 +1,7 @@
 //! Force filter: the force reading follows the force as a filter of first order does.
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::load::relaxed::relaxed;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::SECOND;
@@ -27,7 +27,6 @@ impl Effect for ForceFilter {
             source: "filter of first order; exact for a force that runs straight between two rows",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Output,
             kind: None,
             signature: Signature {
                 pressure: "1",
@@ -54,23 +53,28 @@ impl Effect for ForceFilter {
         2
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Output(_, reading) = place {
-            let force = *reading;
-            let behind = if moment.begins {
-                Jet::from(0.0)
-            } else {
-                relaxed(memory[0], force - memory[1], moment.since, theta[0])
-            };
-            (memory[0], memory[1]) = (behind, force);
-            *reading = force - behind;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Output(self)
+    }
+}
+
+impl OutputEffect for ForceFilter {
+    fn act(&self, Row { moment, theta, memory, .. }: Row<'_>, _: &Balance, reading: &mut Jet) {
+        let force = *reading;
+        let behind = if moment.begins {
+            Jet::from(0.0)
+        } else {
+            relaxed(memory[0], force - memory[1], moment.since, theta[0])
+        };
+        (memory[0], memory[1]) = (behind, force);
+        *reading = force - behind;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Moment;
     use crate::probe::{SETTING, balance};
     use bulge_numerics::Real;
 
@@ -80,8 +84,11 @@ mod tests {
         let row = |(i, &[since, force]): (usize, &[f64; 2])| {
             let moment = Moment { since, begins: i == 0, ..Moment::at_rest(2e5, 0.1) };
             let mut reading = Jet::from(force);
-            let place = Place::Output(&balance(0.1), &mut reading);
-            ForceFilter.act(&moment, &SETTING, &[tau], &mut memory, place);
+            ForceFilter.act(
+                Row { moment: &moment, setting: &SETTING, theta: &[tau], memory: &mut memory },
+                &balance(0.1),
+                &mut reading,
+            );
             reading
         };
         rows.iter().enumerate().map(row).collect()

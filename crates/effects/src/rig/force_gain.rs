@@ -1,7 +1,7 @@
 //! Force gain: the load cell's scale is off (catalogue M4).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
@@ -22,7 +22,6 @@ impl Effect for ForceGain {
             source: "data sheets of load cells: 0.05 to 0.5 %",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Output,
             kind: None,
             signature: Signature { pressure: "1", parity: Parity::Even, shape: "as the force" },
             twins: &[
@@ -52,10 +51,14 @@ impl Effect for ForceGain {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Output(_, reading) = place {
-            *reading = *reading * (theta[0] + 1.0);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Output(self)
+    }
+}
+
+impl OutputEffect for ForceGain {
+    fn act(&self, Row { theta, .. }: Row<'_>, _: &Balance, reading: &mut Jet) {
+        *reading = *reading * (theta[0] + 1.0);
     }
 }
 

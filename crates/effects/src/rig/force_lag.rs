@@ -1,7 +1,7 @@
 //! Force lag: the force reading is late against displacement and pressure (catalogue M10).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::SECOND;
@@ -26,7 +26,6 @@ impl Effect for ForceLag {
             source: "geometry of the measurement, first order in tau",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature { pressure: "1", parity: Parity::Odd, shape: "-dF/d eps times the speed" },
             twins: &[
@@ -46,11 +45,15 @@ impl Effect for ForceLag {
         vec![ParameterCard::new("time", SECOND, (0.0, 5.0), 0.0, about).prior(0.0, 0.2).plausible(0.0, 2.0)]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            input.contraction = input.contraction - theta[0] * moment.rate;
-            input.pressure = lowered(input.pressure, theta[0] * moment.pressure_rate);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for ForceLag {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, input: &mut Input) {
+        input.contraction = input.contraction - theta[0] * moment.rate;
+        input.pressure = lowered(input.pressure, theta[0] * moment.pressure_rate);
     }
 }
 

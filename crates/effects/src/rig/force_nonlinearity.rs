@@ -2,8 +2,8 @@
 
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
 
@@ -29,7 +29,6 @@ impl Effect for ForceNonlinearity {
             source: "data sheets of load cells: 0.02 to 0.5 % of full scale",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Output,
             kind: None,
             signature: Signature { pressure: "2", parity: Parity::Even, shape: "square of the force" },
             twins: &[
@@ -56,12 +55,16 @@ impl Effect for ForceNonlinearity {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Output(_, reading) = place {
-            let size = reading.abs();
-            if size.value() > 0.0 {
-                *reading += theta[0] * size * size * ((theta[1] - 2.0) * (size / REFERENCE).ln()).exp();
-            }
+    fn action(&self) -> Action<'_> {
+        Action::Output(self)
+    }
+}
+
+impl OutputEffect for ForceNonlinearity {
+    fn act(&self, Row { theta, .. }: Row<'_>, _: &Balance, reading: &mut Jet) {
+        let size = reading.abs();
+        if size.value() > 0.0 {
+            *reading += theta[0] * size * size * ((theta[1] - 2.0) * (size / REFERENCE).ln()).exp();
         }
     }
 }

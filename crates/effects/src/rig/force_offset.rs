@@ -1,7 +1,7 @@
 //! Force offset: the load cell doesn't read zero without load (catalogue M3).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
@@ -22,7 +22,6 @@ impl Effect for ForceOffset {
             source: "data sheets of load cells: 0 to 1 % of full scale",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Output,
             kind: None,
             signature: Signature { pressure: "0", parity: Parity::Even, shape: "constant" },
             twins: &[
@@ -48,10 +47,14 @@ impl Effect for ForceOffset {
         true
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Output(_, reading) = place {
-            *reading += theta[0];
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Output(self)
+    }
+}
+
+impl OutputEffect for ForceOffset {
+    fn act(&self, Row { theta, .. }: Row<'_>, _: &Balance, reading: &mut Jet) {
+        *reading += theta[0];
     }
 }
 

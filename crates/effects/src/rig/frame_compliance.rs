@@ -1,7 +1,7 @@
 //! Frame compliance: the frame gives under the force, and the displacement sensor doesn't see it (catalogue E3).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NUMBER;
 
@@ -26,7 +26,6 @@ impl Effect for FrameCompliance {
             source: "geometry of the measurement; Hertz 1882: a contact gives with the power 2/3",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature {
                 pressure: "2",
@@ -59,10 +58,14 @@ impl Effect for FrameCompliance {
         ]
     }
 
-    fn act(&self, _: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            (input.give_force.joint, input.give_force.power) = (theta[0] / setting.length, theta[1]);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for FrameCompliance {
+    fn act(&self, Row { setting, theta, .. }: Row<'_>, input: &mut Input) {
+        (input.give_force.joint, input.give_force.power) = (theta[0] / setting.length, theta[1]);
     }
 }
 
@@ -77,6 +80,7 @@ pub(super) fn power(about: &str) -> ParameterCard<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Jet;
     use crate::probe::input;
     use bulge_numerics::Real;
 

@@ -1,7 +1,7 @@
 //! Length zero error: the length at which the displacement sensor reads zero is not the stated one (catalogue M7).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
@@ -23,7 +23,6 @@ impl Effect for LengthZeroError {
             source: "geometry of the measurement; 4 mm of 300 mm found in a published force map",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature {
                 pressure: "1",
@@ -54,10 +53,14 @@ impl Effect for LengthZeroError {
         true
     }
 
-    fn act(&self, _: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            input.contraction += theta[0] / setting.length;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for LengthZeroError {
+    fn act(&self, Row { setting, theta, .. }: Row<'_>, input: &mut Input) {
+        input.contraction += theta[0] / setting.length;
     }
 }
 

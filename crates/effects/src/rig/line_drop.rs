@@ -2,8 +2,8 @@
 
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NUMBER, PERCENT};
 
@@ -32,7 +32,6 @@ impl Effect for LineDrop {
             source: "ISO 6358: flow through a leak in proportion to the pressure; isothermal gas in a laminar line, p1^2 - p2^2 ~ flow; in a turbulent one ~ flow^2",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature { pressure: "1", parity: Parity::Even, shape: "as the force" },
             twins: &[
@@ -62,14 +61,18 @@ impl Effect for LineDrop {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            let part = input.pressure.value() / REFERENCE;
-            // At no pressure nothing flows.
-            if part > 0.0 {
-                let loss = theta[0] * ((theta[1] - 1.0) * (input.pressure / REFERENCE).ln()).exp();
-                input.pressure = input.pressure * (-loss + 1.0);
-            }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for LineDrop {
+    fn act(&self, Row { theta, .. }: Row<'_>, input: &mut Input) {
+        let part = input.pressure.value() / REFERENCE;
+        // At no pressure nothing flows.
+        if part > 0.0 {
+            let loss = theta[0] * ((theta[1] - 1.0) * (input.pressure / REFERENCE).ln()).exp();
+            input.pressure = input.pressure * (-loss + 1.0);
         }
     }
 }
@@ -77,7 +80,7 @@ impl Effect for LineDrop {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Input;
+    use crate::effect::{Jet, Moment};
     use crate::probe::{SETTING, input};
 
     #[test]
@@ -87,7 +90,10 @@ mod tests {
         assert!((left(1.0) - 1.94e5).abs() < 1e-9 && (left(2.0) - 1.96e5).abs() < 1e-9);
         let mut vented = Input::of(Jet::from(0.0), Jet::from(0.1));
         let theta = [0.03, 2.0].map(Jet::from);
-        LineDrop.act(&Moment::at_rest(0.0, 0.1), &SETTING, &theta, &mut [], Place::Input(&mut vented));
+        LineDrop.act(
+            Row { moment: &Moment::at_rest(0.0, 0.1), setting: &SETTING, theta: &theta, memory: &mut [] },
+            &mut vented,
+        );
         assert!(vented.pressure.value().abs() < 1e-12);
     }
 }

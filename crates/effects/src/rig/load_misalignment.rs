@@ -1,7 +1,7 @@
 //! Load misalignment: the load cell doesn't look along the muscle (catalogue M11).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
@@ -25,7 +25,6 @@ impl Effect for LoadMisalignment {
             source: "geometry of the measurement",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Output,
             kind: None,
             signature: Signature { pressure: "1", parity: Parity::Even, shape: "as the force" },
             twins: &[
@@ -46,10 +45,14 @@ impl Effect for LoadMisalignment {
         vec![ParameterCard::new("loss", PERCENT, (0.0, 20.0), 0.4, about).prior(0.0, 0.5).plausible(0.0, 3.5)]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Output(_, reading) = place {
-            *reading = *reading * (-theta[0] + 1.0);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Output(self)
+    }
+}
+
+impl OutputEffect for LoadMisalignment {
+    fn act(&self, Row { theta, .. }: Row<'_>, _: &Balance, reading: &mut Jet) {
+        *reading = *reading * (-theta[0] + 1.0);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Pressure droop: the regulator gives less pressure the more gas the muscle has taken (catalogue P5).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::rig::ideal_volume::IdealVolume;
 use crate::rig::lowered_pressure::lowered;
@@ -25,7 +25,6 @@ impl Effect for PressureDroop {
             source: "linear droop of regulators, from data sheets",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature { pressure: "0", parity: Parity::Even, shape: "-(V/V0 - 1) F/p" },
             twins: &[
@@ -49,11 +48,15 @@ impl Effect for PressureDroop {
         ]
     }
 
-    fn act(&self, _: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            let grown = IdealVolume::at(input.contraction, setting).ratio - 1.0;
-            input.pressure = lowered(input.pressure, theta[0] * grown);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for PressureDroop {
+    fn act(&self, Row { setting, theta, .. }: Row<'_>, input: &mut Input) {
+        let grown = IdealVolume::at(input.contraction, setting).ratio - 1.0;
+        input.pressure = lowered(input.pressure, theta[0] * grown);
     }
 }
 

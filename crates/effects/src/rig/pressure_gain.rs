@@ -1,7 +1,7 @@
 //! Pressure gain: the pressure sensor's scale is off (catalogue M2).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
@@ -22,7 +22,6 @@ impl Effect for PressureGain {
             source: "data sheets of pressure sensors: 0.1 to 1 %",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature { pressure: "1", parity: Parity::Even, shape: "as the force" },
             twins: &[
@@ -44,10 +43,14 @@ impl Effect for PressureGain {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            input.pressure = input.pressure / (theta[0] + 1.0);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for PressureGain {
+    fn act(&self, Row { theta, .. }: Row<'_>, input: &mut Input) {
+        input.pressure = input.pressure / (theta[0] + 1.0);
     }
 }
 

@@ -2,8 +2,8 @@
 
 use bulge_numerics::Real;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Jet, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
@@ -26,7 +26,6 @@ impl Effect for PressureHysteresis {
             source: "data sheets of pressure sensors: hysteresis of 0.1 to 0.5 % of full scale",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature {
                 pressure: "0",
@@ -72,22 +71,26 @@ impl Effect for PressureHysteresis {
         1
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            if moment.pressure_step != 0.0 {
-                let s = moment.pressure_step.signum();
-                let fades = (-(Jet::from(moment.pressure_step.abs()) / theta[1])).exp();
-                memory[0] = (memory[0] - s) * fades + s;
-            }
-            input.pressure = lowered(input.pressure, -(theta[0] * memory[0]));
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for PressureHysteresis {
+    fn act(&self, Row { moment, theta, memory, .. }: Row<'_>, input: &mut Input) {
+        if moment.pressure_step != 0.0 {
+            let s = moment.pressure_step.signum();
+            let fades = (-(Jet::from(moment.pressure_step.abs()) / theta[1])).exp();
+            memory[0] = (memory[0] - s) * fades + s;
         }
+        input.pressure = lowered(input.pressure, -(theta[0] * memory[0]));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Input;
+    use crate::effect::Moment;
     use crate::probe::SETTING;
 
     #[test]
@@ -97,7 +100,10 @@ mod tests {
             let moment = Moment { pressure_step: step, ..Moment::at_rest(2e5, 0.1) };
             let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
             let theta = [2e3, 1e4].map(Jet::from);
-            PressureHysteresis.act(&moment, &SETTING, &theta, &mut memory, Place::Input(&mut input));
+            PressureHysteresis.act(
+                Row { moment: &moment, setting: &SETTING, theta: &theta, memory: &mut memory },
+                &mut input,
+            );
             input.pressure.value() - 2e5
         };
         // One distance up: 2 kPa (1 - 1/e); far up: 2 kPa; down by two distances: -2 kPa (1 - 2 exp(-2)).

@@ -1,7 +1,7 @@
 //! Pressure lag: the pressure reading is late against the force.
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::SECOND;
@@ -24,7 +24,6 @@ impl Effect for PressureLag {
             source: "filter of first order; lines of 2 m and 2 to 4 mm bore, 0.01 to 0.2 s",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature {
                 pressure: "0",
@@ -45,10 +44,14 @@ impl Effect for PressureLag {
         vec![ParameterCard::new("time", SECOND, (0.0, 5.0), 0.05, about).prior(0.0, 0.1).plausible(0.0, 1.0)]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            input.pressure = lowered(input.pressure, -(theta[0] * moment.pressure_rate));
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for PressureLag {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, input: &mut Input) {
+        input.pressure = lowered(input.pressure, -(theta[0] * moment.pressure_rate));
     }
 }
 

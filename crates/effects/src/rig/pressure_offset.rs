@@ -1,7 +1,7 @@
 //! Pressure offset: the pressure sensor doesn't read zero when vented (catalogue M1).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
@@ -24,7 +24,6 @@ impl Effect for PressureOffset {
             source: "data sheets of pressure sensors: 0.1 to 1 % of full scale; the weather moves 1 kPa",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature { pressure: "0", parity: Parity::Even, shape: "-F/p" },
             twins: &[
@@ -45,10 +44,14 @@ impl Effect for PressureOffset {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            input.pressure = lowered(input.pressure, theta[0]);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for PressureOffset {
+    fn act(&self, Row { theta, .. }: Row<'_>, input: &mut Input) {
+        input.pressure = lowered(input.pressure, theta[0]);
     }
 }
 

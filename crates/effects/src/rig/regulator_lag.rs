@@ -2,8 +2,8 @@
 
 use bulge_fibre::AMBIENT_PRESSURE;
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::load::relaxed::relaxed;
 use crate::mechanism::{Form, Mechanism};
 use crate::rig::ideal_volume::IdealVolume;
@@ -34,7 +34,6 @@ impl Effect for RegulatorLag {
             source: "gas balance of muscle and line at constant temperature",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature {
                 pressure: "0 and 1",
@@ -60,24 +59,28 @@ impl Effect for RegulatorLag {
         1
     }
 
-    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            let growth = IdealVolume::at(input.contraction, setting).growth;
-            let demand = (input.pressure + AMBIENT_PRESSURE) * growth * moment.rate + moment.pressure_rate;
-            memory[0] = if moment.begins {
-                theta[0] * demand
-            } else {
-                relaxed(memory[0], demand * moment.since, moment.since, theta[0])
-            };
-            input.pressure = lowered(input.pressure, memory[0]);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for RegulatorLag {
+    fn act(&self, Row { moment, setting, theta, memory }: Row<'_>, input: &mut Input) {
+        let growth = IdealVolume::at(input.contraction, setting).growth;
+        let demand = (input.pressure + AMBIENT_PRESSURE) * growth * moment.rate + moment.pressure_rate;
+        memory[0] = if moment.begins {
+            theta[0] * demand
+        } else {
+            relaxed(memory[0], demand * moment.since, moment.since, theta[0])
+        };
+        input.pressure = lowered(input.pressure, memory[0]);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Input;
+    use crate::effect::{Jet, Moment};
     use crate::probe::{SETTING, input};
     use bulge_numerics::Real;
 
@@ -105,8 +108,10 @@ mod tests {
         let mut behind = |since: f64, rate: f64, begins: bool| {
             let moment = Moment { since, begins, pressure_rate: rate, ..Moment::at_rest(2e5, 0.1) };
             let mut input = Input::of(Jet::from(2e5), Jet::from(0.1));
-            let place = Place::Input(&mut input);
-            RegulatorLag.act(&moment, &SETTING, &[Jet::from(tau)], &mut memory, place);
+            RegulatorLag.act(
+                Row { moment: &moment, setting: &SETTING, theta: &[Jet::from(tau)], memory: &mut memory },
+                &mut input,
+            );
             2e5 - input.pressure.value()
         };
         assert!(behind(0.0, 0.0, true).abs() < 1e-12);

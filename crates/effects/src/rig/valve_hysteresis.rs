@@ -1,7 +1,7 @@
 //! Valve hysteresis: the valve lets the pressure fall a little before it opens (catalogue P4).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Effect, Input, InputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
@@ -24,7 +24,6 @@ impl Effect for ValveHysteresis {
             source: "data sheets of proportional valves: 0.5 to 1 % of full scale",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Input,
             kind: None,
             signature: Signature { pressure: "0", parity: Parity::Odd, shape: "F/p" },
             twins: &[
@@ -48,10 +47,14 @@ impl Effect for ValveHysteresis {
         ]
     }
 
-    fn act(&self, moment: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Input(input) = place {
-            input.pressure = lowered(input.pressure, theta[0] * moment.branch());
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Input(self)
+    }
+}
+
+impl InputEffect for ValveHysteresis {
+    fn act(&self, Row { moment, theta, .. }: Row<'_>, input: &mut Input) {
+        input.pressure = lowered(input.pressure, theta[0] * moment.branch());
     }
 }
 

@@ -1,7 +1,7 @@
 //! Weight: the load cell also carries what hangs from it (catalogue M12).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::NEWTON;
 
@@ -22,7 +22,6 @@ impl Effect for Weight {
             source: "a muscle of 20 mm with its fittings weighs 0.2 to 0.5 kg",
             evidence: Evidence::Derived,
             group: Group::Rig,
-            stage: Stage::Output,
             kind: None,
             signature: Signature { pressure: "0", parity: Parity::Even, shape: "constant" },
             twins: &[Twin { name: "force-offset", how: "identical; turn the rig over" }],
@@ -40,10 +39,14 @@ impl Effect for Weight {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Output(_, reading) = place {
-            *reading += theta[0];
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Output(self)
+    }
+}
+
+impl OutputEffect for Weight {
+    fn act(&self, Row { theta, .. }: Row<'_>, _: &Balance, reading: &mut Jet) {
+        *reading += theta[0];
     }
 }
 

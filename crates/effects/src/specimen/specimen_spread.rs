@@ -1,7 +1,7 @@
 //! Specimen spread: muscles of the same make differ in their force (catalogue H1).
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage, Twin};
-use crate::effect::{Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
+use crate::effect::{Action, Balance, Effect, Jet, OutputEffect, Row};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
@@ -23,7 +23,6 @@ impl Effect for SpecimenSpread {
             source: "S1 (three handmade muscles, 'very satisfactory'); S2 table 2 against S4 table 1, the same type: 1.4 to 9.9 N rms",
             evidence: Evidence::Paper,
             group: Group::Specimen,
-            stage: Stage::Output,
             kind: None,
             signature: Signature {
                 pressure: "any",
@@ -44,9 +43,13 @@ impl Effect for SpecimenSpread {
         ]
     }
 
-    fn act(&self, _: &Moment, _: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Output(_, reading) = place {
-            *reading = *reading * (theta[0] + 1.0);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Output(self)
+    }
+}
+
+impl OutputEffect for SpecimenSpread {
+    fn act(&self, Row { theta, .. }: Row<'_>, _: &Balance, reading: &mut Jet) {
+        *reading = *reading * (theta[0] + 1.0);
     }
 }

@@ -1,7 +1,7 @@
 //! A user's own effect as an effect like any other: its expression is evaluated at the load, with exact derivatives.
 
-use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Stage};
-use crate::effect::{Balance, Effect, Jet, Moment, Place, Setting};
+use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature};
+use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Moment, Row, Setting};
 use crate::expression::{VARIABLES, variable_index};
 use crate::user::{UserEffect, UserParameter};
 
@@ -60,7 +60,6 @@ impl Effect for UserEffect {
             source: self.source.as_deref().unwrap_or("your own file"),
             evidence: Evidence::User,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature {
                 pressure: if self.uses("p") { "1" } else { "0" },
@@ -77,10 +76,14 @@ impl Effect for UserEffect {
         self.parameters.iter().map(card_of).collect()
     }
 
-    fn act(&self, moment: &Moment, setting: &Setting, theta: &[Jet], _: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            *force += self.force.evaluate(&variables(moment, setting, balance), theta);
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for UserEffect {
+    fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
+        *force += self.force.evaluate(&variables(moment, setting, balance), theta);
     }
 }
 

@@ -32,7 +32,7 @@ fn suited_law(name: &str, muscle: &Muscle, effects: &[Arc<dyn Effect>]) -> Resul
             muscle.kind().name()
         ));
     }
-    if let Some(shape) = effects.iter().find(|effect| effect.card().stage == Stage::Shape) {
+    if let Some(shape) = effects.iter().find(|effect| effect.stage() == Stage::Shape) {
         return Err(format!(
             "`{}` changes the shape of the muscle, and a law has none; leave out the effect or the law",
             shape.card().name

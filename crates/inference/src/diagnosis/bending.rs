@@ -297,7 +297,7 @@ impl Bent<'_> {
         let less = |force: Vec<f64>, part: f64| -> Vec<f64> {
             force.iter().zip(off).zip(change).map(|((f, off), s)| f - off - part * s).collect()
         };
-        let is_shape = usize::from(self.effect.card().stage == Stage::Shape);
+        let is_shape = usize::from(self.effect.stage() == Stage::Shape);
         let mut done: Vec<&str> = Vec::new();
         for number in numbers.iter().filter(|number| number.off.is_none()) {
             if done.contains(&number.card.name) {

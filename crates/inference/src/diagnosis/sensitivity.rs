@@ -269,11 +269,11 @@ impl Ground<'_> {
             match self.at(place, effect, &model, &cards, &sizes, values) {
                 Ok(sensitivity) => found.extend(sensitivity),
                 // A number without small values: tried as a whole below.
-                Err(_) if effect.card().stage == Stage::Shape && sizes.len() == 1 => {}
+                Err(_) if effect.stage() == Stage::Shape && sizes.len() == 1 => {}
                 Err(error) => return Err(error),
             }
         }
-        if found.is_empty() && sizes.len() == 1 && effect.card().stage == Stage::Shape {
+        if found.is_empty() && sizes.len() == 1 && effect.stage() == Stage::Shape {
             // Something that is there or not: a cloth between the fibres.
             let card = &cards[sizes[0].place];
             for value in spread(card, GRID) {
@@ -403,7 +403,7 @@ impl Ground<'_> {
         let mut keep = visible.iter();
         sizes.retain(|_| keep.next().copied().unwrap_or(false));
         let shows = !columns.is_empty();
-        let absent = effect.card().stage == Stage::Shape
+        let absent = effect.stage() == Stage::Shape
             && sizes.iter().any(|size| size.secant.is_some_and(|s| is_absent_below(effect, model, size, s)));
         Ok((shows && !absent).then_some(Sensitivity { effect: place, values, sizes, columns, whole: false }))
     }

@@ -144,7 +144,7 @@ mod tests {
     fn what_is_written_is_read_as_the_same() {
         let mut random = Random::new(7, 0);
         for number in 0..200 {
-            let mut within = |low: f64, high: f64| low + (high - low) * random.uniform();
+            let mut within = |low: f64, high: f64| random.between(low, high);
             let pressures = (0..=number % 3).map(|_| within(1e3, 9e5)).collect();
             let low = within(-0.1, 0.1);
             let range = [low, low + within(0.01, 0.3)];

@@ -9,25 +9,11 @@ use bulge_effects::law::{LAWS, LawGeometry};
 use bulge_effects::{Catalogue, Group, Moment};
 use bulge_model::{Model, Record, Wanted};
 use bulge_muscles::{Kind, Muscle, Parameter, preset};
-
-/// A random sequence (Knuth's MMIX constants), in (0, 1).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-}
+use bulge_numerics::Random;
 
 /// Loops with inner reversals at two random pressures, with time, temperature and two cycles.
 fn path(seed: u64) -> Record {
-    let mut random = Random(seed);
-    random.next();
+    let mut random = Random::new(seed, 0);
     let [middle, wide, narrow] =
         [random.between(0.06, 0.07), random.between(0.01, 0.04), random.between(0.005, 0.015)];
     let [slow, fast, phase] = [random.between(0.2, 0.4), random.between(0.7, 1.2), random.between(0.0, 6.0)];

@@ -7,8 +7,8 @@
 )]
 
 use bulge_effects::{
-    Card, Catalogue, Effect, Evidence, Form, Group, Jet, Mechanism, Moment, Needs, ParameterCard, Parity,
-    Place, Setting, Signature, Stage,
+    Action, Balance, Card, Catalogue, Effect, Evidence, Form, Group, Jet, LoadEffect, Mechanism, Moment,
+    Needs, ParameterCard, Parity, Row, Signature, Stage,
 };
 use bulge_model::{Model, ModelError, Record, Wanted, Warm};
 use bulge_muscles::{Muscle, Parameter, preset};
@@ -70,7 +70,7 @@ fn derivatives_by_every_shape_agree_with_differences() {
         (preset("ppam-2-r16").unwrap(), "limited-unfolding", [0.02, 0.1, 0.3]),
     ] {
         let record = map(&[2e5, 4e5], &contractions);
-        for effect in Catalogue::builtin().iter().filter(|e| e.card().stage == Stage::Shape) {
+        for effect in Catalogue::builtin().iter().filter(|e| e.stage() == Stage::Shape) {
             let name = effect.card().name;
             let names: Vec<&str> = if name == beside { vec![name] } else { vec![beside, name] };
             let base = Model::new(&muscle);
@@ -263,7 +263,6 @@ impl Effect for Turns {
             source: "",
             evidence: Evidence::User,
             group: Group::Load,
-            stage: Stage::Load,
             kind: None,
             signature: Signature { pressure: "0", parity: Parity::Odd, shape: "" },
             twins: &[],
@@ -280,11 +279,15 @@ impl Effect for Turns {
         1
     }
 
-    fn act(&self, _: &Moment, _: &Setting, _: &[Jet], memory: &mut [Jet], place: Place<'_>) {
-        if let Place::Load(balance, force) = place {
-            memory[0] += balance.turn;
-            *force = memory[0] * 1e6;
-        }
+    fn action(&self) -> Action<'_> {
+        Action::Load(self)
+    }
+}
+
+impl LoadEffect for Turns {
+    fn act(&self, row: Row<'_>, balance: &Balance, force: &mut Jet) {
+        row.memory[0] += balance.turn;
+        *force = row.memory[0] * 1e6;
     }
 }
 
