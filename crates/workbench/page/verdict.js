@@ -24,8 +24,9 @@ const fittedName = (claim) => claim.fitted ?? claim.effect;
 /** @param {Diagnosis} found @param {Does} does @returns {import("./dom.js").Child[]} */
 export function verdict(found, does) {
   const names = found.missing.map(fittedName);
+  const isBent = found.ladder.some((rung) => rung.bent && rung.adequate);
   return [
-    h("div", { class: `verdict ${found.verdict}`, id: "verdict", "data-verdict": found.verdict }, found.says.startsWith(found.verdict) ? null : h("h3", null, found.verdict.replaceAll("-", " ")), h("p", { class: "headline" }, found.says), found.ladder.some((rung) => rung.bent && rung.adequate) ? h("p", { class: "facts" }, "In the form that these data want, that is: by the formulas alone something is left, see the steps.") : null),
+    h("div", { class: `verdict ${found.verdict}${isBent ? " bent" : ""}`, id: "verdict", "data-verdict": found.verdict }, found.says.startsWith(found.verdict) ? null : h("h3", null, found.verdict.replaceAll("-", " ")), h("p", { class: "headline" }, found.says), isBent ? h("p", { class: "facts" }, "In the form that these data want, that is: what can be switched on are the formulas, and by them something is left, see the steps.") : null),
     names.length > 1 ? h(
       "div", { class: "row" },
       h("button", { type: "button", class: "primary", id: "accept-all", onclick: () => does.accept(names), disabled: names.every(does.has) }, `Accept all ${names.length}`),
