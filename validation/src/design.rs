@@ -1,9 +1,9 @@
 //! Muscles put to use: sizes against S4, closed muscles against the equilibrium's own stiffness, a filling against its closed form.
 
 use bulge_design::gas::{Chamber, ClosedMuscle, Filling, GasModel, Load, Orifice, Supply};
-use bulge_design::size::{LoadCase, Wish, fluidic_muscles, size};
+use bulge_design::size::{LoadCase, Requirements, fluidic_muscles, size};
 use bulge_fibre::{Approach, Given};
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use bulge_muscles::{Pressure, preset};
 
 use crate::check::{Check, Claim};
@@ -33,7 +33,7 @@ pub(crate) fn sizes() -> Check {
         let families = fluidic_muscles()?;
         for [kilograms, bar, percent] in S4 {
             let load = LoadCase::lift(0.05, 0.0, 10.0 * kilograms)?;
-            let wish = Wish {
+            let wish = Requirements {
                 pressures_pa: vec![1e5 * bar],
                 lengths_m: vec![],
                 margin: 0.0,
@@ -59,7 +59,7 @@ pub(crate) fn closed() -> Check {
     }
     .run(|tally| {
         for (name, contraction) in [("ppam-2-r16", 0.2), ("dmsp-20-250", 0.12)] {
-            let muscle = Extended::new(&preset(name)?, &[])?;
+            let muscle = MuscleWithEffects::new(&preset(name)?, &[])?;
             for exponent in [1.0, 1.4] {
                 let closed = ClosedMuscle::new(&muscle, 2e5, contraction, exponent)?;
                 let h = 1e-3;
@@ -121,7 +121,7 @@ pub(crate) fn held() -> Check {
         why: "the same equilibria at both ends",
     }
     .run(|tally| {
-        let muscle = Extended::new(&preset("dmsp-20-250")?, &[])?;
+        let muscle = MuscleWithEffects::new(&preset("dmsp-20-250")?, &[])?;
         let filling = Filling {
             chamber: Chamber::muscle(&muscle, Load::Held(0.1))?.with_dead_volume(2e-5)?,
             orifice: Orifice::hole(2e-3)?,

@@ -4,7 +4,7 @@ use bulge_design::gas::{
     AMBIENT_TEMPERATURE_K, Chamber, ClosedMuscle, ClosedState, CycleResult, Filling, GasModel, History, Lift,
     Load, Orifice, StiffnessSplit, Stroke, Supply,
 };
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Force, Length, Muscle, Pressure, Ratio, Volume};
 use bulge_report::lines_svg;
@@ -161,7 +161,7 @@ impl AirCommand {
 }
 
 impl Common {
-    fn muscle(&self) -> Result<(String, Extended), Failure> {
+    fn muscle(&self) -> Result<(String, MuscleWithEffects), Failure> {
         let (muscle, extended) = extended(&self.muscle, self.effects.as_deref(), None)?;
         Ok((muscle.name().to_owned(), extended))
     }
@@ -243,7 +243,7 @@ impl Shut {
 /// Force with the valve shut, and at the pressure of the filling.
 fn compared(
     title: &str,
-    muscle: &Extended,
+    muscle: &MuscleWithEffects,
     pressure: f64,
     states: &[(ClosedState, StiffnessSplit)],
 ) -> Result<String, Failure> {
@@ -253,7 +253,7 @@ fn compared(
         let given = bulge_fibre::Given::Contraction(state.contraction);
         let found = muscle
             .solve(Pressure::pa(pressure), given, bulge_fibre::Approach::Auto)
-            .map_err(|error| Failure::Extended(Box::new(error)))?;
+            .map_err(|error| Failure::MuscleWithEffects(Box::new(error)))?;
         open.push([100.0 * state.contraction, found.force_n]);
     }
     let lines = [("valve open".to_owned(), open), ("valve shut".to_owned(), shut)];
@@ -300,7 +300,7 @@ impl Fill {
         Ok(Orifice::hole(diameter)?)
     }
 
-    fn filling<'a>(&self, muscle: &'a Extended) -> Result<Filling<'a>, Failure> {
+    fn filling<'a>(&self, muscle: &'a MuscleWithEffects) -> Result<Filling<'a>, Failure> {
         let pressure_pa = quantity::<Pressure>("--supply", &self.supply)?.si();
         let temperature_k = AMBIENT_TEMPERATURE_K;
         let vessel = self.vessel.as_deref().map(|text| quantity::<Volume>("--vessel", text)).transpose()?;

@@ -2,7 +2,7 @@
 
 use bulge_effects::{Catalogue, Effect, known};
 use bulge_fibre::{Approach, FibreError};
-use bulge_model::{Extended, ExtendedError, specimen};
+use bulge_model::{MuscleWithEffects, MuscleWithEffectsError, specimen};
 use bulge_muscles::settings::nearest;
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Muscle, PRESETS, Pressure, Specimen, preset, read, units};
@@ -54,14 +54,14 @@ pub(crate) fn extended(
     name: &str,
     own: Option<&Path>,
     of: Option<&str>,
-) -> Result<(Muscle, Extended), Failure> {
+) -> Result<(Muscle, MuscleWithEffects), Failure> {
     let mut muscle = muscle(name)?;
     let mut known = known(&muscle, &catalogue(own)?)?;
     if let Some(of) = of {
         check_specimen(&muscle, of)?;
         (muscle, known) = specimen(&muscle, of, &known)?;
     }
-    let extended = Extended::new(&muscle, &known)?;
+    let extended = MuscleWithEffects::new(&muscle, &known)?;
     Ok((muscle, extended))
 }
 
@@ -129,12 +129,15 @@ pub(crate) fn about(muscle: &Muscle, pressure: Pressure) -> impl Fn(FibreError) 
 }
 
 /// The same of a muscle with its effects.
-pub(crate) fn about_extended(muscle: &Muscle, pressure: Pressure) -> impl Fn(ExtendedError) -> Failure {
+pub(crate) fn about_extended(
+    muscle: &Muscle,
+    pressure: Pressure,
+) -> impl Fn(MuscleWithEffectsError) -> Failure {
     let about = about(muscle, pressure);
     move |error| match error {
-        ExtendedError::Equilibrium(source) => about(*source),
-        ExtendedError::Model(source) => Failure::Model(source),
-        ExtendedError::Force { .. } => Failure::Extended(Box::new(error)),
+        MuscleWithEffectsError::Equilibrium(source) => about(*source),
+        MuscleWithEffectsError::Model(source) => Failure::Model(source),
+        MuscleWithEffectsError::Force { .. } => Failure::MuscleWithEffects(Box::new(error)),
     }
 }
 

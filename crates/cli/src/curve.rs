@@ -1,7 +1,7 @@
 //! `bulge curve`: isobaric characteristics.
 
 use bulge_fibre::{Given, Isobar, Problem, Shape};
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use bulge_muscles::{Muscle, Pressure, Ratio};
 use bulge_vtk::write_series;
 use clap::Args;
@@ -131,7 +131,7 @@ impl CurveCommand {
     }
 
     /// The characteristics, each over the range in which the muscle pulls at its pressure where the option doesn't give one for all.
-    fn isobars(&self, extended: &Extended, pressures: &[Pressure]) -> Result<Vec<Isobar>, Failure> {
+    fn isobars(&self, extended: &MuscleWithEffects, pressures: &[Pressure]) -> Result<Vec<Isobar>, Failure> {
         let mut found = Vec::with_capacity(pressures.len());
         let mut rest = pressures;
         while let Some(first) = rest.first() {
@@ -152,7 +152,7 @@ impl CurveCommand {
     }
 
     /// The contractions, from the option or over the range in which the muscle pulls at the pressure.
-    fn contractions(&self, extended: &Extended, pressure: Pressure) -> Result<Vec<f64>, Failure> {
+    fn contractions(&self, extended: &MuscleWithEffects, pressure: Pressure) -> Result<Vec<f64>, Failure> {
         let [low, high] = if let Some(text) = &self.contraction {
             range::<Ratio>("--contraction", text)?
         } else {
@@ -183,7 +183,7 @@ impl CurveCommand {
 
 /// A time series over the contractions of an isobar; "time" is the contraction in per cent.
 fn series(
-    extended: &Extended,
+    extended: &MuscleWithEffects,
     isobar: &Isobar,
     command: &CurveCommand,
     folder: &Path,

@@ -11,7 +11,7 @@ use bulge_membrane::{
     Cloth, Copies, Fitting, Inflation, Law, Load, Part, RingLayer, Sheet, Solver, State, Structure, Support,
     Thread, Tolerance,
 };
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use bulge_muscles::{Construction, Ends, Muscle, Pressure, Quantity};
 use std::f64::consts::{PI, TAU};
 
@@ -41,7 +41,7 @@ struct Elements {
 /// The equilibrium of a muscle without other shape effects than those of its kind, ends, fibres and bladder.
 pub(crate) fn shape(
     problem: &Problem,
-    extended: &Extended,
+    extended: &MuscleWithEffects,
     pressure: Pressure,
     given: Given,
     points: usize,
@@ -74,7 +74,7 @@ pub(crate) fn shape(
 }
 
 /// What elements of revolution can't say.
-fn check(muscle: &Muscle, extended: &Extended) -> Result<(), Failure> {
+fn check(muscle: &Muscle, extended: &MuscleWithEffects) -> Result<(), Failure> {
     let refused = |what: &str| {
         let what = format!(
             "membrane elements of revolution know no {what}: leave the method out, or write a case for `bulge membrane`"

@@ -11,7 +11,7 @@ use bulge_inference::{HideError, InferenceError, Stated, StatementError};
 use bulge_measurements::{MeasurementError, WrittenError};
 use bulge_membrane::MembraneError;
 use bulge_membrane::case::CaseError;
-use bulge_model::{ExtendedError, ModelError};
+use bulge_model::{ModelError, MuscleWithEffectsError};
 use bulge_muscles::{Fault, FileError, PresetError, UnitError};
 use bulge_report::{LearningError, PlotError};
 use bulge_sweep::export::ExportError;
@@ -50,7 +50,7 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Model(Box<ModelError>),
     #[error("{0}")]
-    Extended(Box<ExtendedError>),
+    MuscleWithEffects(Box<MuscleWithEffectsError>),
     #[error("{0}")]
     NotConverged(String),
     #[error("{0}")]
@@ -102,7 +102,7 @@ impl Failure {
             Self::Equilibrium { source, .. } => status(source.fault()),
             Self::Inference(error) => status(error.fault()),
             Self::Model(error) => status(error.fault()),
-            Self::Extended(error) => status(error.fault()),
+            Self::MuscleWithEffects(error) => status(error.fault()),
             Self::NotConverged(_) => 4,
             Self::Learning(error) => status(error.fault()),
             Self::Outside(_) | Self::NoneFound { .. } => 3,

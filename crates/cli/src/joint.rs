@@ -3,7 +3,7 @@
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Angle, Force, Pressure, Volume};
 use bulge_report::lines_svg;
-use bulge_sweep::{JOINT_EXAMPLE, Joint, JointError, Outside, Readings, Stand};
+use bulge_sweep::{JOINT_EXAMPLE, Joint, JointError, JointState, Outside, Readings};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -220,7 +220,7 @@ fn bar(pressure: f64) -> String {
 }
 
 /// A stand in words and numbers.
-fn standing(how: &str, stand: &Stand, outside: f64) -> String {
+fn standing(how: &str, stand: &JointState, outside: f64) -> String {
     let under = if outside == 0.0 {
         String::new()
     } else {

@@ -1,7 +1,7 @@
 //! `bulge shape`: one equilibrium.
 
 use bulge_fibre::{Given, MeridianPoint, Problem, Shape};
-use bulge_model::{Equilibrium, Extended};
+use bulge_model::{Equilibrium, MuscleWithEffects};
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Force, Length, Muscle, Pressure, Ratio, Volume};
 use bulge_vtk::{Bulge, Style, vtp_bytes, write_vtp};
@@ -228,7 +228,7 @@ pub(crate) fn bulge<'a>(
 }
 
 /// What effects of the muscle file do.
-fn effects_text(extended: &Extended, alone: Option<f64>) -> String {
+fn effects_text(extended: &MuscleWithEffects, alone: Option<f64>) -> String {
     let mut text = String::new();
     if let Some(alone) = alone {
         let used = extended.used().join(", ");

@@ -1,8 +1,8 @@
 //! `bulge size`: from a load over a stroke to muscles, lengths and pressures.
 
 use bulge_design::size::{
-    Choice, Family, Given, Infeasible, Limits, LoadCase, LoadPoint, Sizing, Weights, Wish, fluidic_muscles,
-    size,
+    Choice, Family, Given, Infeasible, Limits, LoadCase, LoadPoint, Requirements, Sizing, Weights,
+    fluidic_muscles, size,
 };
 use bulge_effects::known;
 use bulge_effects::law::Law;
@@ -245,7 +245,7 @@ impl SizeCommand {
         let lengths: Vec<Length> =
             self.length.as_deref().map(|text| list("--length", text)).transpose()?.unwrap_or_default();
         let is_open = pressures.is_none() && lengths.is_empty();
-        let mut wish = Wish {
+        let mut wish = Requirements {
             pressures_pa: pressures.clone().unwrap_or_default(),
             lengths_m: lengths.into_iter().map(Quantity::si).collect(),
             margin: quantity::<Ratio>("--margin", &self.margin)?.si(),

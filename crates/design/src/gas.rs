@@ -42,7 +42,7 @@ pub use filling::{Energy, Filling, GasModel, History, Sample, Supply};
 pub use orifice::{Orifice, REFERENCE_DENSITY, REFERENCE_TEMPERATURE_K};
 pub use stiffness::StiffnessSplit;
 
-use bulge_model::ExtendedError;
+use bulge_model::MuscleWithEffectsError;
 
 /// Specific gas constant of dry air \[J/(kg K)\].
 pub const R_AIR: f64 = 287.05;
@@ -74,7 +74,7 @@ pub enum GasError {
         /// Gauge pressure \[Pa\].
         pressure_pa: f64,
         /// What is wrong.
-        error: Box<ExtendedError>,
+        error: Box<MuscleWithEffectsError>,
     },
     /// No contraction at which pull and load are equal.
     #[error(
@@ -129,40 +129,40 @@ fn positive(what: &'static str, value: f64) -> Result<f64, GasError> {
 #[cfg(test)]
 mod examples {
     use bulge_effects::{Catalogue, known};
-    use bulge_model::Extended;
+    use bulge_model::MuscleWithEffects;
     use bulge_muscles::from_toml;
 
-    pub(super) fn muscle(lines: &str) -> Extended {
+    pub(super) fn muscle(lines: &str) -> MuscleWithEffects {
         let muscle = from_toml(&format!("name = \"x\"\n{lines}\n"), "m.toml").unwrap();
-        Extended::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
+        MuscleWithEffects::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
     }
 
     /// Inextensible fibres all round: F dl = -p dV with the volume that holds the gas.
-    pub(super) fn pleated() -> Extended {
+    pub(super) fn pleated() -> MuscleWithEffects {
         muscle("kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = \"continuous\"")
     }
 
     /// Forty inextensible fibres.
-    pub(super) fn forty() -> Extended {
+    pub(super) fn forty() -> MuscleWithEffects {
         muscle("kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40")
     }
 
     /// Fibres so soft that the volume depends on the pressure.
-    pub(super) fn soft() -> Extended {
+    pub(super) fn soft() -> MuscleWithEffects {
         muscle(
             "kind = \"pleated\"\nlength = \"110 mm\"\nradius = \"16 mm\"\nfibres = 40\nfibre = { stiffness = \"2 kN\" }",
         )
     }
 
     /// The textbook braid.
-    pub(super) fn braid() -> Extended {
+    pub(super) fn braid() -> MuscleWithEffects {
         muscle(
             "kind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"cylinder\"",
         )
     }
 
     /// A clamped braid with an effect that changes its shape and one that adds force.
-    pub(super) fn learnt() -> Extended {
+    pub(super) fn learnt() -> MuscleWithEffects {
         muscle(
             "kind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\n\n[effects.fibre-length]\nexcess = \"1 %\"\n[effects.hoop-elasticity]\nstiffness = \"500 N/m\"",
         )

@@ -26,7 +26,7 @@ pub use catalogue::fluidic_muscles;
 pub use choice::{AtPoint, Choice, Given, Infeasible};
 pub use family::{CutMuscle, Family, Limits};
 pub use load::{LoadCase, LoadPoint};
-pub use search::{Sizing, Weights, Wish, size};
+pub use search::{Requirements, Sizing, Weights, size};
 
 /// Why nothing can be sized.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -59,7 +59,7 @@ pub enum SizeError {
     NoForce,
     /// A wish out of its range.
     #[error("the {what} is {value}: it must be {range}")]
-    Wish {
+    Requirements {
         /// What.
         what: &'static str,
         /// Its value in SI.

@@ -203,6 +203,21 @@ impl Input {
             give_tension: Give::none(),
         }
     }
+
+    /// Multiplies the force of the equilibrium: `F = wall B(pressure area/wall, e)`, so both factors together do.
+    pub fn multiply_force(&mut self, factor: Jet) {
+        self.wall = self.wall * factor;
+        self.area = self.area * factor;
+    }
+
+    /// Multiplies the modulus of the bladder; the force of a muscle whose equilibrium has none.
+    pub fn multiply_modulus(&mut self, factor: Jet, setting: &Setting) {
+        if setting.has_bladder {
+            self.wall = self.wall * factor;
+        } else {
+            self.multiply_force(factor);
+        }
+    }
 }
 
 /// The equilibrium that the input leads to: load effects read it.
@@ -322,6 +337,14 @@ impl Reshaped {
     #[must_use]
     pub fn unchanged(muscle: &Muscle) -> Self {
         Self { muscle: muscle.clone(), moves: Vec::new() }
+    }
+
+    /// The muscle with a number set that is 0 where it has no such part: the effect's first parameter. At 0 the muscle stays as it is, and there is no derivative.
+    ///
+    /// # Errors
+    /// As [`Reshaped::setting`].
+    pub fn with_part(muscle: &Muscle, parameter: Parameter, value: f64) -> Result<Self, MuscleError> {
+        if value == 0.0 { Ok(Self::unchanged(muscle)) } else { Self::setting(muscle, &[(parameter, value)]) }
     }
 
     /// The muscle with numbers set, the parameter i of the effect being the i-th number itself. A number that stays what it is leaves the

@@ -1,7 +1,7 @@
 //! Which effect is missing: the screen, the search, classes, confidence, and what to measure next.
 
-pub(crate) mod as_set;
 pub(crate) mod averaged;
+pub(crate) mod averaged_data;
 pub(crate) mod bending;
 pub(crate) mod candidates;
 pub(crate) mod claim;
@@ -18,7 +18,6 @@ pub(crate) mod explained;
 pub(crate) mod fits;
 pub(crate) mod form_error;
 pub(crate) mod geometry;
-pub(crate) mod ground;
 pub(crate) mod hints;
 pub(crate) mod hypotheses;
 pub(crate) mod jump;
@@ -35,6 +34,7 @@ pub(crate) mod pure_error;
 mod rungs;
 pub(crate) mod search;
 pub(crate) mod sensitivity;
+pub(crate) mod setpoints;
 pub(crate) mod smooth;
 pub(crate) mod something_else;
 pub(crate) mod space;

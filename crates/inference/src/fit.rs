@@ -3,12 +3,12 @@
 pub(crate) mod carry_over;
 pub(crate) mod document;
 pub(crate) mod extension;
+pub(crate) mod frozen;
 pub(crate) mod held;
 pub(crate) mod interval;
 pub(crate) mod nuisance;
 pub(crate) mod problem;
 pub(crate) mod restrictions;
 pub(crate) mod search;
-pub(crate) mod settle;
 pub(crate) mod states;
 pub(crate) mod weights;

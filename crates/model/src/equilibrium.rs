@@ -4,7 +4,7 @@ use bulge_fibre::{Approach, Given, MeridianPoint, PleatedNumbers, Problem, Range
 use bulge_muscles::{Muscle, Pressure, Quantity};
 use serde::Serialize;
 
-use crate::extended::{Extended, ExtendedError};
+use crate::muscle_with_effects::{MuscleWithEffects, MuscleWithEffectsError};
 
 /// An equilibrium of a muscle with the effects that its file states.
 #[derive(Debug, Clone)]
@@ -52,14 +52,14 @@ impl Equilibrium {
     /// The equilibrium of a muscle with its effects at a pressure, with `points` points of the meridian.
     ///
     /// # Errors
-    /// What [`Problem::shape`] and [`Extended::solve`] say.
+    /// What [`Problem::shape`] and [`MuscleWithEffects::solve`] say.
     pub fn new(
-        extended: &Extended,
+        extended: &MuscleWithEffects,
         pressure: Pressure,
         given: Given,
         approach: Approach,
         points: usize,
-    ) -> Result<Self, ExtendedError> {
+    ) -> Result<Self, MuscleWithEffectsError> {
         let problem = Problem::new(extended.muscle(), pressure)?;
         if !extended.adds_force() {
             let shape = problem.shape(given, approach, points)?;
@@ -76,7 +76,7 @@ impl Equilibrium {
     /// Of a shape that was computed in another way.
     #[must_use]
     pub fn of(
-        extended: &Extended,
+        extended: &MuscleWithEffects,
         problem: &Problem,
         shape: Shape,
         equilibrium_force_n: Option<f64>,

@@ -5,7 +5,7 @@ use bulge_effects::user::EffectFileError;
 use bulge_fibre::FibreError;
 use bulge_inference::{HideError, InferenceError, StatementError};
 use bulge_measurements::MeasurementError;
-use bulge_model::{ExtendedError, ModelError};
+use bulge_model::{ModelError, MuscleWithEffectsError};
 use bulge_muscles::{Fault, FileError, MuscleError, PresetError};
 use bulge_report::{LearningError, PlotError};
 use bulge_sweep::{FamilyError, SweepError, TabulateError};
@@ -78,7 +78,7 @@ macro_rules! raised {
 raised!(
     FileError, PresetError, MuscleError, MeasurementError, CatalogueError, EffectFileError, SweepError, TableError,
     TabulateError, VtkError, PlotError, serde_json::Error, std::io::Error;
-    FibreError, ModelError, ExtendedError, FamilyError, InferenceError, HideError, LearningError, StatementError
+    FibreError, ModelError, MuscleWithEffectsError, FamilyError, InferenceError, HideError, LearningError, StatementError
 );
 
 /// `?` for errors of the crates.

@@ -3,7 +3,7 @@
 use bulge_effects::user::UserEffect;
 use bulge_effects::{Catalogue, known, user};
 use bulge_fibre::{Approach, Given};
-use bulge_model::{Equilibrium, Extended};
+use bulge_model::{Equilibrium, MuscleWithEffects};
 use bulge_muscles::{self as muscles, PRESETS, Parameter, Pressure, units};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -52,9 +52,9 @@ pub(crate) fn approach(method: &str) -> PyResult<Approach> {
 }
 
 impl Muscle {
-    pub(crate) fn extended(&self) -> PyResult<Extended> {
+    pub(crate) fn extended(&self) -> PyResult<MuscleWithEffects> {
         let known = known(&self.muscle, &catalogue(&self.own)?).or_raise()?;
-        Extended::new(&self.muscle, &known).or_raise()
+        MuscleWithEffects::new(&self.muscle, &known).or_raise()
     }
 }
 
@@ -225,7 +225,7 @@ impl Muscle {
     }
 
     /// An error with the muscle and the pressure that it is about, as the command line says it.
-    fn about(&self, pressure: f64, error: &bulge_model::ExtendedError) -> PyErr {
+    fn about(&self, pressure: f64, error: &bulge_model::MuscleWithEffectsError) -> PyErr {
         let says = format!("{} at {}: {error}", self.muscle.name(), Pressure::pa(pressure));
         crate::error::of_fault(error.fault(), says)
     }

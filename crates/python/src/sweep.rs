@@ -2,8 +2,8 @@
 
 use bulge_muscles::{Quantity as _, output, to_toml};
 use bulge_sweep::{
-    Built, Plan, Promise, RunOptions, SWEEP_EXAMPLE, TableDescription, begin, complete, manifest, piece, run,
-    tabulate,
+    Built, ChunkManifest, Plan, RunOptions, SWEEP_EXAMPLE, TableDescription, begin, complete, manifest,
+    piece, run, tabulate,
 };
 use bulge_table::Table;
 use pyo3::prelude::*;
@@ -156,7 +156,7 @@ impl Sweep {
 
     /// The text of `manifest.json` from those of all promises, in their order.
     fn manifest(&self, promises: Vec<String>) -> PyResult<String> {
-        let promises: Vec<Promise> =
+        let promises: Vec<ChunkManifest> =
             promises.iter().map(|text| serde_json::from_str(text)).collect::<Result<_, _>>().or_raise()?;
         manifest(&self.plan, &promises).or_raise()
     }

@@ -13,6 +13,6 @@ mod encode;
 mod field;
 mod polynomial;
 
-pub use build::{BuildError, Built, Wish, build};
+pub use build::{BuildError, Built, Requirements, build};
 pub use encode::EncodeError;
 pub use field::{Field, FieldAxis, FieldOutput, NoValue};

@@ -2,7 +2,7 @@
 
 use bulge_effects::{Catalogue, Group, Known, known};
 use bulge_fibre::{Approach, FibreError, Given, Gradient, Problem, RangeEnd, Response, Variable};
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use bulge_muscles::{Muscle, Parameter, Pressure, Quantity as _};
 use std::f64::consts::TAU;
 
@@ -26,7 +26,7 @@ pub struct Family {
 pub struct Member {
     problem: Problem,
     /// Where effects add to the force of the equilibrium.
-    extended: Option<Extended>,
+    extended: Option<MuscleWithEffects>,
     /// The muscle, effects and pressure that are stated, where there are effects.
     stated: Option<Box<(Muscle, Vec<Known>, f64)>>,
     approach: Approach,
@@ -301,7 +301,7 @@ impl Member {
         let (extended, stated, muscle) = if effects.is_empty() {
             (None, None, muscle)
         } else {
-            let extended = Extended::new(&muscle, &effects)?;
+            let extended = MuscleWithEffects::new(&muscle, &effects)?;
             let changed = extended.muscle().clone();
             (Some(extended), Some(Box::new((muscle, effects, pressure))), changed)
         };

@@ -1,7 +1,7 @@
 //! Why a point of a family has no equilibrium, or a plan no family.
 
 use bulge_fibre::FibreError;
-use bulge_model::{ExtendedError, ModelError};
+use bulge_model::{ModelError, MuscleWithEffectsError};
 use bulge_muscles::{Fault, FileError, MuscleError};
 
 /// Why a point has no equilibrium, or a plan no family.
@@ -18,7 +18,7 @@ pub enum FamilyError {
     Model(#[from] ModelError),
     /// No equilibrium of the muscle with its effects.
     #[error(transparent)]
-    Extended(#[from] ExtendedError),
+    MuscleWithEffects(#[from] MuscleWithEffectsError),
     /// An effect that the muscle file states in a wrong way.
     #[error(transparent)]
     File(#[from] FileError),
@@ -55,7 +55,7 @@ impl FamilyError {
     pub fn fault(&self) -> Fault {
         match self {
             Self::Equilibrium(error) => error.fault(),
-            Self::Extended(error) => error.fault(),
+            Self::MuscleWithEffects(error) => error.fault(),
             Self::Model(error) => error.fault(),
             _ => Fault::Input,
         }

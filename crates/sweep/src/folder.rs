@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 
 /// What a finished chunk promises.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Promise {
+pub struct ChunkManifest {
     /// Number of the chunk.
     pub chunk: u64,
     /// Number of its first point.
@@ -42,7 +42,7 @@ pub struct Promise {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Standing {
     /// Done, and its files are what it promises.
-    Done(Promise),
+    Done(ChunkManifest),
     /// Not done.
     Absent,
     /// Done once, but a file is damaged, missing, or of another plan.
@@ -140,7 +140,7 @@ impl Folder {
             Err(error) => return Err(error),
         };
         let damaged = |what: String| Ok(Standing::Damaged(what));
-        let Ok(promise) = serde_json::from_slice::<Promise>(&text) else {
+        let Ok(promise) = serde_json::from_slice::<ChunkManifest>(&text) else {
             return damaged(format!("{} is damaged", path.display()));
         };
         if promise.plan != plan || promise.chunk != chunk {

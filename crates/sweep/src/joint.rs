@@ -10,7 +10,7 @@ mod field;
 mod file;
 mod four_bar;
 mod geometry;
-mod stand;
+mod joint_state;
 #[cfg(test)]
 mod tests;
 
@@ -18,7 +18,7 @@ pub use field::{JointField, JointOutput};
 pub use file::JOINT_EXAMPLE;
 pub use four_bar::FourBar;
 pub use geometry::{Drive, Linkage, Side};
-pub use stand::{Closed, Outside, Readings, SideStand, Stand};
+pub use joint_state::{Closed, JointState, Outside, Readings, SideState};
 
 use bulge_effects::{Catalogue, Group, known};
 use bulge_fibre::Approach;
@@ -29,7 +29,7 @@ use serde::Serialize;
 use crate::family::Family;
 use crate::family_error::FamilyError;
 use crate::output::Output;
-use crate::plan::{Axis, End, Plan, Quantity, Range, Spacing, TableWish};
+use crate::plan::{Axis, End, Plan, Quantity, Range, Spacing, TableRequirements};
 
 /// Tolerance of an angle without load \[rad\]: a Newton step of this size ends far closer.
 const ANGLE_TOLERANCE: f64 = 1e-9;
@@ -155,7 +155,7 @@ pub struct Joint {
     /// Range of both pressures \[Pa\].
     pressure: [f64; 2],
     outputs: Vec<JointOutput>,
-    table: Option<TableWish>,
+    table: Option<TableRequirements>,
 }
 
 /// What a muscle contributes to the torque, with derivatives.
@@ -348,7 +348,7 @@ impl Joint {
 
     /// What its table must reach, if one is wanted; the outputs are those of the joint, not of the wish, which has none.
     #[must_use]
-    pub const fn table(&self) -> Option<&TableWish> {
+    pub const fn table(&self) -> Option<&TableRequirements> {
         self.table.as_ref()
     }
 

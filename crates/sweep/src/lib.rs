@@ -19,16 +19,18 @@ mod run;
 mod sobol;
 mod tabulate;
 
-pub use certified::{BuildError, Built, EncodeError, Field, FieldAxis, FieldOutput, NoValue, Wish, build};
+pub use certified::{
+    BuildError, Built, EncodeError, Field, FieldAxis, FieldOutput, NoValue, Requirements, build,
+};
 pub use chunk::{Chunk, Column, Computer};
 pub use design::{Coordinate, Layout};
 pub use family::{Family, Member};
 pub use family_error::FamilyError;
 pub use file::SWEEP_EXAMPLE;
-pub use folder::Promise;
+pub use folder::ChunkManifest;
 pub use joint::{
-    Closed, Drive, FourBar, JOINT_EXAMPLE, Joint, JointError, JointField, JointMuscle, JointOutput, Linkage,
-    Outside, Readings, Side, SideStand, Stand,
+    Closed, Drive, FourBar, JOINT_EXAMPLE, Joint, JointError, JointField, JointMuscle, JointOutput,
+    JointState, Linkage, Outside, Readings, Side, SideState,
 };
 pub use muscle_field::MuscleField;
 pub use output::Output;

@@ -4,7 +4,7 @@ use crate::certified::{Field, FieldAxis, FieldOutput, NoValue};
 use crate::family::Family;
 use crate::family_error::FamilyError;
 use crate::output::Output;
-use crate::plan::{Axis, End, Plan, Quantity, Range, TableWish};
+use crate::plan::{Axis, End, Plan, Quantity, Range, TableRequirements};
 
 /// A field of a plan's family and its table's outputs.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ impl MuscleField {
     ///
     /// # Errors
     /// If the family has no muscle in the middle of its axes.
-    pub fn new(plan: &Plan, wish: &TableWish) -> Result<Self, FamilyError> {
+    pub fn new(plan: &Plan, wish: &TableRequirements) -> Result<Self, FamilyError> {
         let family = Family::new(plan)?;
         let mut places: Vec<usize> = (0..plan.axes.len()).collect();
         // The contraction comes first; of the others the order stays.

@@ -134,7 +134,7 @@ pub enum TableForm {
 
 /// What a table must reach.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct TableWish {
+pub struct TableRequirements {
     /// Outputs of the table.
     pub outputs: Vec<Output>,
     /// Largest relative error of the values.
@@ -172,5 +172,5 @@ pub struct Plan {
     /// Points of one chunk.
     pub chunk: u64,
     /// The table, if one is wanted.
-    pub table: Option<TableWish>,
+    pub table: Option<TableRequirements>,
 }

@@ -16,7 +16,7 @@ use crate::chunk::{Chunk, Computer};
 use crate::design::Layout;
 use crate::difference::difference;
 use crate::family_error::FamilyError;
-use crate::folder::{Folder, Promise, Standing, hash};
+use crate::folder::{ChunkManifest, Folder, Standing, hash};
 use crate::plan::Plan;
 
 /// Format of the folder.
@@ -199,7 +199,7 @@ pub fn run(
     };
     run.tell(0, 0);
     let count = usize::try_from(chunks.end - chunks.start).unwrap_or(usize::MAX);
-    let promises: Vec<(Promise, bool)> = (0..count)
+    let promises: Vec<(ChunkManifest, bool)> = (0..count)
         .into_par_iter()
         .with_max_len(1)
         .map(|i| run.chunk(chunks.start + i as u64))
@@ -214,7 +214,7 @@ pub fn run(
     };
     summary.damaged.sort();
     if chunks == (0..all) {
-        let promises: Vec<Promise> = promises.into_iter().map(|(promise, _)| promise).collect();
+        let promises: Vec<ChunkManifest> = promises.into_iter().map(|(promise, _)| promise).collect();
         let text = manifest(plan, &promises)?;
         write(&run.folder.manifest(), text.as_bytes())?;
         summary.is_complete = true;
@@ -248,7 +248,7 @@ impl Run<'_> {
     }
 
     /// A chunk that is there, or is computed now.
-    fn chunk(&self, number: u64) -> Result<(Promise, bool), SweepError> {
+    fn chunk(&self, number: u64) -> Result<(ChunkManifest, bool), SweepError> {
         // A caller that has given up unwinds from here, and the chunks that have not begun are left.
         self.tell(0, 0);
         let waiting = self.waiting.fetch_sub(1, Ordering::Relaxed).saturating_sub(1);
@@ -294,7 +294,7 @@ pub struct Piece {
     /// The CSV file `csv/000000.csv`, if it was asked for.
     pub csv: Option<String>,
     /// The promise `chunks/000000.json`, which must be written last.
-    pub promise: Promise,
+    pub promise: ChunkManifest,
 }
 
 /// One chunk of a plan as bytes.
@@ -324,7 +324,7 @@ fn make(
     let about = json!({ "plan": key, "chunk": number, "first": chunk.first });
     let parquet = computer.parquet(chunk, &about.to_string())?;
     let csv = csv.then(|| computer.csv(chunk));
-    let promise = Promise {
+    let promise = ChunkManifest {
         chunk: number,
         first: chunk.first,
         points: chunk.rows() as u64,
@@ -340,7 +340,7 @@ fn make(
 ///
 /// # Errors
 /// If a promise has no JSON.
-pub fn manifest(plan: &Plan, promises: &[Promise]) -> Result<String, SweepError> {
+pub fn manifest(plan: &Plan, promises: &[ChunkManifest]) -> Result<String, SweepError> {
     let document = json!({
         "schema": SCHEMA,
         "plan": hash(plan.canonical()?.as_bytes()),
@@ -367,7 +367,7 @@ pub fn complete(plan: &Plan, path: &Path) -> Result<Option<Summary>, SweepError>
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(at(&file)(error)),
         };
-        match serde_json::from_slice::<Promise>(&text) {
+        match serde_json::from_slice::<ChunkManifest>(&text) {
             Ok(promise) if promise.plan == key && promise.chunk == number => promises.push(promise),
             _ => return Ok(None),
         }

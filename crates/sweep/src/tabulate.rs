@@ -4,11 +4,11 @@ use bulge_table::{Table, TableError};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::certified::{BuildError, Built, Wish, build};
+use crate::certified::{BuildError, Built, Requirements, build};
 use crate::family_error::FamilyError;
 use crate::muscle_field::MuscleField;
 use crate::output::Output;
-use crate::plan::{Plan, TableWish};
+use crate::plan::{Plan, TableRequirements};
 
 /// Format of what a table says of itself.
 pub(crate) const SCHEMA: &str = "bulge.table/1";
@@ -31,7 +31,7 @@ pub enum TabulateError {
 ///
 /// # Errors
 /// [`TabulateError`].
-pub fn tabulate(plan: &Plan, wish: &TableWish, told: &dyn Fn(&str)) -> Result<Built, TabulateError> {
+pub fn tabulate(plan: &Plan, wish: &TableRequirements, told: &dyn Fn(&str)) -> Result<Built, TabulateError> {
     let field = MuscleField::new(plan, wish)?;
     Ok(build(&field, &wish.with_text(table_text(plan, wish)?), told)?)
 }
@@ -40,7 +40,7 @@ pub fn tabulate(plan: &Plan, wish: &TableWish, told: &dyn Fn(&str)) -> Result<Bu
 ///
 /// # Errors
 /// If a number of the plan has no JSON.
-pub fn table_text(plan: &Plan, wish: &TableWish) -> Result<String, serde_json::Error> {
+pub fn table_text(plan: &Plan, wish: &TableRequirements) -> Result<String, serde_json::Error> {
     let mut document = json!({
         "schema": SCHEMA,
         "version": env!("CARGO_PKG_VERSION"),
@@ -74,11 +74,11 @@ fn meaning(output: Output) -> Option<&'static str> {
     }
 }
 
-impl TableWish {
+impl TableRequirements {
     /// The wish, with what the table is to say of itself.
     #[must_use]
-    pub fn with_text(&self, text: String) -> Wish {
-        Wish {
+    pub fn with_text(&self, text: String) -> Requirements {
+        Requirements {
             tolerance: self.tolerance,
             gradient: self.gradient,
             max_bytes: usize::try_from(self.max_bytes).unwrap_or(usize::MAX),

@@ -106,7 +106,7 @@ fn neighbours<'a>(with: &'a With, catalogue: &'a Catalogue) -> impl Iterator<Ite
 }
 
 /// What to fit ahead.
-pub(crate) enum Wish {
+pub(crate) enum Next {
     /// Whatever may follow this model.
     After(With),
     /// This model: somebody points at its switch. Told when it is there; who isn't interested any more has gone.
@@ -126,7 +126,7 @@ pub(crate) fn work(
     comparing: &Comparing<'_>,
     catalogue: &Catalogue,
     waiting: &Waiting,
-    wishes: &Receiver<Wish>,
+    wishes: &Receiver<Next>,
 ) {
     let pools = [1, 0].map(|threads| ThreadPoolBuilder::new().num_threads(threads).build());
     let [Ok(alone), Ok(all)] = pools else { return };
@@ -145,11 +145,11 @@ pub(crate) fn work(
         };
         match wish {
             Err(RecvTimeoutError::Disconnected) => return,
-            Ok(Wish::After(with)) => {
+            Ok(Next::After(with)) => {
                 rest = neighbours(&with, catalogue).collect();
                 is_resting = true;
             }
-            Ok(Wish::One(with, told)) => {
+            Ok(Next::One(with, told)) => {
                 if !told.is_closed() {
                     // Whoever has gone meanwhile doesn't hear it.
                     let _ahead = waiting.ahead(&with);

@@ -1,7 +1,7 @@
 //! The bulge of a muscle: points, triangles and fields, as VTK files have them.
 
 use bulge_fibre::{Approach, Given};
-use bulge_model::{Equilibrium, Extended};
+use bulge_model::{Equilibrium, MuscleWithEffects};
 use bulge_muscles::{Muscle, Pressure, Quantity};
 use bulge_vtk::{Bulge, Style, vtp_bytes};
 use serde::Serialize;
@@ -47,7 +47,7 @@ pub(crate) struct Surface {
 
 /// The equilibrium of a muscle with what its file states.
 fn equilibrium(shaped: &Shaped, state: State) -> Result<(Muscle, Equilibrium), Refusal> {
-    let extended = Extended::new(&shaped.0, &shaped.1).map_err(Refusal::at(Place::Shape))?;
+    let extended = MuscleWithEffects::new(&shaped.0, &shaped.1).map_err(Refusal::at(Place::Shape))?;
     let given = Given::Contraction(state.contraction);
     let pressure = Pressure::from_si(state.pressure_pa);
     let found = Equilibrium::new(&extended, pressure, given, Approach::Auto, POINTS);

@@ -10,7 +10,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use tokio::sync::oneshot;
 
-use crate::ahead::{self, Waiting, Wish};
+use crate::ahead::{self, Next, Waiting};
 use crate::inputs::{Inputs, With};
 use crate::refusal::{Place, Refusal};
 
@@ -187,16 +187,16 @@ fn quickly(task: Task, asked: &Receiver<Task>, waiting: &Waiting) -> Option<Task
         let (ahead, wishes) = channel();
         let (comparing, catalogue) = (&comparing, &inputs.catalogue);
         threads.spawn(move || ahead::work(comparing, catalogue, waiting, &wishes));
-        let wish = |wish: Wish| drop(ahead.send(wish));
+        let wish = |wish: Next| drop(ahead.send(wish));
         answered(task, asked, |Task { with, question, .. }| match question {
-            Question::Prepared(told) => wish(Wish::One(with, told)),
+            Question::Prepared(told) => wish(Next::One(with, told)),
             question => {
                 let is_model = matches!(question, Question::Comparison(_));
                 let waited = waiting.begin_with(&with);
                 question.answer(comparing, &with);
                 drop(waited);
                 if is_model {
-                    wish(Wish::After(with));
+                    wish(Next::After(with));
                 }
             }
         })

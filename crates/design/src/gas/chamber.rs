@@ -7,7 +7,7 @@
 //! ```
 
 use bulge_fibre::{Approach, Given, Response};
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use bulge_muscles::Pressure;
 use bulge_numerics::root::{RootError, newton_bracketed};
 use serde::Serialize;
@@ -79,7 +79,7 @@ pub struct Inside {
 #[derive(Debug, Clone, Copy)]
 enum Body<'a> {
     Vessel(f64),
-    Muscle { muscle: &'a Extended, load: Load<'a>, support: Option<f64> },
+    Muscle { muscle: &'a MuscleWithEffects, load: Load<'a>, support: Option<f64> },
 }
 
 /// What the gas is in.
@@ -106,7 +106,7 @@ impl<'a> Chamber<'a> {
     ///
     /// # Errors
     /// [`GasError::Number`] if a number of the load is not finite.
-    pub fn muscle(muscle: &'a Extended, load: Load<'a>) -> Result<Self, GasError> {
+    pub fn muscle(muscle: &'a MuscleWithEffects, load: Load<'a>) -> Result<Self, GasError> {
         let numbers = match load {
             Load::Held(value) | Load::Force(value) => [value, 0.0, 0.0],
             Load::Spring { preload_n, rate_n_per_m, from } => [preload_n, rate_n_per_m, from],
@@ -269,7 +269,12 @@ impl<'a> Chamber<'a> {
     }
 
     /// At a contraction that something holds, where a muscle with a bladder may push.
-    fn held(&self, muscle: &Extended, pressure_pa: f64, contraction: f64) -> Result<Response, GasError> {
+    fn held(
+        &self,
+        muscle: &MuscleWithEffects,
+        pressure_pa: f64,
+        contraction: f64,
+    ) -> Result<Response, GasError> {
         let pressure = pressure_pa.max(LEAST_PRESSURE_PA);
         if let Some(lowest) = self.lowest.filter(|lowest| lowest.is_above(pressure)) {
             return Ok(lowest.down_to(pressure));
@@ -284,7 +289,7 @@ impl<'a> Chamber<'a> {
     /// Where the pull is the load: by Newton's method from a known contraction, or without one.
     fn balance(
         &self,
-        muscle: &Extended,
+        muscle: &MuscleWithEffects,
         load: &Load<'_>,
         pressure_pa: f64,
         near: Option<f64>,

@@ -10,7 +10,7 @@
 use std::cell::Cell;
 
 use bulge_fibre::{Approach, Response};
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use serde::Serialize;
 
 use super::chamber::{Chamber, Inside, Load, with_gas};
@@ -21,7 +21,7 @@ use super::{AMBIENT_TEMPERATURE_K, GAMMA, GasError, R_AIR, at_least, positive};
 /// A muscle with the gas that was shut in.
 #[derive(Debug, Clone, Copy)]
 pub struct ClosedMuscle<'a> {
-    pub(super) muscle: &'a Extended,
+    pub(super) muscle: &'a MuscleWithEffects,
     pub(super) approach: Approach,
     pub(super) exponent: f64,
     pub(super) surroundings: Surroundings,
@@ -56,7 +56,7 @@ impl<'a> ClosedMuscle<'a> {
     /// # Errors
     /// [`GasError::Number`], or [`GasError::Muscle`] if the muscle doesn't pull there.
     pub fn new(
-        muscle: &'a Extended,
+        muscle: &'a MuscleWithEffects,
         pressure_pa: f64,
         contraction: f64,
         exponent: f64,

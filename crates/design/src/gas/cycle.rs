@@ -17,7 +17,7 @@
 //! a real compressor are not counted.
 
 use bulge_fibre::{Approach, Response};
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use bulge_numerics::gauss::SIX;
 use serde::Serialize;
 
@@ -46,7 +46,7 @@ pub enum Lift {
 #[derive(Debug, Clone, Copy)]
 pub struct Stroke<'a> {
     /// The muscle.
-    pub muscle: &'a Extended,
+    pub muscle: &'a MuscleWithEffects,
     /// Load \[N\] > 0.
     pub load_n: f64,
     /// Contraction where the load stands.
@@ -96,7 +96,7 @@ impl<'a> Stroke<'a> {
     /// A stroke without dead volume, in the standard atmosphere at 293.15 K.
     #[must_use]
     pub const fn new(
-        muscle: &'a Extended,
+        muscle: &'a MuscleWithEffects,
         load_n: f64,
         [from, to]: [f64; 2],
         lift: Lift,
@@ -280,7 +280,7 @@ mod tests {
     use bulge_fibre::Given;
     use bulge_muscles::Pressure;
 
-    fn stroke(muscle: &Extended, load_n: f64) -> Stroke<'_> {
+    fn stroke(muscle: &MuscleWithEffects, load_n: f64) -> Stroke<'_> {
         Stroke::new(muscle, load_n, [0.05, 0.2], Lift::PressureRise, 6e5)
     }
 

@@ -1,19 +1,19 @@
 //! Questions to a muscle with its effects: where it pulls, where it may push, from which length its contraction counts, what it carries.
 
 use bulge_fibre::{Approach, FibreError, Given, Problem, Response};
-use bulge_model::{Extended, ExtendedError};
+use bulge_model::{MuscleWithEffects, MuscleWithEffectsError};
 use bulge_muscles::{Pressure, Quantity as _};
 
 use super::{GasError, Load};
 
 /// What is wrong with the muscle, at a pressure.
-pub(super) fn failed(pressure_pa: f64, error: impl Into<ExtendedError>) -> GasError {
+pub(super) fn failed(pressure_pa: f64, error: impl Into<MuscleWithEffectsError>) -> GasError {
     GasError::Muscle { pressure_pa, error: Box::new(error.into()) }
 }
 
 /// The muscle with its effects where it pulls.
 pub(super) fn pulling(
-    muscle: &Extended,
+    muscle: &MuscleWithEffects,
     pressure_pa: f64,
     contraction: f64,
     approach: Approach,
@@ -30,7 +30,7 @@ pub(super) fn pulling(
 }
 
 /// Unpressurised length from which contractions of a muscle with its effects count \[m\].
-pub(super) fn stated_length(muscle: &Extended) -> f64 {
+pub(super) fn stated_length(muscle: &MuscleWithEffects) -> f64 {
     let own = muscle.muscle().length().si();
     // An effect may say that the fibres have another length: the length at half the contraction tells the stated one.
     match muscle.given(Given::Contraction(0.5)) {
@@ -40,12 +40,12 @@ pub(super) fn stated_length(muscle: &Extended) -> f64 {
 }
 
 /// Whether shape and force per pressure are the same at any pressure.
-pub(super) fn is_scale_free(muscle: &Extended) -> Result<bool, GasError> {
+pub(super) fn is_scale_free(muscle: &MuscleWithEffects) -> Result<bool, GasError> {
     let problem = problem(muscle, 1e5)?;
     Ok(problem.is_scale_free() && !muscle.adds_force())
 }
 
-pub(super) fn problem(muscle: &Extended, pressure_pa: f64) -> Result<Problem, GasError> {
+pub(super) fn problem(muscle: &MuscleWithEffects, pressure_pa: f64) -> Result<Problem, GasError> {
     Problem::new(muscle.muscle(), Pressure::pa(pressure_pa)).map_err(|error| failed(pressure_pa, error))
 }
 
@@ -55,7 +55,7 @@ pub(super) fn problem(muscle: &Extended, pressure_pa: f64) -> Result<Problem, Ga
 /// and volume linear in the pressure, from the lowest pressure at which the fibres are taut (the force of a net on rubber is p times one shape less that of the
 /// rubber).
 pub(super) fn follow(
-    muscle: &Extended,
+    muscle: &MuscleWithEffects,
     pressure_pa: f64,
     contraction: f64,
     approach: Approach,
@@ -86,7 +86,7 @@ pub(super) struct Lowest {
 
 impl Lowest {
     /// At a contraction; none where the fibres are taut from the beginning, or never.
-    pub(super) fn of(muscle: &Extended, contraction: f64, approach: Approach) -> Option<Self> {
+    pub(super) fn of(muscle: &MuscleWithEffects, contraction: f64, approach: Approach) -> Option<Self> {
         muscle.muscle().bladder()?;
         let at = |p: f64| taut(muscle, p, contraction, approach);
         // Upwards until it works, then halving between.
@@ -129,7 +129,7 @@ impl Lowest {
 }
 
 fn taut(
-    muscle: &Extended,
+    muscle: &MuscleWithEffects,
     pressure_pa: f64,
     contraction: f64,
     approach: Approach,
@@ -146,7 +146,7 @@ fn taut(
 }
 
 /// Load at a contraction \[N\].
-pub(super) fn load_at(load: &Load<'_>, muscle: &Extended, contraction: f64) -> f64 {
+pub(super) fn load_at(load: &Load<'_>, muscle: &MuscleWithEffects, contraction: f64) -> f64 {
     match load {
         Load::Held(_) => f64::INFINITY,
         Load::Force(force) => *force,
@@ -165,8 +165,8 @@ mod tests {
 
     const RUBBER: &str = "name = \"rubber\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10.725 mm\"\nbraid_angle = \"25 deg\"\nwall = \"2 mm\"\n[effects.bladder-elasticity]\nc10 = \"0.34 MPa\"\n";
 
-    fn rubber() -> Extended {
-        Extended::new(&from_toml(RUBBER, "m.toml").unwrap(), &[]).unwrap()
+    fn rubber() -> MuscleWithEffects {
+        MuscleWithEffects::new(&from_toml(RUBBER, "m.toml").unwrap(), &[]).unwrap()
     }
 
     /// Stiff rubber at 100 Pa: no net to solve, and yet a muscle that pushes; continuous and rising in the pressure through where the fibres are taut.

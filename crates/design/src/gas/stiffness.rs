@@ -179,7 +179,7 @@ mod tests {
         let file = "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"cylinder\"\n\n[effects.stiff]\nk = \"100 mm^2\"\np_ref = \"1 bar\"\n";
         let muscle = bulge_muscles::from_toml(file, "m.toml").unwrap();
         let known = bulge_effects::known(&muscle, &catalogue).unwrap();
-        let muscle = bulge_model::Extended::new(&muscle, &known).unwrap();
+        let muscle = bulge_model::MuscleWithEffects::new(&muscle, &known).unwrap();
         let [with, without] =
             [&muscle, &plain].map(|m| ClosedMuscle::new(m, 2e5, 0.1, 1.0).unwrap().stiffness(0.1).unwrap());
         // d/dp of k p^2/p_ref = 2 k p/p_ref = 4e-4 m^2.

@@ -1,7 +1,7 @@
 //! A winding on a muscle: its resistance at a contraction.
 
 use bulge_fibre::{FibreError, Given, Problem, Response, Shape};
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use bulge_muscles::{Construction, Pressure, Quantity as _};
 
 use super::channel::{Channel, Totals};
@@ -13,10 +13,10 @@ use super::{ChannelPoint, Options, Reading, Reference, SensingError, Winding};
 ///
 /// ```
 /// use bulge_design::sensing::{EGAIN_RESISTIVITY_OHM_M, Layer, Options, Range, Reference, Sensor, Winding};
-/// use bulge_model::Extended;
+/// use bulge_model::MuscleWithEffects;
 /// use bulge_muscles::{Pressure, preset};
 ///
-/// let muscle = Extended::new(&preset("ppam-2-r16")?, &[])?;
+/// let muscle = MuscleWithEffects::new(&preset("ppam-2-r16")?, &[])?;
 /// let winding = Winding {
 ///     start: 0.3,
 ///     end: 0.7,
@@ -34,7 +34,7 @@ use super::{ChannelPoint, Options, Reading, Reference, SensingError, Winding};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Sensor {
-    muscle: Extended,
+    muscle: MuscleWithEffects,
     problem: Problem,
     reference: Surface,
     winding: Winding,
@@ -53,13 +53,13 @@ pub(super) struct Pose {
 }
 
 impl Sensor {
-    /// A winding on a muscle with its effects, at a gauge pressure. A muscle without effects is `Extended::new(&muscle, &[])`.
+    /// A winding on a muscle with its effects, at a gauge pressure. A muscle without effects is `MuscleWithEffects::new(&muscle, &[])`.
     ///
     /// # Errors
     /// [`SensingError::Number`], [`SensingError::Zone`] and [`SensingError::Crowded`] for a winding that can't be, [`SensingError::Equilibrium`] if
     /// the muscle has none at the reference, [`SensingError::Folded`] for a layer that has no room there.
     pub fn new(
-        muscle: &Extended,
+        muscle: &MuscleWithEffects,
         pressure: Pressure,
         winding: Winding,
         reference: Reference,
@@ -253,7 +253,7 @@ fn resistance_of(winding: &Winding, stretched_m: f64) -> f64 {
 
 /// The surface at a contraction from the stated length of the muscle.
 fn pose(
-    muscle: &Extended,
+    muscle: &MuscleWithEffects,
     problem: &Problem,
     options: &Options,
     fibre: f64,

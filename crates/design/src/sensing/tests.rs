@@ -8,7 +8,7 @@ mod readings;
 use super::*;
 use bulge_effects::{Catalogue, known};
 use bulge_fibre::{Approach, Given, Problem};
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use bulge_muscles::{Muscle, Pressure, Quantity as _, from_toml, preset};
 use std::f64::consts::TAU;
 
@@ -20,21 +20,21 @@ fn muscle(text: &str) -> Muscle {
     from_toml(text, "m.toml").unwrap()
 }
 
-fn alone(muscle: &Muscle) -> Extended {
-    Extended::new(muscle, &[]).unwrap()
+fn alone(muscle: &Muscle) -> MuscleWithEffects {
+    MuscleWithEffects::new(muscle, &[]).unwrap()
 }
 
-fn ppam() -> Extended {
+fn ppam() -> MuscleWithEffects {
     alone(&preset("ppam-2-r16").unwrap())
 }
 
-fn braid() -> Extended {
+fn braid() -> MuscleWithEffects {
     alone(&muscle(
         "name = \"b\"\nkind = \"braided\"\nlength = \"80 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\n",
     ))
 }
 
-fn cylinder() -> Extended {
+fn cylinder() -> MuscleWithEffects {
     alone(&muscle(
         "name = \"c\"\nkind = \"braided\"\nlength = \"200 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"cylinder\"\n",
     ))
@@ -53,11 +53,11 @@ fn zone(start: f64, end: f64, turns: f64) -> Winding {
     }
 }
 
-fn sensor_with(muscle: &Extended, winding: Winding, options: Options) -> Sensor {
+fn sensor_with(muscle: &MuscleWithEffects, winding: Winding, options: Options) -> Sensor {
     Sensor::new(muscle, bar(2.0), winding, Reference::Rest, options).unwrap()
 }
 
-fn sensor(muscle: &Extended, winding: Winding) -> Sensor {
+fn sensor(muscle: &MuscleWithEffects, winding: Winding) -> Sensor {
     sensor_with(muscle, winding, Options::default())
 }
 

@@ -3,7 +3,7 @@
 use bulge_effects::Known;
 use bulge_effects::law::{CoefficientTable, Law, LawGeometry, LawPoint};
 use bulge_fibre::{Approach, BRAIDED_SLENDERNESS, FibreError, Given, PLEATED_SLENDERNESS};
-use bulge_model::{Extended, ExtendedError};
+use bulge_model::{MuscleWithEffects, MuscleWithEffectsError};
 use bulge_muscles::{Kind, Muscle, MuscleError, Parameter, Pressure, Quantity};
 use serde::Serialize;
 
@@ -41,7 +41,7 @@ impl Limits {
     }
 
     fn check(&self) -> Result<(), SizeError> {
-        let wish = |what, value, range| Err(SizeError::Wish { what, value, range });
+        let wish = |what, value, range| Err(SizeError::Requirements { what, value, range });
         if !(self.pressure_pa > 0.0 && self.pressure_pa.is_finite()) {
             return wish("highest pressure", self.pressure_pa, "a pressure above 0");
         }
@@ -230,7 +230,8 @@ impl Family {
                 let factor = if *is_similar { length_m / muscle.length().si() } else { 1.0 };
                 diameter_m *= factor;
                 let muscle = stretched(muscle, length_m, factor).map_err(|error| wrong(error.to_string()))?;
-                let extended = Extended::new(&muscle, known).map_err(|error| wrong(error.to_string()))?;
+                let extended =
+                    MuscleWithEffects::new(&muscle, known).map_err(|error| wrong(error.to_string()))?;
                 Pull::Net(Box::new(extended))
             }
         };
@@ -262,7 +263,7 @@ fn stretched(muscle: &Muscle, length_m: f64, factor: f64) -> Result<Muscle, Musc
 #[derive(Debug)]
 enum Pull<'a> {
     Law { law: &'static Law, geometry: LawGeometry, coefficients: &'a [f64], scale: f64 },
-    Net(Box<Extended>),
+    Net(Box<MuscleWithEffects>),
 }
 
 /// A muscle of a family and a length.
@@ -324,7 +325,7 @@ impl CutMuscle<'_> {
                             extended.force_while(&found, 1.0).map_err(|error| wrong(error.to_string()))?;
                         Ok(lifting.max(0.0))
                     }
-                    Err(ExtendedError::Equilibrium(error)) => match *error {
+                    Err(MuscleWithEffectsError::Equilibrium(error)) => match *error {
                         FibreError::BeyondLimit { .. }
                         | FibreError::WouldPush { .. }
                         | FibreError::Slack { .. } => Ok(0.0),

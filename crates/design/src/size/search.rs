@@ -30,7 +30,7 @@ impl Default for Weights {
 
 /// What is given.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Wish {
+pub struct Requirements {
     /// Operating gauge pressures to find the shortest length for \[Pa\].
     pub pressures_pa: Vec<f64>,
     /// Lengths to find the lowest pressure for \[m\].
@@ -62,7 +62,7 @@ const MOST_ITERATIONS: u64 = 60;
 /// Muscles, lengths and pressures that carry a load, ranked. Parallel; the same result on any number of threads.
 ///
 /// ```
-/// use bulge_design::size::{Family, Limits, LoadCase, Wish, size};
+/// use bulge_design::size::{Family, Limits, LoadCase, Requirements, size};
 /// use bulge_effects::law::Law;
 ///
 /// // S4: 50 kg (500 N) by 50 mm at 4 bar with a DMSP-20.
@@ -70,7 +70,7 @@ const MOST_ITERATIONS: u64 = 60;
 /// let muscle = bulge_muscles::preset("dmsp-20-400")?;
 /// let family = Family::of_law("DMSP-20", law, law.table("DMSP-20-400N, S4"), &muscle, Limits::FLUIDIC)?;
 /// let load = LoadCase::lift(0.05, 0.0, 500.0)?;
-/// let wish = Wish { pressures_pa: vec![4e5], lengths_m: vec![], margin: 0.0, step_m: 1e-3, weights: None };
+/// let wish = Requirements { pressures_pa: vec![4e5], lengths_m: vec![], margin: 0.0, step_m: 1e-3, weights: None };
 /// let sizing = size(&[family], &load, &wish)?;
 /// assert!((sizing.choices[0].length_m - 0.4).abs() < 0.015);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -78,7 +78,7 @@ const MOST_ITERATIONS: u64 = 60;
 ///
 /// # Errors
 /// A wish that makes no sense, or a muscle whose equilibrium can't be found. Muscles that don't carry the load are no error.
-pub fn size(families: &[Family], load: &LoadCase, wish: &Wish) -> Result<Sizing, SizeError> {
+pub fn size(families: &[Family], load: &LoadCase, wish: &Requirements) -> Result<Sizing, SizeError> {
     check(wish)?;
     let asked = wish.pressures_pa.iter().map(|p| Given::Pressure { pressure_pa: *p });
     let asked = asked.chain(wish.lengths_m.iter().map(|l| Given::Length { length_m: *l }));
@@ -98,8 +98,8 @@ pub fn size(families: &[Family], load: &LoadCase, wish: &Wish) -> Result<Sizing,
     Ok(Sizing { load: load.clone(), choices, infeasible })
 }
 
-fn check(wish: &Wish) -> Result<(), SizeError> {
-    let fault = |what, value, range| Err(SizeError::Wish { what, value, range });
+fn check(wish: &Requirements) -> Result<(), SizeError> {
+    let fault = |what, value, range| Err(SizeError::Requirements { what, value, range });
     for (what, values) in [("pressure", &wish.pressures_pa), ("length", &wish.lengths_m)] {
         if let Some(value) = values.iter().find(|value| !(**value > 0.0 && value.is_finite())) {
             return fault(what, *value, "a finite number above 0");
@@ -128,7 +128,7 @@ fn one(
     family: &Family,
     given: Given,
     load: &LoadCase,
-    wish: &Wish,
+    wish: &Requirements,
 ) -> Result<Result<Choice, Infeasible>, SizeError> {
     let not = |why: String| Ok(Err(Infeasible { family: family.name().to_owned(), given, why }));
     let task = Task { family, load, way: load.path(), margin: wish.margin };

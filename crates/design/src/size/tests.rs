@@ -22,8 +22,8 @@ fn braided() -> Family {
     Family::of_muscle(&preset("dmsp-20-250").unwrap(), Vec::new(), Limits::FLUIDIC).unwrap()
 }
 
-fn wish(pressures_pa: &[f64], lengths_m: &[f64]) -> Wish {
-    Wish {
+fn wish(pressures_pa: &[f64], lengths_m: &[f64]) -> Requirements {
+    Requirements {
         pressures_pa: pressures_pa.to_vec(),
         lengths_m: lengths_m.to_vec(),
         margin: 0.0,
@@ -32,7 +32,7 @@ fn wish(pressures_pa: &[f64], lengths_m: &[f64]) -> Wish {
     }
 }
 
-fn only(family: &Family, load: &LoadCase, wish: &Wish) -> Choice {
+fn only(family: &Family, load: &LoadCase, wish: &Requirements) -> Choice {
     let found = size(std::slice::from_ref(family), load, wish).unwrap();
     assert!(found.infeasible.is_empty(), "{:?}", found.infeasible);
     found.choices[0].clone()
@@ -146,7 +146,7 @@ fn muscles_alike_in_their_cross_section() {
 
 #[test]
 fn a_margin_is_a_larger_load() {
-    let with = Wish { margin: 0.1, ..wish(&[4e5], &[0.4]) };
+    let with = Requirements { margin: 0.1, ..wish(&[4e5], &[0.4]) };
     let [a, b] = [(500.0, &with), (550.0, &wish(&[4e5], &[0.4]))].map(|(force, wish)| {
         size(&[dmsp_20()], &LoadCase::lift(0.05, 0.0, force).unwrap(), wish).unwrap().choices
     });
@@ -173,7 +173,7 @@ fn the_load_is_carried_between_its_points() {
 fn lengths_are_rounded_up() {
     let load = LoadCase::lift(0.05, 0.0, 500.0).unwrap();
     let exact = only(&dmsp_20(), &load, &wish(&[4e5], &[])).length_m;
-    let rounded = only(&dmsp_20(), &load, &Wish { step_m: 0.01, ..wish(&[4e5], &[]) });
+    let rounded = only(&dmsp_20(), &load, &Requirements { step_m: 0.01, ..wish(&[4e5], &[]) });
     assert!(rounded.length_m >= exact && rounded.length_m < exact + 0.01);
     assert!((rounded.length_m / 0.01).fract().min(1.0 - (rounded.length_m / 0.01).fract()) < 1e-9);
     assert!(rounded.force_margin > 0.0);
@@ -186,7 +186,7 @@ fn a_compromise_weighs_least() {
     let family = dmsp_20().with_limits(Limits { length_m: [0.04, 1.0], ..Limits::FLUIDIC }).unwrap();
     let by = |pressure, contraction, length| {
         let weights = Some(Weights { pressure, contraction, length });
-        only(&family, &load, &Wish { weights, ..wish(&[], &[]) })
+        only(&family, &load, &Requirements { weights, ..wish(&[], &[]) })
     };
     let shortest = only(&family, &load, &wish(&[6e5], &[])).length_m;
     assert!((by(0.0, 0.0, 1.0).length_m / shortest - 1.0).abs() < 1e-9);
@@ -211,7 +211,7 @@ fn a_compromise_weighs_least() {
 
 #[test]
 fn what_does_not_carry_says_why() {
-    let why = |family: &Family, load: &LoadCase, wish: &Wish| {
+    let why = |family: &Family, load: &LoadCase, wish: &Requirements| {
         let found = size(std::slice::from_ref(family), load, wish).unwrap();
         assert!(found.choices.is_empty());
         found.infeasible[0].why.clone()
@@ -230,15 +230,16 @@ fn what_does_not_carry_says_why() {
 #[test]
 fn nonsense_is_refused() {
     let load = LoadCase::lift(0.05, 0.0, 500.0).unwrap();
-    let refused = |wish: Wish| size(&[dmsp_20()], &load, &wish).unwrap_err().to_string();
+    let refused = |wish: Requirements| size(&[dmsp_20()], &load, &wish).unwrap_err().to_string();
     assert!(refused(wish(&[-1.0], &[])).contains("pressure is -1"));
     assert!(refused(wish(&[], &[f64::NAN])).contains("length is NaN"));
     assert!(
-        refused(Wish { margin: -0.1, ..wish(&[], &[]) }).contains("margin is -0.1: it must be 0 or more")
+        refused(Requirements { margin: -0.1, ..wish(&[], &[]) })
+            .contains("margin is -0.1: it must be 0 or more")
     );
-    assert!(refused(Wish { step_m: -1.0, ..wish(&[], &[]) }).contains("0 or more"));
+    assert!(refused(Requirements { step_m: -1.0, ..wish(&[], &[]) }).contains("0 or more"));
     let weights = Some(Weights { pressure: 0.0, contraction: 0.0, length: 0.0 });
-    assert!(refused(Wish { weights, ..wish(&[], &[]) }).contains("sum of the weights"));
+    assert!(refused(Requirements { weights, ..wish(&[], &[]) }).contains("sum of the weights"));
     for limits in [
         Limits { pressure_pa: 0.0, ..Limits::FLUIDIC },
         Limits { contraction: [0.3, 0.2], ..Limits::FLUIDIC },
@@ -256,7 +257,7 @@ fn nonsense_is_refused() {
 fn the_kindest_comes_first() {
     let load = LoadCase::lift(0.03, 0.0, 400.0).unwrap();
     let families = [dmsp_20(), pleated(), braided(), dmsp_20().scaled("DMSP-40", 0.04)];
-    let wish = Wish { weights: Some(Weights::default()), ..wish(&[2e5, 3e5, 4e5], &[0.2]) };
+    let wish = Requirements { weights: Some(Weights::default()), ..wish(&[2e5, 3e5, 4e5], &[0.2]) };
     let found = size(&families, &load, &wish).unwrap();
     assert!(found.choices.len() + found.infeasible.len() == 20 && found.choices.len() > 8);
     assert!(found.choices.windows(2).all(|pair| pair[0].strain <= pair[1].strain));

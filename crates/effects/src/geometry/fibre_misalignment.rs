@@ -56,11 +56,8 @@ impl Effect for FibreMisalignment {
 
 impl ShapeEffect for FibreMisalignment {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        // At 0 nothing moves: the force is even in the angle.
-        if theta[0] == 0.0 {
-            return Ok(Reshaped::unchanged(muscle));
-        }
-        Reshaped::setting(muscle, &[(Parameter::Misalignment, theta[0])])
+        // The force is even in the angle.
+        Reshaped::with_part(muscle, Parameter::Misalignment, theta[0])
     }
 }
 

@@ -60,10 +60,7 @@ impl Effect for Lobes {
 
 impl ShapeEffect for Lobes {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        if theta[0] == 0.0 {
-            return Ok(Reshaped::unchanged(muscle));
-        }
-        Reshaped::setting(muscle, &[(Parameter::ClothCircumference, theta[0])])
+        Reshaped::with_part(muscle, Parameter::ClothCircumference, theta[0])
     }
 }
 

@@ -55,10 +55,7 @@ impl Effect for WallThickness {
 
 impl ShapeEffect for WallThickness {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        if theta[0] == 0.0 {
-            return Ok(Reshaped::unchanged(muscle));
-        }
-        Reshaped::setting(muscle, &[(Parameter::GasWall, theta[0])])
+        Reshaped::with_part(muscle, Parameter::GasWall, theta[0])
     }
 }
 

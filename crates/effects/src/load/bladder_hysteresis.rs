@@ -1,10 +1,10 @@
 //! Bladder hysteresis: the rubber of the bladder loses work when the gas fills it out and when the muscle stretches it.
 
 use bulge_muscles::Kind;
-use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
+use crate::load::dragged::dragged;
 use crate::load::filled_bladder::filled;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
@@ -82,11 +82,7 @@ impl LoadEffect for BladderHysteresis {
         let now = filled(balance, setting);
         let change = if moment.begins { Jet::from(0.0) } else { now - memory[1] };
         memory[1] = now;
-        if change.value() != 0.0 {
-            let s = change.value().signum();
-            let fades = (-(change * s / theta[1])).exp();
-            memory[0] = (memory[0] - s) * fades + s;
-        }
+        memory[0] = dragged(memory[0], change, theta[1], Jet::from(1.0));
         *force = *force - theta[0] * now * memory[0];
     }
 }
@@ -95,6 +91,7 @@ impl LoadEffect for BladderHysteresis {
 mod tests {
     use super::*;
     use crate::probe::{balance, driven};
+    use bulge_numerics::Real;
 
     #[test]
     fn the_loop_is_there_in_filling_from_zero_and_gone_above() {

@@ -10,6 +10,7 @@ mod contact_friction;
 mod coulomb_friction;
 mod creep;
 mod crossing_friction;
+pub(crate) mod dragged;
 mod fibre_creep;
 mod filled_bladder;
 mod force_friction;

@@ -1,9 +1,8 @@
 //! Presliding hysteresis: friction that builds up over a distance after each reversal (Dahl 1968; catalogue F11).
 
-use bulge_numerics::Real;
-
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
+use crate::load::dragged::dragged;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON, PERCENT};
 
@@ -62,12 +61,7 @@ impl Effect for PreslidingHysteresis {
 
 impl LoadEffect for PreslidingHysteresis {
     fn act(&self, Row { theta, memory, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
-        let turn = balance.turn;
-        if turn.value() != 0.0 {
-            let s = turn.value().signum();
-            let fades = (-(turn * s / theta[1])).exp();
-            memory[0] = (memory[0] - s) * fades + s;
-        }
+        memory[0] = dragged(memory[0], balance.turn, theta[1], Jet::from(1.0));
         *force = *force - theta[0] * memory[0];
     }
 }

@@ -4,6 +4,7 @@ use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Balance, Effect, Jet, LoadEffect, Row};
+use crate::load::dragged::dragged;
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{NEWTON_PER_BAR, PERCENT};
 
@@ -80,12 +81,7 @@ impl LoadEffect for PressurePresliding {
     fn act(&self, Row { theta, memory, .. }: Row<'_>, balance: &Balance, force: &mut Jet) {
         // Traction and limit per coefficient \[Pa\], so that the derivative by the coefficient is there where that is 0.
         let limit = balance.pressure;
-        let turn = balance.turn;
-        if turn.value() != 0.0 {
-            let s = turn.value().signum();
-            let fades = (-(turn * s / theta[1])).exp();
-            memory[0] = (memory[0] - limit * s) * fades + limit * s;
-        }
+        memory[0] = dragged(memory[0], balance.turn, theta[1], limit);
         if memory[0].value().abs() > limit.value() {
             memory[0] = limit * memory[0].value().signum();
         }

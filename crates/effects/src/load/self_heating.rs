@@ -78,15 +78,9 @@ impl Effect for SelfHeating {
 impl InputEffect for SelfHeating {
     fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, input: &mut Input) {
         let warmed = -(-(Jet::from(moment.clock) / theta[1])).exp() + 1.0;
-        let factor = theta[0] * warmed + 1.0;
-        input.wall = input.wall * factor;
-        // F = wall B(p area/wall): both together multiply the force.
+        input.multiply_modulus(theta[0] * warmed + 1.0, setting);
         if setting.has_bladder {
-            let force = theta[2] * warmed + 1.0;
-            input.wall = input.wall * force;
-            input.area = input.area * force;
-        } else {
-            input.area = input.area * factor;
+            input.multiply_force(theta[2] * warmed + 1.0);
         }
     }
 }

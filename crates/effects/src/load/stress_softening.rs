@@ -74,12 +74,7 @@ impl Effect for StressSoftening {
 
 impl InputEffect for StressSoftening {
     fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, input: &mut Input) {
-        let factor = theta[0] * (-(Jet::from(moment.cycle) / theta[1])).exp() + 1.0;
-        input.wall = input.wall * factor;
-        if !setting.has_bladder {
-            // F = wall B(p area/wall): both together multiply the force.
-            input.area = input.area * factor;
-        }
+        input.multiply_modulus(theta[0] * (-(Jet::from(moment.cycle) / theta[1])).exp() + 1.0, setting);
     }
 }
 

@@ -74,12 +74,9 @@ impl Effect for Temperature {
 
 impl InputEffect for Temperature {
     fn act(&self, Row { moment, setting, theta, .. }: Row<'_>, input: &mut Input) {
-        // F = wall B(p area/wall): both together multiply the force.
-        let force = theta[0] * moment.temperature + 1.0;
-        input.area = input.area * force;
-        input.wall = input.wall * force;
+        input.multiply_force(theta[0] * moment.temperature + 1.0);
         if setting.has_bladder {
-            input.wall = input.wall * (theta[1] * moment.temperature + 1.0);
+            input.multiply_modulus(theta[1] * moment.temperature + 1.0, setting);
         }
     }
 }

@@ -57,10 +57,7 @@ impl Effect for BladderC01 {
 
 impl ShapeEffect for BladderC01 {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        if theta[0] == 0.0 {
-            return Ok(Reshaped::unchanged(muscle));
-        }
-        Reshaped::setting(muscle, &[(Parameter::C01, theta[0])])
+        Reshaped::with_part(muscle, Parameter::C01, theta[0])
     }
 }
 

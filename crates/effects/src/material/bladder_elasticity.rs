@@ -60,11 +60,7 @@ impl Effect for BladderElasticity {
 
 impl ShapeEffect for BladderElasticity {
     fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        // Rubber without modulus is no rubber: there is no derivative by c10 at 0.
-        if theta[0] == 0.0 {
-            return Ok(Reshaped::unchanged(muscle));
-        }
-        Reshaped::setting(muscle, &[(Parameter::C10, theta[0])])
+        Reshaped::with_part(muscle, Parameter::C10, theta[0])
     }
 }
 

@@ -1,9 +1,8 @@
 //! Pressure hysteresis: the pressure sensor follows a reversal of the pressure late by a fixed way.
 
-use bulge_numerics::Real;
-
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
 use crate::effect::{Action, Effect, Input, InputEffect, Jet, Row};
+use crate::load::dragged::dragged;
 use crate::mechanism::{Form, Mechanism};
 use crate::rig::lowered_pressure::lowered;
 use crate::unit::KILOPASCAL;
@@ -78,11 +77,7 @@ impl Effect for PressureHysteresis {
 
 impl InputEffect for PressureHysteresis {
     fn act(&self, Row { moment, theta, memory, .. }: Row<'_>, input: &mut Input) {
-        if moment.pressure_step != 0.0 {
-            let s = moment.pressure_step.signum();
-            let fades = (-(Jet::from(moment.pressure_step.abs()) / theta[1])).exp();
-            memory[0] = (memory[0] - s) * fades + s;
-        }
+        memory[0] = dragged(memory[0], Jet::from(moment.pressure_step), theta[1], Jet::from(1.0));
         input.pressure = lowered(input.pressure, -(theta[0] * memory[0]));
     }
 }
@@ -92,6 +87,7 @@ mod tests {
     use super::*;
     use crate::effect::Moment;
     use crate::probe::SETTING;
+    use bulge_numerics::Real;
 
     #[test]
     fn the_reading_follows_late() {

@@ -13,7 +13,7 @@ use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::{Hypothesis, Tried, effect_log_prior, singles};
-use crate::diagnosis::linearised_model::{Given, LinearisedModel};
+use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::space::Space;
 use crate::diagnosis::stage::{Stage, tempered};
 use crate::dot::dot;
@@ -54,8 +54,8 @@ pub(crate) struct Class {
 
 impl Class {
     /// Keeps the fits of all rivals beside the other effects of a stage.
-    pub(crate) fn remember(&self, given: &Given<'_>, stage: &Stage) {
-        let Some(fits) = given.fits else { return };
+    pub(crate) fn remember(&self, context: &Context<'_>, stage: &Stage) {
+        let Some(fits) = context.fits else { return };
         let is_other = |effect: &&Arc<dyn Effect>| effect.card().name != self.effect.card().name;
         let others: Vec<Arc<dyn Effect>> = stage.added.iter().filter(is_other).cloned().collect();
         for (rival, fit) in self.rivals.iter().filter_map(|rival| Some((rival, rival.fit.as_ref()?))) {
@@ -82,7 +82,7 @@ impl Class {
     }
 }
 
-impl Given<'_> {
+impl Context<'_> {
     /// The class of one of the added effects, all others staying, and the stage without it, where none was `known`; none if there is no model without it that these
     /// data could come from.
     pub(crate) fn class(
@@ -115,7 +115,7 @@ impl Given<'_> {
             scatter,
         );
         let margin = RULE.rival.max(RULE.rival_bent * stage.confirmed.form.log_evidence);
-        let beside = Given { kin: Some(&stage.confirmed.form.kin), ..*self };
+        let beside = Context { kin: Some(&stage.confirmed.form.kin), ..*self };
         let list = singles(&without.linear, &without.confirmed.prepared.model);
         let best = list.iter().map(|h| h.log_evidence).fold(f64::NEG_INFINITY, f64::max);
         let mut fitted = 0;
@@ -141,7 +141,7 @@ impl Given<'_> {
                 let fit = tried.as_ref().and_then(|tried| tried.confirmed.as_ref());
                 let own = fit.filter(|fit| fit.form.log_evidence > 0.0);
                 let own = own.map_or(Vec::new(), |fit| {
-                    let known = Given { kin: Some(&fit.form.kin), ..*self };
+                    let known = Context { kin: Some(&fit.form.kin), ..*self };
                     known.form_directions(&fit.prepared, &fit.theta)
                 });
                 let separation = if own.is_empty() {
@@ -357,32 +357,32 @@ mod tests {
         let record = record.with_force(measured);
         let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
         let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
-        let given = Given::plain(&catalogue, &record, &whitening, &law);
+        let context = Context::plain(&catalogue, &record, &whitening, &law);
         let [friction, offset] =
             ["coulomb-friction", "force-offset"].map(|n| Arc::clone(catalogue.find(n).unwrap()));
         let both = vec![friction, offset];
-        let confirmed = given.confirm(&base, &both, None, &[]).unwrap();
-        let stage = given.stage(both, confirmed).unwrap();
+        let confirmed = context.confirm(&base, &both, None, &[]).unwrap();
+        let stage = context.stage(both, confirmed).unwrap();
         let dropped = |place: usize| {
-            let (class, _) = given.class(&base, &stage, place, None).unwrap();
-            given.dropped(&base, &stage, place, &class).map(|stage| stage.added[0].card().name.to_owned())
+            let (class, _) = context.class(&base, &stage, place, None).unwrap();
+            context.dropped(&base, &stage, place, &class).map(|stage| stage.added[0].card().name.to_owned())
         };
         assert_eq!([dropped(0), dropped(1)], [None, Some("coulomb-friction".to_owned())]);
         // The same model at another minimum of 40 more: what a fit with something idle found is taken.
         let one = vec![Arc::clone(&stage.added[0])];
-        let right = given.confirm(&base, &one, None, &[]).unwrap();
-        let mut worse = given.stage(one, right.clone()).unwrap();
+        let right = context.confirm(&base, &one, None, &[]).unwrap();
+        let mut worse = context.stage(one, right.clone()).unwrap();
         let other = Arc::clone(catalogue.find("pressure-friction").unwrap());
         let idle =
-            given.confirm(&base, &[Arc::clone(&worse.added[0]), Arc::clone(&other)], None, &[]).unwrap();
-        assert!(given.lower(&base, &worse).is_none());
+            context.confirm(&base, &[Arc::clone(&worse.added[0]), Arc::clone(&other)], None, &[]).unwrap();
+        assert!(context.lower(&base, &worse).is_none());
         worse.confirmed.minimum.cost += 40.0;
         let place = worse.linear.place(other.card().name);
         let hypothesis =
             Hypothesis { effects: vec![place.unwrap()], log_evidence: 0.0, gain: 0.0, starts: Vec::new() };
         assert!(idle.is_idle(&[other]), "friction that falls with the pressure leaves it off");
         worse.tried = vec![Tried { hypothesis, confirmed: Some(idle), log_evidence: 0.0 }];
-        let found = given.lower(&base, &worse).unwrap();
+        let found = context.lower(&base, &worse).unwrap();
         assert!((found.confirmed.cost() - right.cost()).abs() < 1e-6);
     }
 }

@@ -11,7 +11,7 @@ use crate::diagnosis::candidates::{Candidate, log_evidence};
 use crate::diagnosis::classes::{Class, Rival, separation};
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::{Tried, effect_log_prior};
-use crate::diagnosis::linearised_model::{Given, LinearisedModel};
+use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::null::{Null, Statistics};
 use crate::diagnosis::sensitivity::Screened;
 use crate::dot::dot;
@@ -67,7 +67,7 @@ struct Truth<'a> {
 ///
 /// Where something unknown remains, its scatter counts as noise: misfits are then in units of that.
 pub(crate) fn confidence(
-    given: &Given<'_>,
+    context: &Context<'_>,
     linear: &LinearisedModel,
     null: &Null,
     class: &Class,
@@ -87,11 +87,11 @@ pub(crate) fn confidence(
     let counted: Vec<[usize; 3]> = (0..DRAWS / PER_STREAM)
         .into_par_iter()
         .map(|stream| {
-            let mut random = Random::new(given.seed, 1000 + stream as u64);
+            let mut random = Random::new(context.seed, 1000 + stream as u64);
             let mut counts = [0; 3];
             for _ in 0..PER_STREAM {
                 let truth = drawn(&truths, random.uniform());
-                let z = misfit(given, linear, truth, &mut random);
+                let z = misfit(context, linear, truth, &mut random);
                 let Some(claim) = Claim::of(linear, null, &log_priors, worth, &z) else { continue };
                 if claim.named != named || !is_as_clear(claim.lead(linear), lead) {
                     continue;
@@ -189,12 +189,12 @@ fn drawn<'t, 'a>(truths: &'t [Truth<'a>], mut left: f64) -> Option<&'t Truth<'a>
 
 /// A misfit as this truth would make it.
 fn misfit(
-    given: &Given<'_>,
+    context: &Context<'_>,
     linear: &LinearisedModel,
     truth: Option<&Truth<'_>>,
     random: &mut Random,
 ) -> Vec<f64> {
-    let mut z = linear.chance_of(given).draw(random);
+    let mut z = linear.chance_of(context).draw(random);
     let Some((truth, candidate)) = truth.and_then(|t| Some((t, t.candidate?))) else { return z };
     for (column, size) in candidate.columns.iter().zip(&truth.sizes) {
         // A size that the data allow: its own uncertainty, its sign kept.

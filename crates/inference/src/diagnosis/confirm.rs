@@ -13,13 +13,13 @@ use std::sync::Arc;
 use crate::diagnosis::candidates::log_prior;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::form_error::FormError;
-use crate::diagnosis::linearised_model::Given;
+use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::sensitivity::{Sensitivity, Sign, Size, longest_sweep, relaxes, sizes};
 use crate::fit::carry_over::carry_over;
+use crate::fit::frozen::{NEAR, cost, minimise_frozen};
 use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::{FitProblem, free};
-use crate::fit::settle::{NEAR, cost, settled};
-use crate::fit::states::{is_of_rows, of_start, settled_where_possible};
+use crate::fit::states::{is_of_rows, minimise_where_possible, of_start};
 
 /// Tolerance of the fits, as a part of what the residuals are: no step promises more than its square, 1e-7, of the sum of squares, and evidence counts in hundredths. In the
 /// flat valleys of effects that do nearly the same a hundred times less took five times as long.
@@ -91,7 +91,7 @@ impl Confirmed {
     }
 }
 
-impl Given<'_> {
+impl Context<'_> {
     /// A base model with further effects, which start where each of `starts` says: the numbers of the effects in order.
     pub(crate) fn confirm(
         &self,
@@ -153,10 +153,11 @@ impl Given<'_> {
             |used: &[bool], at: &[f64]| FitProblem::new(model, &few, used, sd.clone(), at.to_vec(), priors);
         let settle = |problem: &FitProblem<'_>, at: &[f64]| {
             let bounds = problem.bounds();
-            settled(problem, &inside(problem.coordinates(at), &bounds), &bounds, options).map_err(of_start)
+            minimise_frozen(problem, &inside(problem.coordinates(at), &bounds), &bounds, options)
+                .map_err(of_start)
         };
         let used = vec![true; few.len()];
-        let found = settled_where_possible((model, &few), &used, start, problem, settle).ok()?;
+        let found = minimise_where_possible((model, &few), &used, start, problem, settle).ok()?;
         Some(found.problem.theta(&found.minimum.theta))
     }
 
@@ -207,7 +208,8 @@ impl Given<'_> {
                     least_decrease: NEAR,
                     ..Options::default()
                 };
-                let from = |inside: &[f64]| settled(&problem, inside, &bounds, &options).map_err(of_start);
+                let from =
+                    |inside: &[f64]| minimise_frozen(&problem, inside, &bounds, &options).map_err(of_start);
                 let found = match from(&inside) {
                     Err(error) if is_of_rows(&error) => {
                         let nearer = self.nearer(&prepared, start, &priors, &options).ok_or(error)?;
@@ -426,10 +428,10 @@ mod tests {
         let record = record(&base);
         let law = NoiseLaw::white(NOISE, NoiseSource::Saturated, 1e6, String::new());
         let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
-        let given = Given::plain(&catalogue, &record, &whitening, &law);
+        let context = Context::plain(&catalogue, &record, &whitening, &law);
         let offset = catalogue.find("force-offset").unwrap();
-        let without = given.confirm(&base, &[], None, &[]).unwrap();
-        let with = given.confirm(&base, &[Arc::clone(offset)], None, &[]).unwrap();
+        let without = context.confirm(&base, &[], None, &[]).unwrap();
+        let with = context.confirm(&base, &[Arc::clone(offset)], None, &[]).unwrap();
         let found = with.log_evidence - without.log_evidence;
         // The sum of squares is a parabola of the offset.
         let model = base.with(offset, None).unwrap();
@@ -467,10 +469,10 @@ mod tests {
             let record = record.clone().with_force(force);
             let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
             let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
-            let given = Given::plain(&catalogue, &record, &whitening, &law);
-            let found = given.confirm(&base, &friction, None, &[vec![2.0], vec![2.0]]).unwrap();
+            let context = Context::plain(&catalogue, &record, &whitening, &law);
+            let found = context.confirm(&base, &friction, None, &[vec![2.0], vec![2.0]]).unwrap();
             assert_eq!(found.is_idle(&friction), idle, "{:?}", found.theta);
-            let one = given.confirm(&base, &friction, None, &[vec![2.0]]).unwrap();
+            let one = context.confirm(&base, &friction, None, &[vec![2.0]]).unwrap();
             assert_eq!((one.theta, one.log_evidence.to_bits()), (found.theta, found.log_evidence.to_bits()));
         }
     }

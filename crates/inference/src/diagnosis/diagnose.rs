@@ -13,14 +13,16 @@ use crate::comparison::options::Options;
 use crate::comparison::row_by_row::Rows;
 use crate::comparison::rows::lines;
 use crate::comparison::specimens::of_specimens;
+use crate::diagnosis::averaged_data::{
+    AveragedData, Stop, averaged_data, averaged_data_again, effective_rows, row_sd,
+};
 use crate::diagnosis::classes::Class;
 use crate::diagnosis::confidence::{Confidence, confidence};
 use crate::diagnosis::document::Diagnosis;
 use crate::diagnosis::either::quieter;
 use crate::diagnosis::fits::Fits;
 use crate::diagnosis::geometry::{Doubt, geometry};
-use crate::diagnosis::ground::{Ground, Stop, effective_rows, ground, ground_again, row_sd};
-use crate::diagnosis::linearised_model::Given;
+use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::next::{Judged, Limits, NextLimits, next_experiment};
 use crate::diagnosis::not_looked_for::not_looked_for;
 use crate::diagnosis::rungs::bent_rungs;
@@ -185,76 +187,76 @@ fn on_rows(
     let progress = &options.progress;
     progress.at(0.1, "the noise");
     let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
-    let ground = ground(analysis, base, used, options)?;
+    let averaged_data = averaged_data(analysis, base, used, options)?;
     // Of many rows it is large, and the means have it.
     base.force = Vec::new();
-    let Some(law) = &ground.law else {
-        let rows = ground.record.len();
+    let Some(law) = &averaged_data.law else {
+        let rows = averaged_data.record.len();
         let says = format!("{rows} rows are too few to know their noise");
         return Ok(cannot_tell(&analysis.data, analysis.muscle, &says));
     };
     progress.at(0.25, "the catalogue");
     let near = (&base.prepared.model, &base.theta[..]);
-    let searched = |ground: &Ground, given: &Given<'_>| {
-        let search = given.search(&model, near);
-        search.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))
+    let searched = |averaged_data: &AveragedData, context: &Context<'_>| {
+        let search = context.search(&model, near);
+        search.map_err(|error| Stop::at_means(error, &averaged_data.averaged, analysis))
     };
     let first = Fits::after(None);
-    let mut search = searched(&ground, &ground.given(law, options, Some(&first)))?;
+    let mut search = searched(&averaged_data, &averaged_data.context(law, options, Some(&first)))?;
     // The misfit of the base is in the first law as far as no smooth function follows it: about a better model the noise is better known.
-    let again = ground_again(analysis, &search, &ground, used, options);
+    let again = averaged_data_again(analysis, &search, &averaged_data, used, options);
     let second = Fits::after(Some(&first));
-    let (ground, given) = match again.as_ref().and_then(|again| Some((again, again.law.as_ref()?))) {
+    let (averaged_data, context) = match again.as_ref().and_then(|again| Some((again, again.law.as_ref()?))) {
         Some((again, law)) => {
-            let given = again.given(law, options, Some(&second));
-            search = searched(again, &given)?;
-            (again, given)
+            let context = again.context(law, options, Some(&second));
+            search = searched(again, &context)?;
+            (again, context)
         }
-        None => (&ground, ground.given(law, options, Some(&first))),
+        None => (&averaged_data, averaged_data.context(law, options, Some(&first))),
     };
-    let quieter = quieter(&given, ground, &model, &mut search);
-    let quieter = quieter.map_err(|error| Stop::at_means(error, &ground.averaged, analysis))?;
+    let quieter = quieter(&context, averaged_data, &model, &mut search);
+    let quieter = quieter.map_err(|error| Stop::at_means(error, &averaged_data.averaged, analysis))?;
     if let Some((law, whitening)) = &quieter {
-        let quiet = Given { whitening, law, fits: None, ..given };
-        return concluded(analysis, (&quiet, ground), &model, search, options);
+        let quiet = Context { whitening, law, fits: None, ..context };
+        return concluded(analysis, (&quiet, averaged_data), &model, search, options);
     }
-    given.exchange(&model, &mut search);
-    concluded(analysis, (&given, ground), &model, search, options)
+    context.exchange(&model, &mut search);
+    concluded(analysis, (&context, averaged_data), &model, search, options)
 }
 
 /// Classes, confidence and the ladder of what a search has found.
 fn concluded(
     analysis: &Analysis<'_>,
-    (given, ground): (&Given<'_>, &Ground),
+    (context, averaged_data): (&Context<'_>, &AveragedData),
     model: &Model,
     mut search: Search,
     options: &DiagnoseOptions,
 ) -> Result<Diagnosis, Stop> {
     let progress = &options.progress;
     progress.at(0.6, "rivals");
-    let mut judged = classes(given, model, &search);
+    let mut judged = classes(context, model, &search);
     for _ in 0..MOST_CHANGES {
         let last = &search.stages[search.stages.len() - 1];
         let better = judged.iter().enumerate().find_map(|(place, j)| {
-            let dropped = given.dropped(model, last, place, &j.class);
-            dropped.or_else(|| given.swapped(last, place, &j.class))
+            let dropped = context.dropped(model, last, place, &j.class);
+            dropped.or_else(|| context.swapped(last, place, &j.class))
         });
         let Some(better) = better else { break };
         search.replace_last(better);
-        judged = classes(given, model, &search);
+        judged = classes(context, model, &search);
     }
     progress.at(0.75, "the next experiment");
-    let next = next_experiment(given, &judged, &Limits::of(&ground.record, options.limits));
+    let next = next_experiment(context, &judged, &Limits::of(&averaged_data.record, options.limits));
     progress.at(0.85, "the ladder");
     let classes: Vec<(Class, Confidence)> =
         judged.into_iter().map(|judged| (judged.class, judged.confidence)).collect();
-    let sd_n = row_sd(given.law, ground);
+    let sd_n = row_sd(context.law, averaged_data);
     let found = Findings {
-        given,
+        context,
         search: &search,
         classes: &classes,
         sd_n,
-        effective_rows: effective_rows(given, ground, sd_n),
+        effective_rows: effective_rows(context, averaged_data, sd_n),
         known: options.base.effects.len(),
         tolerance_n: options.tolerance_n,
         next,
@@ -265,7 +267,7 @@ fn concluded(
     let answer = compare_near(analysis, &compared, last.numbers())?;
     progress.at(1.0, "done");
     let above_n = answer.0.ladder.last().map_or(f64::INFINITY, |rung| rung.rmse_n);
-    let bent = bent_rungs(analysis, found.shown_stage(), &ground.averaged.groups, above_n)?;
+    let bent = bent_rungs(analysis, found.shown_stage(), &averaged_data.averaged.groups, above_n)?;
     let mut diagnosis = document(analysis.muscle, &found, answer, &bent);
     diagnosis.geometry = geometry(analysis, found.regardless());
     Ok(diagnosis)
@@ -281,14 +283,14 @@ fn compared_as_stated(
 }
 
 /// Each named effect with its rivals, and how often such a claim is right.
-fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
+fn classes(context: &Context<'_>, model: &Model, search: &Search) -> Vec<Judged> {
     let last = &search.stages[search.stages.len() - 1];
     let of = |place: usize| {
         let known = search.of_effects(&last.without(place));
-        if let Some((class, made)) = given.class(model, last, place, known)
+        if let Some((class, made)) = context.class(model, last, place, known)
             && let Some(without) = made.as_ref().or(known)
         {
-            let confidence = confidence(given, &without.linear, &without.adequacy.null, &class);
+            let confidence = confidence(context, &without.linear, &without.adequacy.null, &class);
             return Judged {
                 class,
                 confidence,
@@ -303,7 +305,7 @@ fn classes(given: &Given<'_>, model: &Model, search: &Search) -> Vec<Judged> {
     };
     let judged: Vec<Judged> = (0..last.added.len()).into_par_iter().map(of).collect();
     for one in &judged {
-        one.class.remember(given, last);
+        one.class.remember(context, last);
     }
     judged
 }

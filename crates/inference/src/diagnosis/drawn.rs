@@ -15,13 +15,13 @@ use std::sync::Arc;
 
 use crate::comparison::analysis::Analysis;
 use crate::comparison::options::Options;
-use crate::diagnosis::as_set::as_set;
+use crate::diagnosis::averaged_data::{Stop, averaged_data};
 use crate::diagnosis::claim::form_error;
 use crate::diagnosis::diagnose::{DiagnoseOptions, where_it_has_a_state};
 use crate::diagnosis::document::FormErrorResult;
 use crate::diagnosis::form_error::Bent;
-use crate::diagnosis::ground::{Stop, ground};
-use crate::diagnosis::linearised_model::Given;
+use crate::diagnosis::linearised_model::Context;
+use crate::diagnosis::setpoints::setpoints;
 use crate::dot::dot;
 use crate::error::InferenceError;
 
@@ -82,27 +82,27 @@ pub fn drawn_forms(data: &Data, muscle: &Muscle, options: &Options) -> Result<Dr
         let mut base = analysis.climb(options.base.effects.len(), Some(&first))?;
         let model = analysis.base_with_effects().map_err(|error| analysis.about(error))?;
         let found = where_it_has_a_state(&analysis, &mut base, |base, used| {
-            let ground = ground(&analysis, base, used, &options)?;
-            let Some(law) = &ground.law else {
+            let averaged_data = averaged_data(&analysis, base, used, &options)?;
+            let Some(law) = &averaged_data.law else {
                 return Err(InferenceError::TooFewRows {
-                    rows: ground.record.len(),
+                    rows: averaged_data.record.len(),
                     numbers: base.theta.len(),
                 }
                 .into());
             };
             let nothing: [String; 0] = [];
-            let given = Given {
+            let context = Context {
                 only: Some(&nothing),
                 is_planned: true,
                 to_draw: true,
-                ..ground.given(law, &options, None)
+                ..averaged_data.context(law, &options, None)
             };
             let near = (&base.prepared.model, &base.theta[..]);
-            let drawn = given
+            let drawn = context
                 .confirm(&model, &[], Some(near), &[])
-                .and_then(|confirmed| given.linearised(&confirmed.prepared, &confirmed.theta))
-                .map(|linear| given.drawn(&linear.force, &linear.form.effects, &options.base.effects));
-            drawn.map_err(|error: ModelError| Stop::at_means(error, &ground.averaged, &analysis))
+                .and_then(|confirmed| context.linearised(&confirmed.prepared, &confirmed.theta))
+                .map(|linear| context.drawn(&linear.force, &linear.form.effects, &options.base.effects));
+            drawn.map_err(|error: ModelError| Stop::at_means(error, &averaged_data.averaged, &analysis))
         });
         Ok(found?.0)
     })
@@ -126,7 +126,7 @@ fn without_columns(effect: &Arc<dyn Effect>) -> &'static str {
     }
 }
 
-impl Given<'_> {
+impl Context<'_> {
     fn drawn(&self, force: &[f64], bent: &[Bent], asked: &[Arc<dyn Effect>]) -> DrawnForms {
         let record = self.record;
         let residual: Vec<f64> = record.force().iter().zip(force).map(|(y, f)| y - f).collect();
@@ -136,7 +136,7 @@ impl Given<'_> {
                 *left -= bending;
             }
         }
-        let state = State::of(&as_set(record));
+        let state = State::of(&setpoints(record));
         let form = |effect: &Arc<dyn Effect>| {
             let own = bent.iter().find(|bent| bent.effect.card().name == effect.card().name);
             own.map_or_else(

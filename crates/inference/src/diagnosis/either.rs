@@ -12,8 +12,8 @@
 
 use bulge_model::{Model, ModelError};
 
-use crate::diagnosis::ground::Ground;
-use crate::diagnosis::linearised_model::Given;
+use crate::diagnosis::averaged_data::AveragedData;
+use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::pure_error::BetweenCycles;
 use crate::diagnosis::search::Search;
 use crate::diagnosis::something_else::smooth_evidence;
@@ -26,8 +26,8 @@ use crate::noise::whitening::Whitening;
 /// Where a search took for structure what is chance, or as likely noise of the base, it becomes the search that found nothing: by the law and the whitening that are given back, if
 /// the noise is another.
 pub(crate) fn quieter(
-    given: &Given<'_>,
-    ground: &Ground,
+    context: &Context<'_>,
+    averaged_data: &AveragedData,
     model: &Model,
     search: &mut Search,
 ) -> Result<Option<(NoiseLaw, Whitening)>, ModelError> {
@@ -35,13 +35,13 @@ pub(crate) fn quieter(
         search.stages[0].adequate = true;
         return Ok(None);
     }
-    let Some(law) = noise_of_base(given, ground, search)? else { return Ok(None) };
-    let all = vec![true; given.record.len()];
+    let Some(law) = noise_of_base(context, averaged_data, search)? else { return Ok(None) };
+    let all = vec![true; context.record.len()];
     // Both were made of this record: there is nothing to go wrong.
-    let Ok(whitening) = Whitening::new(&law, given.record, &all, ground.input_variances()) else {
+    let Ok(whitening) = Whitening::new(&law, context.record, &all, averaged_data.input_variances()) else {
         return Ok(None);
     };
-    let noisy = Given { whitening: &whitening, law: &law, fits: None, ..*given };
+    let noisy = Context { whitening: &whitening, law: &law, fits: None, ..*context };
     let confirmed = noisy.confirm(model, &[], Some(search.stages[0].confirmed.numbers()), &[])?;
     let stage = noisy.stage(Vec::new(), confirmed)?;
     if !stage.adequate {
@@ -53,27 +53,27 @@ pub(crate) fn quieter(
 
 /// The law of the noise under which the base explains the readings, where that is as likely as a structure; none where it isn't.
 fn noise_of_base(
-    given: &Given<'_>,
-    ground: &Ground,
+    context: &Context<'_>,
+    averaged_data: &AveragedData,
     search: &Search,
 ) -> Result<Option<NoiseLaw>, ModelError> {
     let (base, last) = (&search.stages[0], &search.stages[search.stages.len() - 1]);
-    if base.adequate || given.law.source != NoiseSource::Saturated || !given.record.is_path() {
+    if base.adequate || context.law.source != NoiseSource::Saturated || !context.record.is_path() {
         return Ok(None);
     }
-    let tangents = Tangents::of(&base.confirmed.prepared, &base.confirmed.theta, given.record)?;
-    let n = given.record.len();
+    let tangents = Tangents::of(&base.confirmed.prepared, &base.confirmed.theta, context.record)?;
+    let n = context.record.len();
     let design: Vec<f64> =
         (0..n).flat_map(|i| tangents.columns.iter().map(move |column| column[i])).collect();
-    let inputs = ground.input_variances();
-    let found = NoiseLaw::estimate(given.record, &vec![true; n], inputs, &design, &tangents.residual);
+    let inputs = averaged_data.input_variances();
+    let found = NoiseLaw::estimate(context.record, &vec![true; n], inputs, &design, &tangents.residual);
     let Ok(law) = found else { return Ok(None) };
-    let law = match BetweenCycles::of(given.record, &tangents.residual) {
+    let law = match BetweenCycles::of(context.record, &tangents.residual) {
         Some(cycles) => cycles.bounds(law, median(&mut inputs.to_vec())),
         None => law,
     };
-    let likelihood = |law| log_likelihood(law, given.record, inputs, &design, &tangents.residual);
-    let (Some(noise), Some(saturated)) = (likelihood(&law), likelihood(given.law)) else { return Ok(None) };
+    let likelihood = |law| log_likelihood(law, context.record, inputs, &design, &tangents.residual);
+    let (Some(noise), Some(saturated)) = (likelihood(&law), likelihood(context.law)) else { return Ok(None) };
     let named = last.confirmed.log_evidence - base.confirmed.log_evidence;
     let smooth = smooth_evidence(&base.linear);
     Ok((noise >= saturated + named.max(smooth)).then_some(law))

@@ -16,7 +16,7 @@ use crate::diagnosis::bending::may_bend;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::{Hypothesis, effect_log_prior, singles};
-use crate::diagnosis::linearised_model::{Given, LinearisedModel};
+use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::search::{MOST_EFFECTS, Search, names};
 use crate::diagnosis::stage::Stage;
 
@@ -91,7 +91,7 @@ fn with_one_less(effects: &[Arc<dyn Effect>]) -> Vec<Vec<Arc<dyn Effect>>> {
     (0..effects.len()).map(without).collect()
 }
 
-impl Given<'_> {
+impl Context<'_> {
     /// Replaces the last model of a search by a better one that it passed by, where the last doesn't explain the data by its formulas as they are.
     pub(crate) fn exchange(&self, base: &Model, search: &mut Search) {
         let last = &search.stages[search.stages.len() - 1];
@@ -157,7 +157,7 @@ impl Given<'_> {
             .take(MOVES)
             .filter(|h| !sets.known.contains_key(&names(stage.with(&h.effects).iter())))
             .collect();
-        let known = Given { kin: Some(&stage.confirmed.form.kin), ..*self };
+        let known = Context { kin: Some(&stage.confirmed.form.kin), ..*self };
         let tried: Vec<_> =
             best.into_par_iter().map(|hypothesis| known.fitted(base, stage, hypothesis)).collect();
         let mut found = Vec::new();
@@ -246,16 +246,16 @@ mod tests {
         let record = record(&base, hidden);
         let law = NoiseLaw::white(1.0, NoiseSource::Saturated, 1e6, String::new());
         let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &[]).unwrap();
-        let given = Given::plain(&catalogue, &record, &whitening, &law);
+        let context = Context::plain(&catalogue, &record, &whitening, &law);
         let stage = |names: &[&str]| {
             let effects: Vec<_> =
                 names.iter().map(|name| Arc::clone(catalogue.find(name).unwrap())).collect();
-            let confirmed = given.confirm(&base, &effects, None, &[]).unwrap();
-            given.stage(effects, confirmed).unwrap()
+            let confirmed = context.confirm(&base, &effects, None, &[]).unwrap();
+            context.stage(effects, confirmed).unwrap()
         };
         let mut search =
             Search { stages: vec![stage(&[]), stage(last)], something_else: Some(0), beside: Vec::new() };
-        given.exchange(&base, &mut search);
+        context.exchange(&base, &mut search);
         let last = &search.stages[search.stages.len() - 1];
         let mut families: Vec<String> = last.added.iter().map(|e| e.card().family.to_owned()).collect();
         families.sort_unstable();

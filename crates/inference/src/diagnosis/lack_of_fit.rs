@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, Gamma, Normal};
 use std::collections::BTreeMap;
 
-use crate::diagnosis::as_set::as_set;
+use crate::diagnosis::setpoints::setpoints;
 use crate::diagnosis::strokes::{Point, Stroke, strokes};
 use crate::dot::dot;
 
@@ -48,7 +48,7 @@ type Cell = Vec<Vec<usize>>;
 /// `left` is the whitened misfit outside of `tangents`, which are orthonormal; both have rows for priors behind those of the record.
 pub(crate) fn lack_of_fit(record: &Record, left: &[f64], tangents: &[Vec<f64>]) -> Option<f64> {
     // Readings that went wrong alike would else lie in one cell: at the ends of the range that looks like physics.
-    let strokes = strokes(&as_set(record));
+    let strokes = strokes(&setpoints(record));
     let rows = left.len();
     let columns = DMatrix::from_fn(rows, tangents.len(), |row, column| tangents[column][row]);
     let mut kinds = Vec::new();

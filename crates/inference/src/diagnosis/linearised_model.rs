@@ -29,7 +29,7 @@ const PART: f64 = 0.25;
 
 /// Everything that stays the same while models are tried.
 #[derive(Clone, Copy)]
-pub(crate) struct Given<'a> {
+pub(crate) struct Context<'a> {
     pub(crate) catalogue: &'a Catalogue,
     /// Means of rows, with their forces.
     pub(crate) record: &'a Record,
@@ -96,7 +96,7 @@ pub(crate) struct LinearisedModel {
 }
 
 #[cfg(test)]
-impl<'a> Given<'a> {
+impl<'a> Context<'a> {
     /// White noise of a size that the law says, seed 1, the whole catalogue.
     pub(crate) fn plain(
         catalogue: &'a Catalogue,
@@ -123,7 +123,7 @@ impl<'a> Given<'a> {
     }
 }
 
-impl Given<'_> {
+impl Context<'_> {
     /// A model at the numbers `theta`, whitened.
     fn whitened(&self, prepared: &Prepared, theta: &[f64]) -> Result<Whitened, ModelError> {
         let tangent = Tangents::of(prepared, theta, self.record)?;
@@ -321,8 +321,8 @@ impl LinearisedModel {
     }
 
     /// A jump within a sweep in what is left; none if there is none.
-    pub(crate) fn jump(&self, given: &Given<'_>) -> Option<Jump> {
-        jump(given.record, given.whitening, &self.space, &self.space.outside_of_left_out(&self.white))
+    pub(crate) fn jump(&self, context: &Context<'_>) -> Option<Jump> {
+        jump(context.record, context.whitening, &self.space, &self.space.outside_of_left_out(&self.white))
     }
 
     fn units(&self) -> Vec<Vec<f64>> {
@@ -330,22 +330,22 @@ impl LinearisedModel {
     }
 
     /// What the misfit of a right model would be drawn from.
-    pub(crate) fn chance_of<'a>(&'a self, given: &'a Given<'_>) -> Chance<'a> {
+    pub(crate) fn chance_of<'a>(&'a self, context: &'a Context<'_>) -> Chance<'a> {
         Chance {
             coordinates: self.z.len(),
-            freedom: given.law.degrees_of_freedom,
+            freedom: context.law.degrees_of_freedom,
             offsets: &self.offsets,
-            offset_n: given.law.offset_n,
-            beliefs: &given.law.offset_beliefs,
+            offset_n: context.law.offset_n,
+            beliefs: &context.law.offset_beliefs,
         }
     }
 
     /// How often chance alone gives as much misfit: by the screen and by the smooth test.
-    pub(crate) fn chance(&self, given: &Given<'_>) -> (Null, [f64; 2]) {
+    pub(crate) fn chance(&self, context: &Context<'_>) -> (Null, [f64; 2]) {
         let units = self.units();
         let found = Statistics::of(&self.z, &self.candidates, &units);
-        let chance = self.chance_of(given);
-        let null = Null::of(&chance, &self.candidates, &units, given.seed);
+        let chance = self.chance_of(context);
+        let null = Null::of(&chance, &self.candidates, &units, context.seed);
         let chance = null.chance(&found);
         (null, chance)
     }

@@ -15,7 +15,7 @@ use crate::diagnosis::confidence::Confidence;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::document::NextExperiment;
-use crate::diagnosis::linearised_model::Given;
+use crate::diagnosis::linearised_model::Context;
 use crate::fit::weights::Noise;
 use crate::noise::law::{CorrelationTime, NoiseLaw};
 use crate::noise::whitening::Whitening;
@@ -265,7 +265,7 @@ fn filled(limits: &Limits, whole: [f64; 2]) -> Vec<Proposal> {
 
 /// The experiment that best separates the effects of the first class that holds several; none if every class is decided.
 pub(crate) fn next_experiment(
-    given: &Given<'_>,
+    context: &Context<'_>,
     judged: &[Judged],
     limits: &Limits,
 ) -> Option<NextExperiment> {
@@ -289,7 +289,7 @@ pub(crate) fn next_experiment(
     let is_friction = open.class.effect.card().signature.parity == Parity::Odd;
     let tests = proposals(limits).into_iter().filter(|proposal| !(is_friction && proposal.holds()));
     let tried = tests.filter_map(|test| {
-        let sigmas = separations(given, with, without, (&named, &names), &test.protocol)?;
+        let sigmas = separations(context, with, without, (&named, &names), &test.protocol)?;
         Some((Told::by(test.says, &rivals, &sigmas)?, test.protocol))
     });
     // Of tests that tell the same the first stands.
@@ -334,22 +334,26 @@ pub(crate) fn next_experiment(
         separates: vec![named, nearest],
         sigma: best.after,
         repeats,
-        protocol: Some(Box::new(Protocol { noise: noise_of(given, &protocol), ..protocol })),
+        protocol: Some(Box::new(Protocol { noise: noise_of(context, &protocol), ..protocol })),
     })
 }
 
 /// The noise of the data at hand, as far as another test has it: a correlation over rows means nothing there.
-fn noise_of(given: &Given<'_>, protocol: &Protocol) -> ReadingNoise {
-    let seconds = match given.law.time {
+fn noise_of(context: &Context<'_>, protocol: &Protocol) -> ReadingNoise {
+    let seconds = match context.law.time {
         Some(CorrelationTime::Seconds(time)) if !protocol.is_static() => Some(time),
         _ => None,
     };
-    let correlated_n = seconds.map_or(0.0, |_| given.law.correlated_n);
+    let correlated_n = seconds.map_or(0.0, |_| context.law.correlated_n);
     ReadingNoise {
-        force_n: if seconds.is_some() { given.row_n } else { given.row_n.hypot(given.law.correlated_n) },
+        force_n: if seconds.is_some() {
+            context.row_n
+        } else {
+            context.row_n.hypot(context.law.correlated_n)
+        },
         correlated_n,
         correlation_time_s: seconds.filter(|_| correlated_n > 0.0).unwrap_or(0.0),
-        offset_n: given.law.offset_n,
+        offset_n: context.law.offset_n,
         ..ReadingNoise::default()
     }
 }
@@ -398,7 +402,7 @@ fn listed(names: &[String]) -> String {
 
 /// Sigmas between an effect and each of its rivals in a planned test; none if the test can't be made with this muscle.
 fn separations(
-    given: &Given<'_>,
+    context: &Context<'_>,
     with: &Confirmed,
     without: &Confirmed,
     (named, rivals): (&String, &[String]),
@@ -408,29 +412,29 @@ fn separations(
     let model = &without.prepared.model;
     let readings = Wanted { parameters: Vec::new(), readings: true };
     let prediction = model.evaluate(&record, &without.theta, &readings).ok()?;
-    let noise = Noise::of(model.muscle(), given.row_n);
+    let noise = Noise::of(model.muscle(), context.row_n);
     let slopes = prediction.by_pressure.iter().zip(&prediction.by_contraction);
     let variances: Vec<f64> =
         slopes.map(|(p, e)| (p * noise.pressure_pa).powi(2) + (e * noise.contraction).powi(2)).collect();
-    let reading = noise_of(given, protocol);
+    let reading = noise_of(context, protocol);
     let timed = reading.correlated_n > 0.0;
     let law = NoiseLaw {
         correlated_n: reading.correlated_n,
-        time: given.law.time.filter(|_| timed),
+        time: context.law.time.filter(|_| timed),
         white_n: reading.force_n,
-        ..given.law.clone()
+        ..context.law.clone()
     };
     let record = record.with_force(prediction.force);
     let whitening = Whitening::new(&law, &record, &vec![true; record.len()], &variances).ok()?;
     // Coordinates are those of what is looked for: without the effect itself, most of its signal would have none.
     let only: Vec<String> = rivals.iter().chain([named]).cloned().collect();
-    let planned = Given {
+    let planned = Context {
         record: &record,
         whitening: &whitening,
         law: &law,
         only: Some(&only),
         is_planned: true,
-        ..*given
+        ..*context
     };
     let linear = planned.linearised(&without.prepared, &without.theta).ok()?;
     let signal = planned.signal(with, &linear).ok()?;

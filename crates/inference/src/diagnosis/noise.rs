@@ -6,9 +6,9 @@ use bulge_model::{ModelError, Record};
 use bulge_muscles::Muscle;
 
 use crate::comparison::levels::Levels;
-use crate::diagnosis::as_set::as_set;
 use crate::diagnosis::pure_error::BetweenCycles;
 use crate::diagnosis::sensitivity::Sensitivities;
+use crate::diagnosis::setpoints::setpoints;
 use crate::diagnosis::smooth::smooth;
 use crate::diagnosis::space::{Space, norm};
 use crate::diagnosis::tangents::Tangents;
@@ -182,7 +182,7 @@ fn within(record: &Record, column: &[f64]) -> Vec<f64> {
 
 /// What is set from sweep to sweep.
 fn between(record: &Record) -> Vec<Vec<f64>> {
-    let kept = as_set(record);
+    let kept = setpoints(record);
     let levels = Levels::of(record, &vec![true; record.len()]).len();
     let of = |f: &dyn Fn(&bulge_effects::Moment) -> f64| kept.moments().iter().map(f).collect::<Vec<f64>>();
     let largest = kept.moments().iter().map(|m| m.pressure).fold(f64::MIN_POSITIVE, f64::max);

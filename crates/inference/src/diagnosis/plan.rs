@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::decision_rule::RULE;
-use crate::diagnosis::linearised_model::{Given, LinearisedModel};
+use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::sensitivity::Sign;
 use crate::diagnosis::space::norm;
 use crate::dot::dot;
@@ -121,8 +121,8 @@ pub fn plan(
     let prepared = with_nuisances(&model, catalogue)?;
     let theta = prepared.start();
     let planned = Planned::of(&prepared.model, &theta, protocol)?;
-    let given = planned.given(catalogue);
-    let linear = given.linearised(&prepared, &theta)?;
+    let context = planned.context(catalogue);
+    let linear = context.linearised(&prepared, &theta)?;
     let moments = planned.record.moments();
     let range = |of: &dyn Fn(&bulge_effects::Moment) -> f64| {
         moments.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
@@ -192,8 +192,8 @@ impl Planned {
         Ok(Self { record, law, whitening })
     }
 
-    pub(crate) fn given<'a>(&'a self, catalogue: &'a Catalogue) -> Given<'a> {
-        Given {
+    pub(crate) fn context<'a>(&'a self, catalogue: &'a Catalogue) -> Context<'a> {
+        Context {
             catalogue,
             record: &self.record,
             whitening: &self.whitening,

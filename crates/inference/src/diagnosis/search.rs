@@ -9,7 +9,7 @@ use crate::diagnosis::bending::{Kin, may_bend};
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::{FAR, Hypothesis, Tried, effect_log_prior, hypotheses};
-use crate::diagnosis::linearised_model::Given;
+use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::stage::{Stage, tempered};
 
 /// Effects that are added at most: a misfit that takes more is one that the catalogue doesn't hold.
@@ -52,7 +52,7 @@ impl Search {
         self.stages.push(stage);
     }
 }
-impl Given<'_> {
+impl Context<'_> {
     /// From the base model to the set of effects that explains the data, or to where nothing more helps.
     ///
     /// `near` are numbers that the base is known to have about.
@@ -202,7 +202,7 @@ impl Given<'_> {
         let hypotheses = hypotheses(&stage.linear, &stage.confirmed.prepared.model, room);
         let (singles, pairs): (Vec<_>, Vec<_>) = hypotheses.into_iter().partition(|h| h.effects.len() == 1);
         let fitted = |list: Vec<Hypothesis>, kin: &Kin| -> Vec<Tried> {
-            let known = Given { kin: Some(kin), ..*self };
+            let known = Context { kin: Some(kin), ..*self };
             let tried: Vec<Tried> =
                 list.into_par_iter().map(|hypothesis| known.fitted(base, stage, hypothesis)).collect();
             for one in &tried {

@@ -81,7 +81,7 @@ pub(crate) struct Sensitivities {
 }
 
 /// Everything that the columns are taken from.
-struct Ground<'a> {
+struct ExpansionPoint<'a> {
     prepared: &'a Prepared,
     theta: &'a [f64],
     record: &'a Record,
@@ -102,7 +102,7 @@ impl Sensitivities {
         Tangents { set: record, force_as_set: force, warm, .. }: &Tangents,
     ) -> Self {
         let full_scale = force.iter().fold(f64::MIN_POSITIVE, |most, f| most.max(f.abs()));
-        let ground = Ground { prepared, theta, record, force, full_scale, warm };
+        let expansion = ExpansionPoint { prepared, theta, record, force, full_scale, warm };
         let mut effects = Vec::new();
         for effect in catalogue.iter() {
             let card = effect.card();
@@ -132,7 +132,7 @@ impl Sensitivities {
                 if screened.untestable.is_some() {
                     return Ok(Vec::new());
                 }
-                ground.sensitivities(place, screened).map_err(|error| error.to_string())
+                expansion.sensitivities(place, screened).map_err(|error| error.to_string())
             })
             .collect();
         let mut sensitivities = Vec::new();
@@ -250,7 +250,7 @@ pub(crate) fn spread(card: &ParameterCard<'_>, count: usize) -> Vec<f64> {
     if count == 1 { vec![card.typical] } else { (0..count).map(at).collect() }
 }
 
-impl Ground<'_> {
+impl ExpansionPoint<'_> {
     /// All ways in which an effect may show.
     fn sensitivities(&self, place: usize, screened: &Screened) -> Result<Vec<Sensitivity>, ModelError> {
         let effect = &screened.effect;

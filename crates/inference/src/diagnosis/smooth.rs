@@ -9,7 +9,7 @@
 use bulge_model::Record;
 
 use crate::chebyshev::chebyshev;
-use crate::diagnosis::as_set::as_set;
+use crate::diagnosis::setpoints::setpoints;
 
 /// Highest degree over the contraction.
 const CONTRACTION: usize = 12;
@@ -85,7 +85,7 @@ pub(crate) struct Smooth {
 ///
 /// At levels of pressure the mean of the level is what counts.
 pub(crate) fn smooth(record: &Record) -> Vec<Smooth> {
-    let record = &as_set(record);
+    let record = &setpoints(record);
     let mut functions = map(record);
     if record.moments().iter().any(|m| m.branch() != 0.0) {
         functions.extend(by_direction(record));

@@ -8,7 +8,7 @@ use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::decision_rule::RULE;
 use crate::diagnosis::hypotheses::Tried;
 use crate::diagnosis::jump::Jump;
-use crate::diagnosis::linearised_model::{Given, LinearisedModel};
+use crate::diagnosis::linearised_model::{Context, LinearisedModel};
 use crate::diagnosis::null::Null;
 use crate::diagnosis::something_else::smooth_evidence;
 
@@ -120,14 +120,14 @@ impl Stage {
 pub(crate) fn tempered(log_evidence: f64, gain: f64, scatter: f64) -> f64 {
     log_evidence - 0.5 * gain * (1.0 - 1.0 / scatter)
 }
-impl Given<'_> {
+impl Context<'_> {
     /// A model, linearised, with its adequacy.
     pub(crate) fn stage(
         &self,
         added: Vec<Arc<dyn Effect>>,
         confirmed: Confirmed,
     ) -> Result<Stage, ModelError> {
-        let known = Given { kin: Some(&confirmed.form.kin), ..*self };
+        let known = Context { kin: Some(&confirmed.form.kin), ..*self };
         let linear = known.linearised(&confirmed.prepared, &confirmed.theta)?;
         let (null, chance) = linear.chance(self);
         let fit_fails = self.scatters(&confirmed);

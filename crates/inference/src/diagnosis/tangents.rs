@@ -2,7 +2,7 @@
 
 use bulge_model::{ModelError, Record, Wanted, Warm};
 
-use crate::diagnosis::as_set::as_set;
+use crate::diagnosis::setpoints::setpoints;
 use crate::fit::nuisance::Prepared;
 use crate::fit::problem::free;
 
@@ -29,7 +29,7 @@ impl Tangents {
     pub(crate) fn of(prepared: &Prepared, theta: &[f64], record: &Record) -> Result<Self, ModelError> {
         let model = &prepared.model;
         let wanted = Wanted { parameters: free(model), readings: false };
-        let set = as_set(record);
+        let set = setpoints(record);
         let warm = Warm::new();
         warm.hold();
         let at_set = model.evaluate_warm(&set, theta, &wanted, &warm)?;

@@ -56,13 +56,13 @@ impl Findings<'_> {
     /// The verdict, a sentence or two, and the names of the effects that are claimed.
     pub(crate) fn verdict(&self) -> (Verdict, String, Vec<String>) {
         let Said { verdict, says, claimed } = self.said();
-        let is_known = self.given.law.source != NoiseSource::Instruments;
+        let is_known = self.context.law.source != NoiseSource::Instruments;
         let Some(tolerance) = self.tolerance_n.filter(|_| is_known) else {
             return (verdict, says, claimed);
         };
         let small = format!("{} N", significant(tolerance, 3));
         let within = |stage: &Stage| {
-            let (left, interval) = misfit(&stage.linear, self.given.seed);
+            let (left, interval) = misfit(&stage.linear, self.context.seed);
             (interval[1] <= tolerance)
                 .then(|| format!("{} N (at most {})", significant(left, 2), significant(interval[1], 2)))
         };
@@ -105,7 +105,7 @@ impl Findings<'_> {
 
     /// The systematic misfit of the last model with its interval.
     fn size(&self) -> String {
-        let (misfit_n, interval) = misfit(&self.last().linear, self.given.seed);
+        let (misfit_n, interval) = misfit(&self.last().linear, self.context.seed);
         if interval[0] <= 0.0 {
             return format!("at most {} N", significant(interval[1], 2));
         }
@@ -132,7 +132,7 @@ impl Findings<'_> {
     /// The verdict without a tolerance.
     fn said(&self) -> Said {
         let last = self.last();
-        if self.given.law.source == NoiseSource::Instruments {
+        if self.context.law.source == NoiseSource::Instruments {
             let says = "these rows are too few to know their noise, and data sheets allow a ranking but no verdict: measure at least three pressures \
                         with 20 rows each, or repeat some rows";
             return Said::nothing(Verdict::CannotTell, says.to_owned());
@@ -194,7 +194,7 @@ impl Findings<'_> {
         }
         let structure = if let Some(left) = self.unsmooth() {
             format!("{left} that")
-        } else if misfit(&last.linear, self.given.seed).1[1] <= 0.0 {
+        } else if misfit(&last.linear, self.context.seed).1[1] <= 0.0 {
             "a misfit that no smooth function follows and".to_owned()
         } else {
             format!("a structure of {size} that")
@@ -205,13 +205,13 @@ impl Findings<'_> {
 
     /// Whether a misfit that passed for noise is too large to be called none.
     pub(crate) fn is_large(&self) -> bool {
-        let (_, [low, high]) = misfit(&self.last().linear, self.given.seed);
-        let force = self.given.record.force();
+        let (_, [low, high]) = misfit(&self.last().linear, self.context.seed);
+        let force = self.context.record.force();
         let full = full_scale(force, 0..force.len());
         let has_none = self.search.stages.len() == 1;
         has_none
             && (low > RULE.surely * full
-                || high > RULE.maybe * full && self.slow_n() > RULE.slow * self.given.row_n
+                || high > RULE.maybe * full && self.slow_n() > RULE.slow * self.context.row_n
                 || self.is_beyond_data_sheet())
     }
 
@@ -239,7 +239,7 @@ impl Findings<'_> {
 
     /// A jump, and where it is.
     fn jump(&self, jump: Jump) -> String {
-        let record = self.given.record;
+        let record = self.context.record;
         let moment = &record.moments()[jump.row];
         let size = significant(jump.newtons.abs(), 2);
         let (pressure, contraction) = (moment.pressure / 1e5, 100.0 * moment.contraction);
@@ -254,7 +254,7 @@ impl Findings<'_> {
 
     /// Noise that readings share with their neighbours \[N\].
     fn slow_n(&self) -> f64 {
-        self.given.law.correlated_n.hypot(self.given.law.offset_n)
+        self.context.law.correlated_n.hypot(self.context.law.offset_n)
     }
 
     /// What is said where these effects explain the data.
@@ -308,7 +308,7 @@ impl Findings<'_> {
     /// the part that counts for claims is enough.
     fn is_nearly_exact(&self) -> bool {
         let part = self.last().by_formulas(&self.search.stages[0]);
-        let may_be_none = || misfit(&self.last().linear, self.given.seed).1[0] <= 0.0;
+        let may_be_none = || misfit(&self.last().linear, self.context.seed).1[0] <= 0.0;
         part >= RULE.by_formulas[1] || part >= RULE.exact && !self.is_bent() && may_be_none()
     }
 

@@ -20,7 +20,7 @@ use crate::diagnosis::explained::{explained, surface};
 use crate::diagnosis::geometry::Geometry;
 use crate::diagnosis::hints::hints;
 use crate::diagnosis::hypotheses::singles;
-use crate::diagnosis::linearised_model::Given;
+use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::misfit::{located, misfit};
 use crate::diagnosis::plan::SEEN;
 use crate::diagnosis::rungs::{BentRung, TOGETHER, join_useless};
@@ -41,7 +41,7 @@ const SHORT: f64 = 0.025;
 
 /// Everything that was found.
 pub(crate) struct Findings<'a> {
-    pub(crate) given: &'a Given<'a>,
+    pub(crate) context: &'a Context<'a>,
     pub(crate) search: &'a Search,
     pub(crate) classes: &'a [(Class, Confidence)],
     /// Standard deviation of a single row \[N\].
@@ -61,7 +61,7 @@ pub(crate) fn document(
     (mut comparison, rows): (Comparison, Rows),
     bent: &[BentRung],
 ) -> Diagnosis {
-    let Findings { given, search, classes, sd_n, .. } = *found;
+    let Findings { context, search, classes, sd_n, .. } = *found;
     join_useless(&mut comparison.ladder, found.known);
     let (verdict, mut says, claimed) = found.verdict();
     if verdict == Verdict::CannotTell && found.is_large() {
@@ -72,7 +72,7 @@ pub(crate) fn document(
     let classes = if named { classes } else { &[] };
     let last = found.shown_stage();
     let adequate = last.adequate && last.adequacy.unsmooth.is_none() || verdict == Verdict::Adequate;
-    let (misfit_n, misfit_interval_n) = misfit(&last.linear, given.seed);
+    let (misfit_n, misfit_interval_n) = misfit(&last.linear, context.seed);
     let left = located(&last.linear);
     let added = classes.iter().map(|(class, sure)| found.missing(class, *sure));
     let (missing, nearest): (Vec<Missing>, Vec<Missing>) = added.partition(|m| claimed.contains(&m.fitted));
@@ -93,9 +93,9 @@ pub(crate) fn document(
         },
         noise: DiagnosedNoise {
             sd_n,
-            correlated: !given.law.is_white(),
-            source: source(given.law.source).to_owned(),
-            law: given.law.clone(),
+            correlated: !context.law.is_white(),
+            source: source(context.law.source).to_owned(),
+            law: context.law.clone(),
         },
         verdict,
         says,
@@ -112,8 +112,8 @@ pub(crate) fn document(
             misfit_interval_n,
             by_formulas: (named && !last.added.is_empty()).then(|| last.by_formulas(&search.stages[0])),
             unseen_below_n: if named { found.unseen_below_n() } else { None },
-            hints: if adequate { Vec::new() } else { hints(given.record, &last.linear, &left) },
-            surface: surface(given.record, &last.linear),
+            hints: if adequate { Vec::new() } else { hints(context.record, &last.linear, &left) },
+            surface: surface(context.record, &last.linear),
         },
         geometry: Geometry::default(),
         not_looked_for: Vec::new(),
@@ -136,7 +136,7 @@ impl Findings<'_> {
     /// What a further effect must change to count beside those that are named: less could be an error of their formulas. As a part of what they explain, squares count.
     fn unseen_below_n(&self) -> Option<f64> {
         let last = self.last();
-        let (explained_n, _) = misfit(&self.search.stages[0].linear, self.given.seed);
+        let (explained_n, _) = misfit(&self.search.stages[0].linear, self.context.seed);
         (!last.added.is_empty() && may_bend(&last.confirmed.prepared))
             .then(|| RULE.mends.sqrt() * explained_n)
     }
@@ -149,7 +149,7 @@ impl Findings<'_> {
             };
             let names: Vec<String> =
                 pair[1].added.iter().filter(is_new).map(|effect| self.label(effect)).collect();
-            explained(&names.join(" + "), self.given.record, &pair[0].linear.force, &pair[1].linear.force)
+            explained(&names.join(" + "), self.context.record, &pair[0].linear.force, &pair[1].linear.force)
         };
         self.search.stages.windows(2).map(step).collect()
     }
@@ -204,12 +204,12 @@ impl Findings<'_> {
             .find(|(p, _)| p.effect == card.name && p.name == "distance")
             .map(|(_, value)| *value);
         let stroke = |rows: &std::ops::Range<usize>| {
-            let contractions = self.given.record.moments()[rows.clone()].iter().map(|m| m.contraction);
+            let contractions = self.context.record.moments()[rows.clone()].iter().map(|m| m.contraction);
             let [low, high] =
                 contractions.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], e| [l.min(e), h.max(e)]);
             high - low
         };
-        let stroke = self.given.record.sweeps().iter().map(stroke).fold(0.0, f64::max);
+        let stroke = self.context.record.sweeps().iter().map(stroke).fold(0.0, f64::max);
         // Where the length is held there is none: friction of the length is no candidate.
         let first = &self.search.stages[0].linear.sensitivities.effects;
         let is_candidate = first.iter().any(|sensitivity| sensitivity.effect.card().name == COULOMB);
@@ -274,7 +274,7 @@ impl Findings<'_> {
             forms,
             family: card.family.to_owned(),
             mechanism: card.mechanism,
-            form_error: bent.map(|bent| form_error(self.given.record, bent)),
+            form_error: bent.map(|bent| form_error(self.context.record, bent)),
             level: levels.decided(),
             confidence: levels.family,
             confidence_mechanism: levels.mechanism,
@@ -302,12 +302,12 @@ impl Findings<'_> {
             .collect();
         let problem = FitProblem::whitened(
             model,
-            self.given.record,
-            self.given.whitening,
+            self.context.record,
+            self.context.whitening,
             confirmed.theta.clone(),
             &priors,
         );
-        let scale = interval::Scale::known(last.scatter(), self.given.law.degrees_of_freedom);
+        let scale = interval::Scale::known(last.scatter(), self.context.law.degrees_of_freedom);
         let mut found = BTreeMap::new();
         for (place, index) in free(model).into_iter().enumerate() {
             let p = &model.parameters()[index];
@@ -364,7 +364,7 @@ fn rival_result(rival: &Rival, class: &Class) -> RivalResult {
 impl Findings<'_> {
     /// Every effect of the catalogue, beside the base.
     fn candidates(&self, classes: &[(Class, Confidence)], claimed: &[Missing]) -> Vec<CandidateResult> {
-        let given = self.given;
+        let context = self.context;
         let stage = &self.search.stages[0];
         let linear = &stage.linear;
         let alone = singles(linear, &stage.confirmed.prepared.model);
@@ -400,7 +400,7 @@ impl Findings<'_> {
                 .filter(|l| number.is_none_or(|n| *l <= n.of(given_muscle).high - n.of(given_muscle).low));
             let column =
                 candidate.and_then(|c| linear.sensitivities.sensitivities[c.sensitivity].columns.first());
-            let rms = column.map(|c| (dot(c, c) / given.record.len().max(1) as f64).sqrt());
+            let rms = column.map(|c| (dot(c, c) / context.record.len().max(1) as f64).sqrt());
             let fitted = tried.map(|t| t.log_evidence).filter(|evidence| evidence.is_finite());
             found.push(CandidateResult {
                 effect: name.to_owned(),

@@ -162,7 +162,7 @@ fn known(kind: Kind) -> &'static [&'static str] {
 }
 
 /// What `[mesher]` says of any mesh.
-struct Wish<'a, 't> {
+struct MesherOptions<'a, 't> {
     table: &'a Settings<'t>,
     cells: Vec<usize>,
     is_quadratic: bool,
@@ -187,7 +187,7 @@ fn made(table: &Settings<'_>, folder: Option<&Path>) -> Result<Source, FileError
         }
     };
     let muscle = table.get("muscle").map(|_| table.muscle("muscle", folder)).transpose()?;
-    let wish = Wish { table, cells: cells(table)?, is_quadratic, muscle };
+    let wish = MesherOptions { table, cells: cells(table)?, is_quadratic, muscle };
     let mut source = match kind {
         Kind::Tube => wish.tube(),
         Kind::Disc => wish.disc(),
@@ -215,7 +215,7 @@ fn source(mesh: Mesh, copies: Copies, supports: Vec<(String, Support)>) -> Sourc
     Source { mesh, copies, supports, length: None, unfolded_radius: None, fittings: Vec::new(), muscle: None }
 }
 
-impl Wish<'_, '_> {
+impl MesherOptions<'_, '_> {
     /// Elements of a line.
     fn line(&self) -> Result<usize, FileError> {
         let [one] = self.cells[..] else {
@@ -318,7 +318,7 @@ impl Wish<'_, '_> {
     }
 }
 
-fn pleated(wish: &Wish<'_, '_>) -> Result<Pleated, FileError> {
+fn pleated(wish: &MesherOptions<'_, '_>) -> Result<Pleated, FileError> {
     let (table, muscle) = (wish.table, wish.muscle.as_ref());
     let own = muscle.and_then(|muscle| match muscle.construction() {
         Construction::Pleated(pleated) => Some(*pleated),

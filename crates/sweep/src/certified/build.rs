@@ -34,7 +34,7 @@ const SINGLE: f64 = 4e-7;
 
 /// What a table must reach, and how it is called.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Wish {
+pub struct Requirements {
     /// Largest relative error of the values.
     pub tolerance: f64,
     /// Largest relative error of the gradients.
@@ -98,14 +98,14 @@ struct Builder<'a> {
     fit: Polynomial,
     scales: Vec<f64>,
     edge_error: f64,
-    wish: &'a Wish,
+    wish: &'a Requirements,
 }
 
 /// Builds a table of a field. Parallel; the same bytes on any number of threads. `told` hears what is going on.
 ///
 /// # Errors
 /// [`BuildError`].
-pub fn build(field: &dyn Field, wish: &Wish, told: &dyn Fn(&str)) -> Result<Built, BuildError> {
+pub fn build(field: &dyn Field, wish: &Requirements, told: &dyn Fn(&str)) -> Result<Built, BuildError> {
     let limit = wish.max_bytes;
     let forms: &[Form] = match wish.form {
         TableForm::Splines => &[Form::Spline],
@@ -177,7 +177,7 @@ fn edge_error(domain: &Domain<'_>) -> Result<f64, NoValue> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(field: &'a dyn Field, form: Form, wish: &'a Wish) -> Result<Self, BuildError> {
+    fn new(field: &'a dyn Field, form: Form, wish: &'a Requirements) -> Result<Self, BuildError> {
         let domain = Domain::new(field, form, wish.tolerance, FLOOR, wish.max_bytes)?;
         let wanted = (FOLLOW * FLOOR * wish.tolerance).max(SOLVER);
         let (axes, outputs) = (field.axes().len(), field.outputs().len());

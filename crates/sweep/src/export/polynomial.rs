@@ -207,7 +207,7 @@ impl Errors {
 mod tests {
     use super::*;
     use crate::plan::TableForm;
-    use crate::{MuscleField, Plan, Wish, build};
+    use crate::{MuscleField, Plan, Requirements, build};
 
     fn table(slenderness: &str) -> Vec<u8> {
         let text = format!(
@@ -216,7 +216,7 @@ mod tests {
         let plan = Plan::from_toml(&text, "s.toml", None).unwrap();
         let wish = plan.table.clone().unwrap();
         let field = MuscleField::new(&plan, &wish).unwrap();
-        let wish = Wish {
+        let wish = Requirements {
             tolerance: 1e-6,
             gradient: 1e-4,
             max_bytes: 1 << 16,

@@ -6,7 +6,7 @@ use bulge_muscles::{Dimension, FileError, Parameter};
 use super::axes::Placed;
 use super::outputs::outputs;
 use crate::output::Output;
-use crate::plan::{Quantity, Range, TableForm, TableWish};
+use crate::plan::{Quantity, Range, TableForm, TableRequirements};
 
 /// Keys of the table, with an example of each.
 pub(super) const TABLE: Keys = &[
@@ -35,7 +35,7 @@ pub(super) fn wish(
     axes: &[Placed<'_>],
     usual: &[Output],
     has: &dyn Fn(Parameter) -> bool,
-) -> Result<Option<TableWish>, FileError> {
+) -> Result<Option<TableRequirements>, FileError> {
     let Some(table) = settings.table("table", "`[table]`", TABLE)? else { return Ok(None) };
     table.check_keys()?;
     check_axes(&table, axes, settings)?;
@@ -46,11 +46,11 @@ pub(super) fn wish(
         let instead = "write such as `outputs = [\"force_f\", \"volume_v\"]` in `[table]`";
         return Err(table.error(table.value_span("outputs"), what, instead));
     }
-    Ok(Some(TableWish { outputs, ..limits(&table)? }))
+    Ok(Some(TableRequirements { outputs, ..limits(&table)? }))
 }
 
 /// What a table must reach, without its outputs.
-pub(crate) fn limits(table: &Settings<'_>) -> Result<TableWish, FileError> {
+pub(crate) fn limits(table: &Settings<'_>) -> Result<TableRequirements, FileError> {
     let bytes = max_size(table)?;
     let forms = [
         ("fastest", TableForm::Fastest),
@@ -58,7 +58,7 @@ pub(crate) fn limits(table: &Settings<'_>) -> Result<TableWish, FileError> {
         ("splines", TableForm::Splines),
         ("chebyshev", TableForm::Chebyshev),
     ];
-    Ok(TableWish {
+    Ok(TableRequirements {
         outputs: vec![],
         tolerance: bounded(table, "tolerance", 1e-6, TOLERANCE)?,
         gradient: bounded(table, "gradient", 1e-4, GRADIENT)?,

@@ -1,7 +1,7 @@
 //! Joints: torques against other ways to them, files with mistakes, and a certified table.
 
 use super::*;
-use crate::certified::{Field as _, Wish, build};
+use crate::certified::{Field as _, Requirements, build};
 use crate::plan::TableForm;
 use bulge_fibre::Problem;
 use bulge_muscles::{FileError, Pressure, preset};
@@ -252,7 +252,7 @@ fn what_has_no_answer() {
 fn a_certified_table() {
     let joint = read(&PULLEY.replace("-25 deg..25 deg", "-20 deg..20 deg"));
     let field = JointField::new(&joint);
-    let wish = Wish {
+    let wish = Requirements {
         tolerance: 1e-4,
         gradient: 1e-2,
         max_bytes: 1 << 20,

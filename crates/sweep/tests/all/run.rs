@@ -10,7 +10,7 @@ use std::time::SystemTime;
 
 use bulge_effects::{Catalogue, known};
 use bulge_fibre::{Approach, Given, Problem, Response, Variable};
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use bulge_muscles::{Muscle, Parameter, Pressure, Quantity as _, from_toml, preset};
 use bulge_sweep::plan::{End, Range, Spacing};
 use bulge_sweep::{Output, Plan, RunOptions, Summary, SweepError, run};
@@ -723,7 +723,7 @@ fn effects_of_the_muscle_file_act() {
     let found = values(&changed);
     let extended = |text: &str| {
         let muscle = from_toml(text, "muscle.toml").unwrap();
-        Extended::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
+        MuscleWithEffects::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
     };
     let stated = extended(&with);
     for (i, contraction) in [0.02, 0.06, 0.1].into_iter().enumerate() {

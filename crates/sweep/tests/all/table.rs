@@ -8,7 +8,7 @@ use std::fmt::Write;
 use bulge_fibre::{Approach, Problem};
 use bulge_muscles::{Parameter, Pressure, Quantity as _};
 use bulge_numerics::Random;
-use bulge_sweep::plan::{TableForm, TableWish};
+use bulge_sweep::plan::{TableForm, TableRequirements};
 use bulge_sweep::{
     BuildError, Built, Family, Output, Plan, TableDescription, TabulateError, table_text, tabulate,
 };
@@ -22,13 +22,13 @@ fn plan(text: &str) -> Plan {
 }
 
 /// A plan and its wish with few checks: as many as a file asks for would take long here.
-fn wished(text: &str, checks: u64) -> (Plan, TableWish) {
+fn wished(text: &str, checks: u64) -> (Plan, TableRequirements) {
     let plan = plan(text);
-    let wish = TableWish { checks, ..plan.table.clone().unwrap() };
+    let wish = TableRequirements { checks, ..plan.table.clone().unwrap() };
     (plan, wish)
 }
 
-fn built(plan: &Plan, wish: &TableWish) -> Built {
+fn built(plan: &Plan, wish: &TableRequirements) -> Built {
     tabulate(plan, wish, &|_| ()).unwrap()
 }
 
@@ -177,7 +177,7 @@ fn fresh_errors(plan: &Plan, table: &Table<'_>, points: usize) -> ([[f64; 2]; 2]
 fn a_certified_table_keeps_its_promise_where_nobody_looked() {
     for form in [TableForm::Splines, TableForm::Chebyshev] {
         let (plan, wish) = wished(PPAM, 4096);
-        let wish = TableWish { form, ..wish };
+        let wish = TableRequirements { form, ..wish };
         let Built { bytes, is_met, certificates } = built(&plan, &wish);
         assert!(is_met && bytes.len() as u64 <= wish.max_bytes, "{form:?}: {certificates:?}");
         let table = Table::from_bytes(&bytes).unwrap();
@@ -264,7 +264,7 @@ fn the_same_bytes_on_any_number_of_threads() {
 fn where_the_size_comes_first_the_error_is_honest() {
     let (plan, wish) = wished(&PPAM.replace("1e-5", "1e-8"), 4096);
     for max_bytes in [2500, 6000] {
-        let wish = TableWish { max_bytes, form: TableForm::Splines, ..wish.clone() };
+        let wish = TableRequirements { max_bytes, form: TableForm::Splines, ..wish.clone() };
         let Built { bytes, is_met, certificates } = built(&plan, &wish);
         assert!(!is_met && bytes.len() as u64 <= max_bytes, "{} bytes", bytes.len());
         let table = Table::from_bytes(&bytes).unwrap();
@@ -277,7 +277,7 @@ fn where_the_size_comes_first_the_error_is_honest() {
         }
         assert!(certificates.iter().any(|c| c.value_max > wish.tolerance || c.gradient_max > wish.gradient));
     }
-    let tiny = TableWish { max_bytes: 1100, ..wish };
+    let tiny = TableRequirements { max_bytes: 1100, ..wish };
     let error = tabulate(&plan, &tiny, &|_| ()).unwrap_err();
     assert!(matches!(error, TabulateError::Build(BuildError::TooSmall { limit: 1100, .. })), "{error}");
 }
@@ -299,16 +299,17 @@ fn a_table_says_where_it_comes_from() {
     assert_eq!(names, ["force_f", "volume_v"]);
     // A table that would be another one has another text: other outputs, other checks, another tolerance.
     let others = [
-        TableWish { outputs: vec![Output::Force, Output::Volume], ..wish.clone() },
-        TableWish { checks: 4096, ..wish.clone() },
-        TableWish { tolerance: 2e-5, ..wish.clone() },
-        TableWish { form: TableForm::Smallest, ..wish.clone() },
+        TableRequirements { outputs: vec![Output::Force, Output::Volume], ..wish.clone() },
+        TableRequirements { checks: 4096, ..wish.clone() },
+        TableRequirements { tolerance: 2e-5, ..wish.clone() },
+        TableRequirements { form: TableForm::Smallest, ..wish.clone() },
     ];
     for other in others {
         assert_ne!(table_text(&plan, &other).unwrap(), table.text(), "{other:?}");
     }
-    let [force, stiffness] = [Output::Force, Output::Stiffness]
-        .map(|output| table_text(&plan, &TableWish { outputs: vec![output], ..wish.clone() }).unwrap());
+    let [force, stiffness] = [Output::Force, Output::Stiffness].map(|output| {
+        table_text(&plan, &TableRequirements { outputs: vec![output], ..wish.clone() }).unwrap()
+    });
     assert_ne!(force, stiffness);
 }
 

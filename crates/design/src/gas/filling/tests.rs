@@ -3,7 +3,7 @@
 use super::*;
 use crate::gas::examples::{braid, learnt, pleated, soft};
 use crate::gas::{CP_AIR, CV_AIR, GAMMA, Load, R_AIR};
-use bulge_model::Extended;
+use bulge_model::MuscleWithEffects;
 use bulge_muscles::Quantity as _;
 use std::f64::consts::FRAC_PI_2;
 
@@ -163,7 +163,7 @@ fn adiabatic_blow_down_is_isentropic() {
     assert!(energy.work_j.abs() < 1e-7 * energy.internal_j.abs(), "{energy:?}");
 }
 
-fn lifting(muscle: &Extended, load: f64) -> Filling<'_> {
+fn lifting(muscle: &MuscleWithEffects, load: f64) -> Filling<'_> {
     let chamber = Chamber::muscle(muscle, Load::Force(load)).unwrap().on_support(0.05).unwrap();
     filling(chamber.with_dead_volume(2e-5).unwrap(), 4e5)
 }

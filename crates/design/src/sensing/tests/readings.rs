@@ -216,7 +216,7 @@ fn effects_of_the_muscle_take_part() {
     let text = "name = \"c\"\nkind = \"braided\"\nlength = \"200 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\nends = \"cylinder\"\n";
     let learnt = |tables: &str| {
         let muscle = muscle(&format!("{text}\n{tables}\n"));
-        Extended::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
+        MuscleWithEffects::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
     };
     let wide = alone(&muscle(&text.replace("10 mm", "10.7 mm")));
     let winding = layer(0.2, 0.8, 11.0);

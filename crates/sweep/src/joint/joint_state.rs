@@ -17,7 +17,7 @@ const ROUNDS: usize = 50;
 
 /// One muscle of a joint that stands.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct SideStand {
+pub struct SideState {
     /// Which one.
     pub side: Side,
     /// Gauge pressure \[Pa\].
@@ -34,7 +34,7 @@ pub struct SideStand {
 
 /// How a joint stands.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Stand {
+pub struct JointState {
     /// Its angle \[rad\].
     pub angle_rad: f64,
     /// Torque of both muscles \[N m\]. What holds the joint there from outside is the negative of it.
@@ -46,7 +46,7 @@ pub struct Stand {
     /// And fast (adiabatic, exponent 1.4) \[N m/rad\].
     pub adiabatic_nm_per_rad: f64,
     /// Agonist and antagonist.
-    pub sides: [SideStand; 2],
+    pub sides: [SideState; 2],
 }
 
 /// Standard deviations of what an outside torque is computed from.
@@ -111,7 +111,7 @@ impl Joint {
     ///
     /// # Errors
     /// As [`Joint::torque`].
-    pub fn stand(&self, angle: f64, pressures: [f64; 2]) -> Result<Stand, JointError> {
+    pub fn stand(&self, angle: f64, pressures: [f64; 2]) -> Result<JointState, JointError> {
         self.inside(angle)?;
         let mut stiffness = [0.0; 3];
         let mut sides = Vec::with_capacity(2);
@@ -128,7 +128,7 @@ impl Joint {
             for (sum, along) in stiffness.iter_mut().zip([open, slow, fast]) {
                 *sum += along * reach.arm * reach.arm - force * reach.arm_by_angle;
             }
-            sides.push(SideStand {
+            sides.push(SideState {
                 side: muscle.side,
                 pressure_pa: pressure,
                 contraction,
@@ -139,7 +139,7 @@ impl Joint {
         }
         let [open, slow, fast] = stiffness;
         let sides = [sides[0], sides[1]];
-        Ok(Stand {
+        Ok(JointState {
             angle_rad: angle,
             torque_nm: sides[0].torque_nm + sides[1].torque_nm,
             stiffness_nm_per_rad: open,
@@ -153,7 +153,7 @@ impl Joint {
     ///
     /// # Errors
     /// [`JointError::NoRest`] if it isn't in the range of angles, or [`JointError::Muscle`].
-    pub fn rest(&self, pressures: [f64; 2], outside: f64) -> Result<Stand, JointError> {
+    pub fn rest(&self, pressures: [f64; 2], outside: f64) -> Result<JointState, JointError> {
         self.within(pressures)?;
         let torque = |angle: f64| {
             Ok(self.pulls(angle, pressures)?.map(|pull| pull.torque).iter().sum::<f64>() + outside)
@@ -230,7 +230,7 @@ impl Joint {
     ///
     /// # Errors
     /// [`JointError::Stiffness`] with the stiffnesses that the range of pressures allows there, or [`JointError::Held`] if none holds the angle.
-    pub fn pressures_for(&self, angle: f64, stiffness: f64, outside: f64) -> Result<Stand, JointError> {
+    pub fn pressures_for(&self, angle: f64, stiffness: f64, outside: f64) -> Result<JointState, JointError> {
         self.inside(angle)?;
         let range = self.agonists(angle, outside)?;
         let stand = |agonist: f64| self.stand(angle, [agonist, self.partner(angle, agonist, outside)?]);
@@ -323,7 +323,7 @@ impl Closed<'_> {
     ///
     /// # Errors
     /// As [`Joint::rest`] and [`Closed::pressures`].
-    pub fn rest(&self, outside: f64) -> Result<Stand, JointError> {
+    pub fn rest(&self, outside: f64) -> Result<JointState, JointError> {
         let torque = |angle: f64| {
             let pressures = self.pressures(angle)?;
             Ok(self.joint.pulls(angle, pressures)?.map(|pull| pull.torque).iter().sum::<f64>() + outside)
@@ -558,7 +558,7 @@ mod tests {
                 let loaded = closed.rest(1.0).unwrap();
                 assert!((loaded.torque_nm + 1.0).abs() < 1e-7);
                 for (side, before) in loaded.sides.iter().zip(there.sides) {
-                    let gas = |side: SideStand| (side.pressure_pa + AMBIENT) * side.volume_m3.powf(exponent);
+                    let gas = |side: SideState| (side.pressure_pa + AMBIENT) * side.volume_m3.powf(exponent);
                     assert!((gas(*side) / gas(before) - 1.0).abs() < 1e-9);
                 }
                 let open = joint.rest(pressures, 1.0).unwrap();

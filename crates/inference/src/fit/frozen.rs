@@ -19,7 +19,7 @@ const NEAR_PART: f64 = 1e-6;
 const STILL: f64 = 0.05;
 
 /// The minimum that a start leads to; as [`minimise`], and its errors.
-pub(crate) fn settled(
+pub(crate) fn minimise_frozen(
     problem: &FitProblem<'_>,
     start: &[f64],
     bounds: &Bounds,
@@ -135,7 +135,7 @@ mod tests {
         let (rounds, plain) = (problem(), problem());
         let (bounds, at) = (plain.bounds(), plain.coordinates(&start));
         let options = Options { check_curvature: false, tolerance: 1e-6, ..Options::default() };
-        let found = settled(&rounds, &at, &bounds, &options).unwrap();
+        let found = minimise_frozen(&rounds, &at, &bounds, &options).unwrap();
         let exact = minimise(&plain, &at, &bounds, &options).unwrap();
         assert!(found.certificate.converged && !rounds.is_held());
         assert!((found.cost - exact.cost).abs() < 0.02, "{} {}", found.cost, exact.cost);

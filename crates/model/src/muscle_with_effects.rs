@@ -22,7 +22,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A muscle with the effects that its file states.
 #[derive(Debug, Clone)]
-pub struct Extended {
+pub struct MuscleWithEffects {
     /// Reshaped, and without the effects.
     muscle: Muscle,
     model: Model,
@@ -40,7 +40,7 @@ struct Pull {
     by_contraction: f64,
 }
 
-impl Extended {
+impl MuscleWithEffects {
     /// A muscle with effects and their numbers, as [`bulge_effects::known`] reads them from it.
     ///
     /// # Errors
@@ -69,7 +69,7 @@ impl Extended {
         &self.muscle
     }
 
-    /// Whether the force differs from that of the equilibrium of [`Extended::muscle`].
+    /// Whether the force differs from that of the equilibrium of [`MuscleWithEffects::muscle`].
     #[must_use]
     pub fn adds_force(&self) -> bool {
         self.adds
@@ -87,7 +87,7 @@ impl Extended {
         &self.left_out
     }
 
-    /// An equilibrium of [`Extended::muscle`] with the force and the stiffness that the effects make of it. Its contraction becomes that from
+    /// An equilibrium of [`MuscleWithEffects::muscle`] with the force and the stiffness that the effects make of it. Its contraction becomes that from
     /// the stated length, where an effect says that the fibres have another one.
     ///
     /// The gas stiffness follows with the force's derivative by the pressure, F_p:  K_gas = K' + (K_gas0 - K0) F_p'/F_p.
@@ -141,7 +141,7 @@ impl Extended {
         1.0 - response.length_m / stated
     }
 
-    /// What to ask of [`Extended::muscle`] for what is asked of the muscle with its effects; not for a force.
+    /// What to ask of [`MuscleWithEffects::muscle`] for what is asked of the muscle with its effects; not for a force.
     #[must_use]
     pub fn given(&self, given: Given) -> Given {
         let stated = self.model.muscle().length().si();
@@ -162,7 +162,7 @@ impl Extended {
         pressure: Pressure,
         given: Given,
         approach: Approach,
-    ) -> Result<Response, ExtendedError> {
+    ) -> Result<Response, MuscleWithEffectsError> {
         let problem = Problem::new(&self.muscle, pressure)?;
         let mut found = self.complete(&problem.solve(self.given(given), approach)?)?;
         let Given::Force(wanted) = given else { return Ok(found) };
@@ -180,7 +180,7 @@ impl Extended {
             let next = self.given(Given::Contraction(found.contraction + step));
             found = self.complete(&problem.solve(next, approach)?)?;
         }
-        Err(ExtendedError::Force { wanted, contraction: found.contraction, force: found.force_n })
+        Err(MuscleWithEffectsError::Force { wanted, contraction: found.contraction, force: found.force_n })
     }
 
     /// The characteristics of the muscle with its effects, as [`bulge_fibre::isobars`] of a muscle without: on all cores, the same bytes whatever
@@ -193,7 +193,7 @@ impl Extended {
         pressures: &[Pressure],
         contractions: &[f64],
         approach: Approach,
-    ) -> Result<Vec<Isobar>, ExtendedError> {
+    ) -> Result<Vec<Isobar>, MuscleWithEffectsError> {
         let stated = self.model.muscle().length().si();
         let own = self.muscle.length().si();
         let same = stated.to_bits() == own.to_bits();
@@ -224,8 +224,12 @@ impl Extended {
     /// The contraction at which the muscle with its effects pulls no more; none beyond the limit of the equilibrium alone.
     ///
     /// # Errors
-    /// As [`Extended::solve`].
-    pub fn contraction_limit(&self, pressure: Pressure, approach: Approach) -> Result<f64, ExtendedError> {
+    /// As [`MuscleWithEffects::solve`].
+    pub fn contraction_limit(
+        &self,
+        pressure: Pressure,
+        approach: Approach,
+    ) -> Result<f64, MuscleWithEffectsError> {
         match self.range_end(pressure, approach)? {
             RangeEnd::ForceVanishes(limit) => Ok(limit),
             end @ RangeEnd::FibresSlacken(limit) => Err(end.beyond(limit).into()),
@@ -235,8 +239,12 @@ impl Extended {
     /// Where the equilibria at which the muscle with its effects pulls end; not beyond where those of the equilibrium alone do.
     ///
     /// # Errors
-    /// As [`Extended::solve`].
-    pub fn range_end(&self, pressure: Pressure, approach: Approach) -> Result<RangeEnd, ExtendedError> {
+    /// As [`MuscleWithEffects::solve`].
+    pub fn range_end(
+        &self,
+        pressure: Pressure,
+        approach: Approach,
+    ) -> Result<RangeEnd, MuscleWithEffectsError> {
         let problem = Problem::new(&self.muscle, pressure)?;
         let end = problem.range_end(approach)?;
         if !self.adds {
@@ -256,7 +264,7 @@ impl Extended {
 
 /// Why a muscle with effects has no answer.
 #[derive(Debug, thiserror::Error)]
-pub enum ExtendedError {
+pub enum MuscleWithEffectsError {
     /// Of the equilibrium.
     #[error("{0}")]
     Equilibrium(Box<FibreError>),
@@ -277,7 +285,7 @@ pub enum ExtendedError {
     },
 }
 
-impl ExtendedError {
+impl MuscleWithEffectsError {
     /// Whose fault it is.
     #[must_use]
     pub fn fault(&self) -> Fault {
@@ -289,13 +297,13 @@ impl ExtendedError {
     }
 }
 
-impl From<FibreError> for ExtendedError {
+impl From<FibreError> for MuscleWithEffectsError {
     fn from(error: FibreError) -> Self {
         Self::Equilibrium(Box::new(error))
     }
 }
 
-impl From<ModelError> for ExtendedError {
+impl From<ModelError> for MuscleWithEffectsError {
     fn from(error: ModelError) -> Self {
         Self::Model(Box::new(error))
     }
@@ -327,12 +335,12 @@ mod tests {
         Pressure::bar(3.0)
     }
 
-    fn braid(tables: &str) -> Extended {
+    fn braid(tables: &str) -> MuscleWithEffects {
         let text = format!(
             "name = \"x\"\nkind = \"braided\"\nlength = \"250 mm\"\nradius = \"10 mm\"\nbraid_angle = \"25 deg\"\n\n{tables}\n"
         );
         let muscle = from_toml(&text, "m.toml").unwrap();
-        Extended::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
+        MuscleWithEffects::new(&muscle, &known(&muscle, &Catalogue::builtin()).unwrap()).unwrap()
     }
 
     const HOOP: &str =

@@ -3,14 +3,14 @@
 use bulge_model::{ModelError, Record, Wanted, Warm};
 
 use crate::comparison::analysis::{Analysis, Climbed};
-use crate::diagnosis::as_set::as_set;
 use crate::diagnosis::averaged::Averaged;
 use crate::diagnosis::confirm::Confirmed;
 use crate::diagnosis::diagnose::DiagnoseOptions;
 use crate::diagnosis::fits::Fits;
-use crate::diagnosis::linearised_model::Given;
+use crate::diagnosis::linearised_model::Context;
 use crate::diagnosis::noise::Source;
 use crate::diagnosis::search::Search;
+use crate::diagnosis::setpoints::setpoints;
 use crate::error::InferenceError;
 use crate::median::median;
 use crate::noise::law::{NoiseLaw, NoiseSource};
@@ -24,7 +24,7 @@ const LESS_NOISE: f64 = 0.7;
 const MOVED: f64 = 0.1;
 
 /// Means of rows that models are tried on, and what is known of their noise.
-pub(crate) struct Ground {
+pub(crate) struct AveragedData {
     pub(crate) averaged: Averaged,
     pub(crate) record: Record,
     input_variances: Vec<f64>,
@@ -66,15 +66,15 @@ impl<E: Into<InferenceError>> From<E> for Stop {
     }
 }
 
-impl Ground {
+impl AveragedData {
     /// What models are tried with; `fits` are those made under this law.
-    pub(crate) fn given<'a>(
+    pub(crate) fn context<'a>(
         &'a self,
         law: &'a NoiseLaw,
         options: &'a DiagnoseOptions,
         fits: Option<&'a Fits<'a>>,
-    ) -> Given<'a> {
-        Given {
+    ) -> Context<'a> {
+        Context {
             catalogue: &options.base.catalogue,
             record: &self.record,
             whitening: &self.whitening,
@@ -104,21 +104,21 @@ impl Ground {
     }
 }
 
-/// The ground about the best model of a search, where that changes what is known of the noise, or what the means are.
-pub(crate) fn ground_again(
+/// The averaged data about the best model of a search, where that changes what is known of the noise, or what the means are.
+pub(crate) fn averaged_data_again(
     analysis: &Analysis<'_>,
     search: &Search,
-    before: &Ground,
+    before: &AveragedData,
     used: &[bool],
     options: &DiagnoseOptions,
-) -> Option<Ground> {
+) -> Option<AveragedData> {
     let last = search.stages.last().filter(|last| !last.added.is_empty())?;
     let Confirmed { prepared, theta, .. } = &last.confirmed;
     let found =
         prepared.model.evaluate_partly(&analysis.record, theta, &Wanted::default(), &Warm::of_rows(used));
     let force = found.ok().filter(|found| found.error.is_none())?.prediction.force;
     let about = Climbed { prepared: prepared.clone(), theta: theta.clone(), fit: None, force, failed: None };
-    let again = ground(analysis, &about, used, options).ok()?;
+    let again = averaged_data(analysis, &about, used, options).ok()?;
     let square: f64 =
         again.record.force().iter().zip(before.record.force()).map(|(a, b)| (a - b).powi(2)).sum();
     let moved = square / again.record.len().max(1) as f64;
@@ -126,12 +126,12 @@ pub(crate) fn ground_again(
 }
 
 /// Means, their forces, and their noise under a model that is about right.
-pub(crate) fn ground(
+pub(crate) fn averaged_data(
     analysis: &Analysis<'_>,
     base: &Climbed,
     used: &[bool],
     options: &DiagnoseOptions,
-) -> Result<Ground, Stop> {
+) -> Result<AveragedData, Stop> {
     let none = || InferenceError::NoRows { left_out: "none of them has a state".to_owned() };
     let averaged = Averaged::of(&analysis.record, used, &analysis.levels, MOST_ROWS).ok_or_else(none)?;
     let readings = Wanted { parameters: Vec::new(), readings: true };
@@ -145,7 +145,7 @@ pub(crate) fn ground(
         }
     };
     let at_means = whole(&averaged.record)?;
-    whole(&as_set(&averaged.record))?;
+    whole(&setpoints(&averaged.record))?;
     let forces = averaged.forces(&analysis.record, &base.force, &at_means.force);
     let record = averaged.record.clone().with_force(forces);
     let noise = analysis.noise;
@@ -182,7 +182,7 @@ pub(crate) fn ground(
     let white = || NoiseLaw::white(1.0, NoiseSource::Instruments, 0.0, String::new());
     let all = vec![true; record.len()];
     let whitening = Whitening::new(law.as_ref().unwrap_or(&white()), &record, &all, &input_variances)?;
-    Ok(Ground { averaged, record, input_variances, stated, within, law, whitening })
+    Ok(AveragedData { averaged, record, input_variances, stated, within, law, whitening })
 }
 
 /// Variances by which the means differ, on top of what they share \[N^2\]: a mean of fewer rows knows less, and a file may state a scatter for each row.
@@ -198,28 +198,28 @@ fn unequal(averaged: &Averaged, counts: &[f64], within: f64, stated: Option<&[f6
 }
 
 /// Rows that count as independent: as many single rows as would know a constant as well as the means do.
-pub(crate) fn effective_rows(given: &Given<'_>, ground: &Ground, sd_n: f64) -> f64 {
-    let law = given.law;
-    let inputs = median(&mut ground.input_variances.clone());
+pub(crate) fn effective_rows(context: &Context<'_>, averaged_data: &AveragedData, sd_n: f64) -> f64 {
+    let law = context.law;
+    let inputs = median(&mut averaged_data.input_variances.clone());
     let of_mean = law.white_n.powi(2) + law.correlated_n.powi(2) + law.offset_n.powi(2) + inputs;
-    let rows: f64 = ground.averaged.counts().sum();
-    if of_mean > 0.0 { (given.whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
+    let rows: f64 = averaged_data.averaged.counts().sum();
+    if of_mean > 0.0 { (context.whitening.effective_rows() * sd_n * sd_n / of_mean).min(rows) } else { rows }
 }
 
 /// Standard deviation of a single row: the law of the means, what the means have averaged, and what noise of pressure and contraction makes of it.
-pub(crate) fn row_sd(law: &NoiseLaw, ground: &Ground) -> f64 {
-    (white_of_row(law, ground) + law.correlated_n.powi(2) + law.offset_n.powi(2)).sqrt()
+pub(crate) fn row_sd(law: &NoiseLaw, averaged_data: &AveragedData) -> f64 {
+    (white_of_row(law, averaged_data) + law.correlated_n.powi(2) + law.offset_n.powi(2)).sqrt()
 }
 
 /// Variance of a single row without what it shares with its neighbours \[N^2\].
-fn white_of_row(law: &NoiseLaw, ground: &Ground) -> f64 {
-    let counts: Vec<f64> = ground.averaged.counts().collect();
-    let inputs = variance_of_rows(&ground.input_variances, &counts);
+fn white_of_row(law: &NoiseLaw, averaged_data: &AveragedData) -> f64 {
+    let counts: Vec<f64> = averaged_data.averaged.counts().collect();
+    let inputs = variance_of_rows(&averaged_data.input_variances, &counts);
     let own = law.white_n.powi(2) + inputs;
     // Rows scatter by no more than their means do: where few rows are a mean, what bends from row to row is in their scatter too.
     let most = counts.iter().copied().fold(1.0, f64::max);
     let of_means = law.white_n.powi(2) * most + inputs;
-    ground.within.map_or(own, |within| within.min(of_means).max(own))
+    averaged_data.within.map_or(own, |within| within.min(of_means).max(own))
 }
 
 /// Median variance of single rows from those of means: that of rows in doubt is not the rule.

@@ -16,7 +16,7 @@ const NEIGHBOURS: usize = 4;
 const BEND: f64 = 4.0;
 
 /// The record with pressures and contractions as set: at levels the mean of the level, along a path what the neighbours of a row say of it.
-pub(crate) fn as_set(record: &Record) -> Record {
+pub(crate) fn setpoints(record: &Record) -> Record {
     let levels = Levels::of(record, &vec![true; record.len()]);
     let pressures: Vec<f64> = record.moments().iter().map(|m| m.pressure).collect();
     let pressure = if is_kept(&pressures, &levels) {
@@ -117,11 +117,11 @@ mod tests {
         let mut random = Random::new(4, 0);
         let noise: Vec<f64> = path.iter().map(|_| 1e-4 * random.normal()).collect();
         let read: Vec<f64> = path.iter().zip(&noise).map(|(e, d)| e + d).collect();
-        let exact = as_set(&record(&path));
+        let exact = setpoints(&record(&path));
         for (moment, e) in exact.moments().iter().zip(&path) {
             assert!((moment.contraction - e).abs() < 1e-12);
         }
-        let set = as_set(&record(&read));
+        let set = setpoints(&record(&read));
         let along: f64 =
             set.moments().iter().zip(&path).zip(&noise).map(|((m, e), d)| (m.contraction - e) * d).sum();
         let own: f64 = noise.iter().map(|d| d * d).sum();
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn stairs_keep_their_edges() {
         let stairs: Vec<f64> = (0..100).map(|i| 0.02 * f64::from(i / 10)).collect();
-        let set = as_set(&record(&stairs));
+        let set = setpoints(&record(&stairs));
         for (moment, e) in set.moments().iter().zip(&stairs) {
             assert!((moment.contraction - e).abs() < 1e-15);
         }
