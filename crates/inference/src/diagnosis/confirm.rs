@@ -19,7 +19,7 @@ use crate::fit::carry_over::carry_over;
 use crate::fit::frozen::{NEAR, cost, minimise_frozen};
 use crate::fit::nuisance::{Prepared, with_nuisances};
 use crate::fit::problem::{FitProblem, free};
-use crate::fit::states::{is_of_rows, minimise_where_possible, of_start};
+use crate::fit::states::{is_of_rows, minimise_partly, of_start};
 
 /// Tolerance of the fits, as a part of what the residuals are: no step promises more than its square, 1e-7, of the sum of squares, and evidence counts in hundredths. In the
 /// flat valleys of effects that do nearly the same a hundred times less took five times as long.
@@ -157,7 +157,7 @@ impl Context<'_> {
                 .map_err(of_start)
         };
         let used = vec![true; few.len()];
-        let found = minimise_where_possible((model, &few), &used, start, problem, settle).ok()?;
+        let found = minimise_partly((model, &few), &used, start, problem, settle).ok()?;
         Some(found.problem.theta(&found.minimum.theta))
     }
 

@@ -12,7 +12,7 @@ use crate::fit::frozen::{NEAR, minimise_frozen};
 use crate::fit::interval;
 use crate::fit::nuisance::Prepared;
 use crate::fit::problem::{FitProblem, free};
-use crate::fit::states::{MinimumOfRows, is_of_rows, minimise_where_possible, of_start};
+use crate::fit::states::{Minimised, is_of_rows, minimise_partly, of_start};
 use crate::fit::weights::{Noise, effective_rows};
 use bulge_muscles::units::significant;
 
@@ -89,7 +89,7 @@ pub(crate) fn fit_and_force(
     if task.record.len() > MANY_ROWS[usize::from(best.len() == 1)] && !task.quick {
         best = followed(prepared, best, task)?;
     }
-    let mut found: Option<MinimumOfRows<'_>> = None;
+    let mut found: Option<Minimised<'_>> = None;
     let mut error = None;
     for theta in &best {
         match polished(prepared, theta, task) {
@@ -99,7 +99,7 @@ pub(crate) fn fit_and_force(
             Err(failed) => return Err(failed),
         }
     }
-    let Some(MinimumOfRows { minimum, problem, used, .. }) = found else {
+    let Some(Minimised { minimum, problem, used, .. }) = found else {
         return Err(error.unwrap_or(ModelError::Values { given: 0, expected: 1 }));
     };
     let mut force = problem.force(&minimum.residuals);
@@ -166,17 +166,13 @@ fn of_long(
 }
 
 /// The minimum near some numbers, over the rows that have a state.
-fn polished<'a>(
-    prepared: &'a Prepared,
-    theta: &[f64],
-    task: &Task<'a>,
-) -> Result<MinimumOfRows<'a>, ModelError> {
+fn polished<'a>(prepared: &'a Prepared, theta: &[f64], task: &Task<'a>) -> Result<Minimised<'a>, ModelError> {
     let model = &prepared.model;
     let sd = weights(model, theta, task)?;
     let problem = |used: &[bool], at: &[f64]| {
         FitProblem::new(model, task.record, used, sd.clone(), at.to_vec(), &prepared.priors)
     };
-    minimise_where_possible((model, task.record), task.used, theta, problem, |problem, at| {
+    minimise_partly((model, task.record), task.used, theta, problem, |problem, at| {
         settle(problem, at, task.quick)
     })
 }
@@ -218,10 +214,8 @@ fn search(prepared: &Prepared, start: &[f64], task: &Task<'_>) -> Result<Searche
         (2 * unknown).saturating_sub(1).min(STARTS - 2),
     ));
     let tried = starts.len();
-    let followed: Vec<_> = starts
-        .par_iter()
-        .map(|coordinates| minimise_frozen(&problem_of(), coordinates, &bounds, &options))
-        .collect();
+    let from = |at: &Vec<f64>| minimise_frozen(&problem_of(), at, &bounds, &options);
+    let followed: Vec<_> = starts.par_iter().map(from).collect();
     let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
     let mut first_error = None;
     for end in followed {

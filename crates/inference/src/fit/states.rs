@@ -13,7 +13,7 @@ use crate::fit::problem::FitProblem;
 const ROUNDS: usize = 5;
 
 /// A minimum over the rows that have a state.
-pub(crate) struct MinimumOfRows<'a> {
+pub(crate) struct Minimised<'a> {
     pub(crate) minimum: Minimum,
     pub(crate) problem: FitProblem<'a>,
     /// Rows that count and have a state.
@@ -59,23 +59,23 @@ pub(crate) fn with_state(
 ///
 /// # Errors
 /// That of the start, if no more rows than numbers have a state; all others of a model.
-pub(crate) fn minimise_where_possible<'a>(
+pub(crate) fn minimise_partly<'a>(
     (model, record): (&'a Model, &'a Record),
     used: &[bool],
     start: &[f64],
     problem: impl Fn(&[bool], &[f64]) -> FitProblem<'a>,
     settle: impl Fn(&FitProblem<'a>, &[f64]) -> Result<Minimum, ModelError>,
-) -> Result<MinimumOfRows<'a>, ModelError> {
+) -> Result<Minimised<'a>, ModelError> {
     let whole = problem(used, start);
     let error = match settle(&whole, start) {
         Ok(minimum) => {
             let charged = minimum.cost;
-            return Ok(MinimumOfRows { minimum, problem: whole, used: used.to_vec(), charged });
+            return Ok(Minimised { minimum, problem: whole, used: used.to_vec(), charged });
         }
         Err(error) if is_of_rows(&error) => error,
         Err(error) => return Err(error),
     };
-    let mut best: Option<MinimumOfRows<'a>> = None;
+    let mut best: Option<Minimised<'a>> = None;
     let mut at = start.to_vec();
     for _ in 0..ROUNDS {
         let rows = with_state(model, record, used, &at)?;
@@ -88,7 +88,7 @@ pub(crate) fn minimise_where_possible<'a>(
         let Ok(minimum) = settle(&some, &at) else { break };
         at = some.theta(&minimum.theta);
         let charged = minimum.cost + charge(record, some.sd(), used, &rows);
-        best = Some(MinimumOfRows { minimum, problem: some, used: rows, charged });
+        best = Some(Minimised { minimum, problem: some, used: rows, charged });
     }
     best.ok_or(error)
 }
