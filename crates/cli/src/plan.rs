@@ -2,7 +2,7 @@
 
 use bulge_effects::known;
 use bulge_inference::{ConfusedPair, CorrelationTime, Plan, PlannedEffect, Protocol, plan};
-use bulge_measurements::Data;
+use bulge_measurements::{ColumnMap, Data};
 use bulge_model::read_options;
 use bulge_muscles::{Muscle, Quantity};
 use clap::{ArgGroup, Args};
@@ -10,6 +10,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use crate::arguments;
+use crate::data::told;
 use crate::diagnose::paragraph::paragraph;
 use crate::diagnose::untested::reasons;
 use crate::failure::Failure;
@@ -46,6 +47,9 @@ pub(crate) struct PlanCommand {
     /// Instead of a protocol: measurements; it is about the test that they come from, as far as blocks describe it
     #[arg(long, value_name = "DATA")]
     like: Option<PathBuf>,
+    /// Which column of these data is which, where the headings don't say it: "force=Force_N [N], pressure=P1 [psi], length=-Weg"
+    #[arg(long, value_name = "QUANTITY=COLUMN,...", requires = "like")]
+    columns: Option<String>,
     /// Writes the test as a protocol file, to begin from
     #[arg(long, value_name = "PROTOCOL.toml")]
     out: Option<PathBuf>,
@@ -61,17 +65,21 @@ impl PlanCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         let catalogue = arguments::catalogue(self.effects.as_deref())?;
         let muscle = arguments::muscle(&self.muscle)?;
-        let protocol = self.test(&muscle)?;
+        let (protocol, reading) = self.test(&muscle)?;
         let known = known(&muscle, &catalogue)?;
         let found = plan(&muscle, &known, &catalogue, &protocol)?;
         if let Some(path) = &self.out {
             files::write(path, protocol.to_toml().as_bytes())?;
         }
-        if self.json { Ok(serde_json::to_string_pretty(&found)? + "\n") } else { Ok(self.text(&found)) }
+        if self.json {
+            Ok(serde_json::to_string_pretty(&found)? + "\n")
+        } else {
+            Ok(reading + &self.text(&found))
+        }
     }
 
-    /// The protocol, or that of some measurements.
-    fn test(&self, muscle: &Muscle) -> Result<Protocol, Failure> {
+    /// The protocol, or that of some measurements with how they were read.
+    fn test(&self, muscle: &Muscle) -> Result<(Protocol, String), Failure> {
         if let Some(out) = &self.out {
             let read = [
                 ("the protocol", self.protocol.as_deref()),
@@ -85,13 +93,17 @@ impl PlanCommand {
             files::can_be_written(out)?;
         }
         if let Some(path) = &self.like {
-            let data = Data::read_with(&[path], &read_options(muscle, None)?)?;
+            let columns = self.columns.as_deref().map(str::parse::<ColumnMap>).transpose()?;
+            let data = Data::read_with(&[path], &read_options(muscle, columns.as_ref())?)?;
             let like = Protocol::like(&data, muscle.length().si());
             // As it is read again from a file.
-            return Ok(Protocol::from_toml(&like.to_toml(), "the test of these data")?);
+            return Ok((
+                Protocol::from_toml(&like.to_toml(), "the test of these data")?,
+                told(data.reading()),
+            ));
         }
         // The one or the other is there: the parser of the command line sees to it.
-        Ok(Protocol::read(self.protocol.as_deref().unwrap_or(Path::new("")))?)
+        Ok((Protocol::read(self.protocol.as_deref().unwrap_or(Path::new("")))?, String::new()))
     }
 
     /// The plan for people.

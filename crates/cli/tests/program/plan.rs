@@ -63,6 +63,15 @@ fn a_test_like_the_one_that_was_made_is_written_as_a_protocol() {
     assert!(written.contains(block) && written.matches("[[block]]").count() == 5, "{written}");
     let (_, says) = failure(&["plan", "--muscle", MUSCLE, "--like", data, "--out", data]);
     assert!(says.contains("the data file, which is read"), "{says}");
+    // Headings that say nothing, and a row that can't be read.
+    let text =
+        fs::read_to_string(data).unwrap().replace("force [N]", "channel 3").replace("\n30,1,", "\n30,1,x");
+    let other = folder.write("other.csv", &text);
+    let (_, says) = failure(&["plan", "--muscle", MUSCLE, "--like", &other]);
+    assert!(says.contains("--columns"), "{says}");
+    let arguments = ["plan", "--muscle", MUSCLE, "--like", &other, "--columns", "force=channel 3 [N]"];
+    let text = String::from_utf8(bulge(&arguments).stdout).unwrap();
+    assert!(text.contains("set apart 1 row") && text.contains("in 5 sweeps"), "{text}");
     let (_, says) = failure(&["plan", "--muscle", MUSCLE]);
     assert!(says.contains("--protocol"), "{says}");
 }
