@@ -1,16 +1,12 @@
 //! What an effect does: the public trait, and the states it reads and changes along a measured history.
 
+use bulge_fibre::Parts;
+pub use bulge_fibre::{Jet, LANES};
 use bulge_muscles::{Kind, Muscle, MuscleError, Parameter, Quantity};
-use bulge_numerics::{Dual, Real};
+use bulge_numerics::Real;
 use std::fmt::Debug;
 
 use crate::card::{Card, ParameterCard, Stage};
-
-/// Derivatives carried in one pass over the rows.
-pub const LANES: usize = 8;
-
-/// A number with its derivatives by [`LANES`] of the model's inputs and parameters.
-pub type Jet = Dual<LANES>;
 
 /// One measured moment: what is known of a row before any model is asked. SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,6 +105,14 @@ impl Setting {
             fibres: muscle.fibres(),
             has_bladder: muscle.bladder().is_some(),
         }
+    }
+
+    /// The same with the fibres and the bladder of parts that effects have changed.
+    #[must_use]
+    pub fn with(self, parts: &Parts) -> Self {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of at least 3")]
+        let fibres = parts.fibres.map(|count| count.round() as u32);
+        Self { fibres, has_bladder: parts.rubber.is_some(), ..self }
     }
 }
 
@@ -283,21 +287,21 @@ impl Action<'_> {
     }
 }
 
-/// An effect that changes the muscle whose equilibrium is solved.
+/// An effect that changes the parts of the muscle whose equilibrium is solved.
 pub trait ShapeEffect: Debug + Sync {
-    /// The muscle as the effect changes it; `theta` are the numbers of the effect in SI.
+    /// Changes the parts; `theta` are the numbers of the effect in SI, and what they move gets its derivatives from them.
     ///
-    /// With the parameters `off` it must be the same muscle, whatever that states; any other value replaces what it states. An effect
+    /// With the parameters `off` the parts must stay what they are, whatever they state; any other value replaces what they state. An effect
     /// without parameters has no `off`: it is there or not.
     ///
-    /// [`Reshaped::moves`] lists only numbers that the muscle it gives has. One that is absent where the effect is off (the modulus of a
-    /// bladder that isn't there, the stiffness of fibres that don't stretch) has no derivative there, and one in which the force is even
-    /// (an angle) has none that says anything: nothing is listed then, and who needs a derivative takes it at a small value beside `off`.
-    /// A parameter that is absent at 0 and has no small values either (a circumference) starts at its `typical` value.
+    /// A part that is absent where the effect is off (the rubber of a bladder) may be put there with the size 0 if `theta` carries
+    /// derivatives. Where no part moves with a parameter at `off`, because the force is even in it (an angle), whoever needs a derivative takes
+    /// it at a small value beside `off`. A parameter that is absent at 0 and has no small values either (a circumference) starts at its
+    /// `typical` value.
     ///
     /// # Errors
     /// If the muscle can't have the effect, or not with these values.
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError>;
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError>;
 
     /// Changes what reaches the muscle where the change of its shape makes that another: a contraction counts from the length. Nothing by default.
     fn act(&self, row: Row<'_>, input: &mut Input) {
@@ -321,47 +325,6 @@ pub trait LoadEffect: Debug + Sync {
 pub trait OutputEffect: Debug + Sync {
     /// Changes the reading \[N\]; rows come in order, each once. With the parameters `off` nothing may change, bit for bit.
     fn act(&self, row: Row<'_>, balance: &Balance, reading: &mut Jet);
-}
-
-/// A muscle changed by a [`ShapeEffect`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reshaped {
-    /// The muscle to solve.
-    pub muscle: Muscle,
-    /// For each parameter of the effect that moves a number of the muscle: which moves which, and d(number)/d(parameter).
-    pub moves: Vec<(usize, Parameter, f64)>,
-}
-
-impl Reshaped {
-    /// The muscle as it is: an effect that is off.
-    #[must_use]
-    pub fn unchanged(muscle: &Muscle) -> Self {
-        Self { muscle: muscle.clone(), moves: Vec::new() }
-    }
-
-    /// The muscle with a number set that is 0 where it has no such part: the effect's first parameter. At 0 the muscle stays as it is, and there is no derivative.
-    ///
-    /// # Errors
-    /// As [`Reshaped::setting`].
-    pub fn with_part(muscle: &Muscle, parameter: Parameter, value: f64) -> Result<Self, MuscleError> {
-        if value == 0.0 { Ok(Self::unchanged(muscle)) } else { Self::setting(muscle, &[(parameter, value)]) }
-    }
-
-    /// The muscle with numbers set, the parameter i of the effect being the i-th number itself. A number that stays what it is leaves the
-    /// muscle as it is, to the bit.
-    ///
-    /// # Errors
-    /// If a number is out of range or the muscle can't have it.
-    pub fn setting(muscle: &Muscle, numbers: &[(Parameter, f64)]) -> Result<Self, MuscleError> {
-        let mut reshaped = muscle.clone();
-        for &(parameter, value) in numbers {
-            if muscle.get(parameter) != Some(value) {
-                reshaped = reshaped.with(parameter, value)?;
-            }
-        }
-        let moves = numbers.iter().enumerate().map(|(i, (parameter, _))| (i, *parameter, 1.0)).collect();
-        Ok(Self { muscle: reshaped, moves })
-    }
 }
 
 /// A physical effect.
@@ -442,14 +405,29 @@ impl dyn Effect + '_ {
         self.action().stage()
     }
 
-    /// The muscle as the effect changes it; as it is, if the effect acts at another place.
+    /// Changes the parts of a muscle, if the effect acts on its shape.
+    ///
+    /// # Errors
+    /// If the effect belongs to the other family, and as [`ShapeEffect::reshape`]; the parts may then be half changed.
+    pub fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        let Action::Shape(shape) = self.action() else { return Ok(()) };
+        let card = self.card();
+        if let Some(owner) = card.kind.filter(|owner| *owner != parts.kind) {
+            let (effect, kind) = (card.name.to_owned(), parts.kind);
+            return Err(MuscleError::EffectOfOtherKind { effect, kind, owner });
+        }
+        shape.reshape(theta, parts)?;
+        parts.values().check()
+    }
+
+    /// The parts of a muscle as the effect with these numbers \[SI\] changes them.
     ///
     /// # Errors
     /// As [`ShapeEffect::reshape`].
-    pub fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        match self.action() {
-            Action::Shape(shape) => shape.reshape(muscle, theta),
-            _ => Ok(Reshaped::unchanged(muscle)),
-        }
+    pub fn reshaped(&self, theta: &[f64], parts: impl Into<Parts>) -> Result<Parts, MuscleError> {
+        let theta: Vec<Jet> = theta.iter().copied().map(Jet::from).collect();
+        let mut changed = parts.into().still();
+        self.reshape(&theta, &mut changed)?;
+        Ok(changed.values())
     }
 }

@@ -12,7 +12,7 @@ pub type Known = (Arc<dyn Effect>, Vec<f64>);
 
 /// The effects that a muscle states in tables of their own, with their numbers, in the order of the file.
 ///
-/// The effects that shape a muscle and have fields in it ([`bulge_muscles::SHAPE_EFFECTS`]) are not among them: they are in the muscle already.
+/// The effects that shape a muscle and have fields in it ([`bulge_muscles::Parameter::effects`]) are not among them: they are in the muscle already.
 ///
 /// ```
 /// use bulge_effects::{Catalogue, known};
@@ -106,7 +106,7 @@ fn value(stated: &Learnt, card: &ParameterCard<'_>) -> Result<f64, FileError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bulge_muscles::{Quantity, SHAPE_EFFECTS, from_toml, preset, to_toml, units};
+    use bulge_muscles::{Parameter, Quantity, from_toml, preset, to_toml, units};
 
     #[test]
     fn files_from_before_an_effect_had_a_number_mean_what_they_meant() {
@@ -137,7 +137,7 @@ mod tests {
         for name in ["ppam-2-r16", "dmsp-20-250"] {
             let muscle = preset(name).unwrap();
             for effect in catalogue.iter().filter(|e| e.card().kind.is_none_or(|k| k == muscle.kind())) {
-                if SHAPE_EFFECTS.contains(&effect.card().name) {
+                if Parameter::effects().any(|name| name == effect.card().name) {
                     continue;
                 }
                 let cards: Vec<_> = effect.parameters().into_iter().map(|card| card.of(&muscle)).collect();

@@ -29,8 +29,8 @@ pub use card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, S
 pub use catalogue::{Catalogue, CatalogueError};
 pub use describe::{CardDocument, ParameterDocument, SignatureDocument, TwinDocument, describe, overview};
 pub use effect::{
-    Action, Balance, Effect, Give, Input, InputEffect, Jet, LANES, LoadEffect, Moment, OutputEffect,
-    Reshaped, Row, Setting, ShapeEffect,
+    Action, Balance, Effect, Give, Input, InputEffect, Jet, LANES, LoadEffect, Moment, OutputEffect, Row,
+    Setting, ShapeEffect,
 };
 pub use learnt::{Known, known, learnt};
 pub use mechanism::{Form, Mechanism};

@@ -1,6 +1,5 @@
 //! From a solution to its meridian in metres, and to the dimensionless numbers of the pleated muscle.
 
-use bulge_muscles::Quantity;
 use serde::Serialize;
 
 use crate::FibreError;
@@ -39,19 +38,18 @@ impl Problem {
     #[must_use]
     pub fn pleated_numbers(&self, response: &Response) -> Option<PleatedNumbers> {
         let net = &self.net;
-        if !self.muscle.is_pleated()
-            || net.turn != 0.0
+        if net.turn != 0.0
             || net.cloth.is_some()
             || net.lobes.is_some()
             || net.depth != 0.0
         {
             return None;
         }
-        let l0 = self.muscle.length().si();
-        let radius = self.muscle.radius().si();
+        let l0 = self.parts.length;
+        let radius = self.parts.radius;
         let cos = radius / response.mid_radius_m;
         // c3 = F/(n T) = 1 - 2m (eqs. 18 and 20).
-        let all = response.fibre_tension_n * self.fibre_number(|v| self.value(v));
+        let all = response.fibre_tension_n * self.parts.fibre_number();
         Some(PleatedNumbers {
             m: 0.5 * (1.0 - response.force_n / all),
             phi_r: cos.acos(),
@@ -72,8 +70,8 @@ impl Problem {
             Solution::ClosedForm(closed) => {
                 // The closed form is that of the crests, in units of their radius at the fittings.
                 let crest = 1.0 + self.net.depth;
-                let tension = found.response.fibre_tension_n * self.fibre_number(|v| self.value(v))
-                    / (self.pressure * self.muscle.radius().si().powi(2));
+                let tension = found.response.fibre_tension_n * self.parts.fibre_number()
+                    / (self.pressure * self.parts.radius.powi(2));
                 (0..=pieces)
                     .map(|i| {
                         let [x, r, slope, fibre] = closed.point(closed.phi_r() * i as f64 / pieces as f64);
@@ -84,7 +82,7 @@ impl Problem {
             }
             Solution::Cylinder { radius, tension } => {
                 let half = self.net.half_fibre;
-                let x = 0.5 * response.length_m / self.muscle.radius().si();
+                let x = 0.5 * response.length_m / self.parts.radius;
                 (0..=pieces)
                     .map(|i| {
                         let part = i as f64 / pieces as f64;
@@ -109,7 +107,7 @@ impl Problem {
     /// A station on the left (-1) or right (+1) half.
     fn point(&self, station: &Station, side: f64, length: f64) -> MeridianPoint {
         let net = &self.net.acting_at(station.r);
-        let radius = self.muscle.radius().si();
+        let radius = self.parts.radius;
         let local = net.local(station.r, station.tension);
         let fibre = net.half_fibre + side * station.fibre;
         let force = self.pressure * radius * radius;
@@ -119,7 +117,7 @@ impl Problem {
             r_m: radius * station.r,
             slope_rad: -side * station.chi,
             braid_angle_rad: (net.turn * station.r / stretch).clamp(-1.0, 1.0).asin(),
-            fibre_tension_n: force * station.tension / self.fibre_number(|v| self.value(v)),
+            fibre_tension_n: force * station.tension / self.parts.fibre_number(),
             fibre_strain: net.compliance * station.tension,
             membrane_force_n_per_m: force * local.force / (2.0 * std::f64::consts::PI * radius * station.r),
             fibre_length_m: radius * fibre,

@@ -63,12 +63,6 @@ pub enum FibreError {
         /// Name of the parameter.
         name: &'static str,
     },
-    /// One variable twice in a list.
-    #[error("the variable `{variable}` is asked for twice: name each once")]
-    AskedTwice {
-        /// The variable.
-        variable: crate::Variable,
-    },
     /// The contraction lies beyond the one at which the force vanishes.
     #[error(
         "no equilibrium with a pulling force at contraction {:.4} %: the limit of this muscle is {:.4} %, where the force vanishes",

@@ -12,11 +12,9 @@
 
 use bulge_numerics::{Dual, Real};
 
-use crate::net::Net;
+use crate::net::{NUMBERS, Net};
 use crate::shooting::Total;
 
-/// Numbers of a net, at most: with lobes, bladder and cloth.
-const NUMBERS: usize = 17;
 /// Groups, at most: length, fitting, angle, compliance, section, depth, two of the lobes or of the bladder, two of the cloth.
 const GROUPS: usize = 10;
 /// Part of a derivative that is left unexplained.
@@ -24,8 +22,10 @@ const REST: f64 = 1e-11;
 
 /// The derivatives of a net by its `N` - 2 variables, in two factors.
 pub(crate) struct Groups<const N: usize> {
-    /// C, row by row in the order of [`Net::map`].
+    /// C, row by row in the places of [`Net::map`].
     numbers: [[f64; GROUPS]; NUMBERS],
+    /// Sizes of the numbers, over which the columns of C are orthonormal.
+    size: [f64; NUMBERS],
     /// B.
     variables: [[f64; N]; GROUPS],
     count: usize,
@@ -34,17 +34,16 @@ pub(crate) struct Groups<const N: usize> {
 impl<const N: usize> Groups<N> {
     pub(crate) fn of(net: &Net<Dual<N>>) -> Self {
         let (mut size, mut rows) = ([1.0; NUMBERS], [[0.0; N]; NUMBERS]);
-        let mut row = 0;
-        net.map(|number| {
+        net.each(|row, number| {
             // Relative to the number, so that none is lost beside a larger one.
             size[row] = if number.value() == 0.0 { 1.0 } else { number.value().abs() };
             rows[row] = number.gradient().map(|slope| slope / size[row]);
-            row += 1;
         });
         let norm =
             |rows: &[[f64; N]; NUMBERS], i: usize| rows.iter().map(|row| row[i] * row[i]).sum::<f64>().sqrt();
         let whole: [f64; N] = std::array::from_fn(|i| norm(&rows, i));
-        let mut found = Self { numbers: [[0.0; GROUPS]; NUMBERS], variables: [[0.0; N]; GROUPS], count: 0 };
+        let mut found =
+            Self { numbers: [[0.0; GROUPS]; NUMBERS], size, variables: [[0.0; N]; GROUPS], count: 0 };
         while found.count < GROUPS {
             let share = |i: usize| if whole[i] > 0.0 { norm(&rows, i) / whole[i] } else { 0.0 };
             let Some(pivot) = (2..N).max_by(|a, b| share(*a).total_cmp(&share(*b))) else { break };
@@ -75,12 +74,18 @@ impl<const N: usize> Groups<N> {
 
     /// The net with the groups as the variables 2 .., of which there must be room for all.
     pub(crate) fn net<const M: usize>(&self, net: &Net<Dual<N>>) -> Net<Dual<M>> {
-        let mut row = 0;
-        net.map(|number| {
+        net.map(|row, number| {
             let slopes = &self.numbers[row];
-            row += 1;
             let slope = |i: usize| if i < 2 { 0.0 } else { slopes.get(i - 2).copied().unwrap_or(0.0) };
             Dual::new(number.value(), std::array::from_fn(slope))
+        })
+    }
+
+    /// The derivatives by the numbers of the net along the directions of the groups, from those by the groups; none across them.
+    pub(crate) fn by_number<const M: usize>(&self, by_group: &Total<M>) -> [f64; NUMBERS] {
+        std::array::from_fn(|row| {
+            let pairs = self.numbers[row].iter().zip(by_group.by_parameter.iter().skip(2)).take(self.count);
+            pairs.map(|(slope, by)| slope * by).sum::<f64>() / (self.size[row] * self.size[row])
         })
     }
 
@@ -121,8 +126,8 @@ mod tests {
         assert_eq!(groups.count(), 3);
         let few: Net<Dual<5>> = groups.net(&net);
         let (mut expected, mut found) = (Vec::new(), Vec::new());
-        net.map(|number| expected.push(number));
-        few.map(|number| {
+        net.each(|_, number| expected.push(number));
+        few.each(|_, number| {
             let total =
                 Total { value: number.value(), by_contraction: 0.0, by_parameter: *number.gradient() };
             found.push(groups.expand(&total));

@@ -1,11 +1,12 @@
 //! Isobaric characteristics: force, volume and the rest over the contraction at several pressures.
 
-use bulge_muscles::{Muscle, Pressure};
+use bulge_muscles::Pressure;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::FibreError;
 use crate::outcome::{Approach, has_length};
+use crate::parts::Parts;
 use crate::problem::Problem;
 use crate::shape::{Method, Response};
 use crate::solve::{ADIABATIC, Found, RangeEnd, closed_stiffness};
@@ -38,14 +39,15 @@ pub struct Isobar {
 /// What [`Problem::new`] says, an approach that doesn't fit the muscle, or a contraction of 100 % and more. A contraction without
 /// equilibrium is no error: it is listed in [`Isobar::without`].
 pub fn isobars(
-    muscle: &Muscle,
+    parts: impl Into<Parts>,
     pressures: &[Pressure],
     contractions: &[f64],
     approach: Approach,
 ) -> Result<Vec<Isobar>, FibreError> {
+    let parts = parts.into();
     let mut found: Vec<Isobar> = Vec::with_capacity(pressures.len());
     for pressure in pressures {
-        let problem = Problem::new(muscle, *pressure)?;
+        let problem = Problem::new(&parts, *pressure)?;
         found.push(match found.first() {
             Some(first) if problem.is_scale_free() => problem.rescaled(first),
             _ => problem.isobar(contractions, approach)?,

@@ -4,7 +4,6 @@
 //! Meridians are taken by quadrature where they can be, ten times faster than by the ODE. A start, from the answer at a neighbouring contraction,
 //! pressure or parameter, is moved along its own derivatives, so that most of the search is saved as well.
 
-use bulge_muscles::Parameter;
 use bulge_numerics::{Dual, Real};
 
 mod repeated;
@@ -15,7 +14,10 @@ pub use repeated::Repeated;
 use crate::FibreError;
 use crate::closed_form::Near;
 use crate::outcome::{Approach, Outcome, Solution};
-use crate::problem::{Problem, Variable};
+use crate::net::NUMBERS;
+use crate::outcome::Follow;
+use crate::parts::{Jet, LANES, Parts};
+use crate::problem::Problem;
 use crate::shape::Convergence;
 use crate::shooting::{BESIDE, FITTED, Total};
 use crate::unknowns::Unknowns;
@@ -29,16 +31,8 @@ pub struct Linear {
     pub by_contraction: f64,
     /// Derivative by the pressure \[1/Pa\], at constant contraction.
     pub by_pressure: f64,
-    by_variable: [f64; Variable::COUNT],
-    asked: usize,
-}
-
-impl Linear {
-    /// Derivatives by the variables, in the order in which they were asked for.
-    #[must_use]
-    pub fn by_variable(&self) -> &[f64] {
-        &self.by_variable[..self.asked]
-    }
+    /// Derivatives by the variables in the lanes of the parts.
+    pub by_lane: [f64; LANES],
 }
 
 /// An equilibrium with its exact first derivatives.
@@ -93,11 +87,9 @@ enum Found {
 struct Shot {
     unknowns: Unknowns,
     contraction: f64,
-    /// Values of all variables, in the order of [`Variable::all`].
-    values: [f64; Variable::COUNT],
-    /// Derivatives of the unknowns by the contraction, and by the variables (0 where none was asked for).
-    by_contraction: [f64; 2],
-    by_variable: [[f64; Variable::COUNT]; 2],
+    /// The numbers of its net.
+    numbers: [f64; NUMBERS],
+    follow: Follow,
 }
 
 /// Largest moves of the unknowns along their derivatives; beyond them the derivatives say little. (ln|k| of a long braid moves fast, but straight.)
@@ -106,13 +98,12 @@ const FARTHEST: [f64; 2] = [0.5, 20.0];
 impl Shot {
     /// The unknowns to start with at a contraction of another problem.
     fn towards(&self, problem: &Problem, contraction: f64) -> Unknowns {
-        let mut change = [0.0; Variable::COUNT];
-        for (i, variable) in Variable::all().enumerate() {
-            change[i] = problem.value(variable) - self.values[i];
-        }
+        let mut change = [0.0; NUMBERS];
+        problem.net.each(|i, number| change[i] = number - self.numbers[i]);
         let logs = std::array::from_fn(|z| {
-            let along: f64 = self.by_variable[z].iter().zip(&change).map(|(slope, step)| slope * step).sum();
-            let step = along + self.by_contraction[z] * (contraction - self.contraction);
+            let along: f64 =
+                self.follow.by_number[z].iter().zip(&change).map(|(slope, step)| slope * step).sum();
+            let step = along + self.follow.by_contraction[z] * (contraction - self.contraction);
             self.unknowns.logs[z] + if step.is_finite() { step.clamp(-FARTHEST[z], FARTHEST[z]) } else { 0.0 }
         });
         Unknowns { logs, ..self.unknowns }
@@ -120,20 +111,18 @@ impl Shot {
 }
 
 impl Problem {
-    /// Force, meridional force, radius at mid-length and volume at a contraction, with exact derivatives by the contraction, the pressure and
-    /// `variables`; also where the force is negative.
-    ///
-    /// A derivative is that of [`bulge_muscles::Muscle::with`] at constant contraction; the number of fibres counts as continuous.
+    /// Force, meridional force, radius at mid-length and volume at a contraction, with exact derivatives by the contraction, the pressure
+    /// and what the parts move with; also where the force is negative. `moving` are the parts of this problem with derivatives.
     ///
     /// # Errors
-    /// [`FibreError::NoVariable`] for a variable that this muscle doesn't have, [`FibreError::AskedTwice`], and what else [`FibreError`] says.
+    /// See [`FibreError`].
     pub fn linearised(
         &self,
         contraction: f64,
-        variables: &[Variable],
+        moving: &Parts<Jet>,
         approach: Approach,
     ) -> Result<Linearised, FibreError> {
-        let found = self.linearised_from(None, contraction, variables, approach);
+        let found = self.linearised_from(None, contraction, moving, approach);
         found.map_err(|error| self.explained(error, contraction, approach))
     }
 
@@ -145,38 +134,22 @@ impl Problem {
         &self,
         start: Option<&Start>,
         contraction: f64,
-        variables: &[Variable],
+        moving: &Parts<Jet>,
         approach: Approach,
     ) -> Result<Linearised, FibreError> {
-        let seeds = self.seeds(variables)?;
-        let ask = Question { start, contraction, variables, approach };
-        match seeds.count {
-            0..=2 => self.answer::<4>(&ask, &seeds),
-            3..=4 => self.answer::<6>(&ask, &seeds),
-            5..=8 => self.answer::<10>(&ask, &seeds),
-            _ => self.answer::<{ 2 + Variable::COUNT }>(&ask, &seeds),
+        let ask = Question { start, contraction, moving, approach };
+        // The derivatives by the unknowns, the pressure and the lanes that are used.
+        match used_lanes(moving) {
+            0..=1 => self.answer::<4>(&ask),
+            2..=3 => self.answer::<6>(&ask),
+            _ => self.answer::<{ 3 + LANES }>(&ask),
         }
     }
 
-    /// Places for the variables.
-    fn seeds(&self, variables: &[Variable]) -> Result<Seeds, FibreError> {
-        let mut seeds =
-            Seeds { places: [usize::MAX; Variable::COUNT], asked: [false; Variable::COUNT], count: 1 };
-        seeds.places[Variable::Pressure.index()] = 2;
-        for variable in variables {
-            if let Variable::Parameter(parameter) = *variable
-                && self.muscle.get(parameter).is_none()
-            {
-                return Err(FibreError::NoVariable { name: parameter.name() });
-            }
-            seeds.add(*variable)?;
-        }
-        Ok(seeds)
-    }
-
-    fn answer<const N: usize>(&self, ask: &Question<'_>, seeds: &Seeds) -> Result<Linearised, FibreError> {
-        let seeded = self.seeded::<N>(|variable| seeds.places[variable.index()]);
-        let net = self.net_of(&seeded);
+    fn answer<const N: usize>(&self, ask: &Question<'_>) -> Result<Linearised, FibreError> {
+        let pressure = Dual::variable(self.pressure, 2);
+        let parts: Parts<Dual<N>> = ask.moving.map(|_, number| widened(&number));
+        let net = parts.net(pressure);
         let from = ask.start.and_then(|start| match &start.0 {
             Found::Shooting(shot) => Some(shot.towards(self, ask.contraction)),
             Found::ClosedForm(_) => None,
@@ -190,24 +163,16 @@ impl Problem {
             Dual::new(total.value, gradient)
         };
         let mid = with_contraction(&outcome.mid_radius);
-        let radius = seeded(Variable::Parameter(Parameter::Radius));
-        let unit_force = seeded(Variable::Pressure) * radius * radius;
+        let radius = parts.radius;
+        let unit_force = pressure * radius * radius;
         let force = with_contraction(&outcome.force);
         let section = net.acting_at(mid.value()).area(mid);
         let volume = with_contraction(&outcome.volume) * net.volume_factor() * radius * radius * radius;
-        let linear = |out: Dual<N>| {
-            let mut by_variable = [0.0; Variable::COUNT];
-            for (slot, variable) in by_variable.iter_mut().zip(ask.variables) {
-                *slot = out.gradient()[seeds.places[variable.index()]];
-            }
-            let [by_contraction, by_pressure] = [0, 2].map(|place| out.gradient()[place]);
-            Linear {
-                value: out.value(),
-                by_contraction,
-                by_pressure,
-                by_variable,
-                asked: ask.variables.len(),
-            }
+        let linear = |out: Dual<N>| Linear {
+            value: out.value(),
+            by_contraction: out.gradient()[0],
+            by_pressure: out.gradient()[2],
+            by_lane: std::array::from_fn(|lane| out.gradient().get(3 + lane).copied().unwrap_or(0.0)),
         };
         Ok(Linearised {
             contraction: ask.contraction,
@@ -216,29 +181,16 @@ impl Problem {
             mid_radius_m: linear(radius * mid),
             volume_polygon_m3: linear(volume),
             convergence: outcome.convergence,
-            start: self.start_of(ask.contraction, &outcome, seeds),
+            start: self.start_of(ask.contraction, &outcome),
         })
     }
 
-    fn start_of<const N: usize>(
-        &self,
-        contraction: f64,
-        outcome: &Outcome<N>,
-        seeds: &Seeds,
-    ) -> Option<Start> {
+    fn start_of<const N: usize>(&self, contraction: f64, outcome: &Outcome<N>) -> Option<Start> {
         let Solution::Shooting(unknowns) = outcome.solution else { return None };
-        let follow = outcome.follow.as_ref()?;
-        let mut values = [0.0; Variable::COUNT];
-        let mut by_variable = [[0.0; Variable::COUNT]; 2];
-        for (i, variable) in Variable::all().enumerate() {
-            values[i] = self.value(variable);
-            for (z, total) in follow.iter().enumerate() {
-                by_variable[z][i] = total.by_parameter.get(seeds.places[i]).copied().unwrap_or(0.0);
-            }
-        }
-        let by_contraction = [follow[0].by_contraction, follow[1].by_contraction];
-        let shot = Shot { unknowns, contraction, values, by_contraction, by_variable };
-        Some(Start(Found::Shooting(Box::new(shot))))
+        let follow = outcome.follow.clone()?;
+        let mut numbers = [0.0; NUMBERS];
+        self.net.each(|i, number| numbers[i] = number);
+        Some(Start(Found::Shooting(Box::new(Shot { unknowns, contraction, numbers, follow }))))
     }
 }
 
@@ -246,27 +198,22 @@ impl Problem {
 struct Question<'a> {
     start: Option<&'a Start>,
     contraction: f64,
-    variables: &'a [Variable],
+    moving: &'a Parts<Jet>,
     approach: Approach,
 }
 
-/// The places of the variables in the dual numbers, by [`Variable::index`]: 0 and 1 are the unknowns, 2 the pressure, whether asked for or not.
-struct Seeds {
-    places: [usize; Variable::COUNT],
-    asked: [bool; Variable::COUNT],
-    count: usize,
+/// How many lanes carry derivatives, counted to the last one that does.
+fn used_lanes(moving: &Parts<Jet>) -> usize {
+    let mut used = 0;
+    moving.map(|_, number| {
+        let last = number.gradient().iter().rposition(|slope| *slope != 0.0);
+        used = used.max(last.map_or(0, |last| last + 1));
+    });
+    used
 }
 
-impl Seeds {
-    fn add(&mut self, variable: Variable) -> Result<(), FibreError> {
-        let index = variable.index();
-        if std::mem::replace(&mut self.asked[index], true) {
-            return Err(FibreError::AskedTwice { variable });
-        }
-        if variable != Variable::Pressure {
-            self.places[index] = 2 + self.count;
-            self.count += 1;
-        }
-        Ok(())
-    }
+/// The same number with the derivatives of the lanes in the places 3 .., after the two unknowns and the pressure.
+fn widened<const N: usize>(number: &Jet) -> Dual<N> {
+    let slope = |i: usize| i.checked_sub(3).and_then(|lane| number.gradient().get(lane)).copied();
+    Dual::new(number.value(), std::array::from_fn(|i| slope(i).unwrap_or(0.0)))
 }

@@ -105,7 +105,7 @@ impl<D: Real> Lobes<D> {
     ///
     /// Close to the limit, where A' is the small difference of two numbers, B exp(-y) has it exactly.
     pub(crate) fn bulge(&self, end: D, y: D) -> Option<D> {
-        let (edge, plain) = (end.value(), self.map(Real::value));
+        let (edge, plain) = (end.value(), self.map(|_, d| d.value()));
         let rate = (-y).exp();
         let most = plain.limit() - edge;
         let (mut low, mut high) = (0.0, most);
@@ -133,14 +133,14 @@ impl<D: Real> Lobes<D> {
         None
     }
 
-    /// The same for other scalars.
-    pub(crate) fn map<E>(&self, mut f: impl FnMut(D) -> E) -> Lobes<E> {
+    /// The same for other scalars; each of the five numbers has its place.
+    pub(crate) fn map<E>(&self, mut f: impl FnMut(usize, D) -> E) -> Lobes<E> {
         Lobes {
-            fibres: f(self.fibres),
-            width: f(self.width),
-            sin: f(self.sin),
-            cos: f(self.cos),
-            spread: f(self.spread),
+            fibres: f(0, self.fibres),
+            width: f(1, self.width),
+            sin: f(2, self.sin),
+            cos: f(3, self.cos),
+            spread: f(4, self.spread),
             touching: self.touching,
         }
     }
@@ -234,7 +234,7 @@ mod tests {
                 0.999 * lobes.limit(),
             ] {
                 let exact = lobes.acting_at(r).section(r);
-                let dual = lobes.acting_at(r).map(Dual::<1>::from).section(Dual::variable(r, 0));
+                let dual = lobes.acting_at(r).map(|_, d| Dual::<1>::from(d)).section(Dual::variable(r, 0));
                 let close =
                     |got: f64, expected: f64| (got - expected).abs() < 1e-12 * expected.abs().max(10.0);
                 assert!(close(dual.area.gradient()[0], exact.area_r), "{n} {r}: A'");
@@ -307,7 +307,7 @@ mod tests {
             let r = 1.0 + bulge;
             let slope = lobes.acting_at(r).section(r).area_r;
             assert!((slope - bulge * f64::exp(-y)).abs() < 1e-10, "{y}: {bulge} {slope}");
-            let dual = lobes.map(Dual::<1>::from).bulge(Dual::from(1.0), Dual::variable(y, 0)).unwrap();
+            let dual = lobes.map(|_, d| Dual::<1>::from(d)).bulge(Dual::from(1.0), Dual::variable(y, 0)).unwrap();
             let h = 1e-5;
             let difference =
                 (lobes.bulge(1.0, y + h).unwrap() - lobes.bulge(1.0, y - h).unwrap()) / (2.0 * h);

@@ -28,6 +28,9 @@ use std::f64::consts::PI;
 
 use crate::lobes::{Lobes, Section};
 
+/// Numbers of a net, at most: with lobes, bladder and cloth.
+pub(crate) const NUMBERS: usize = 17;
+
 /// Rubber bladder that follows the net point by point: Mooney-Rivlin W = c10 (I1 - 3) + c01 (I2 - 3), incompressible, plane stress,
 /// stretches l1 = sigma/cos(alpha0) along the meridian and l2 = r/r0 around it.
 #[derive(Debug, Clone, Copy)]
@@ -252,26 +255,31 @@ impl<D: Real> Net<D> {
 }
 
 impl<D: Real> Net<D> {
-    /// The same net for another scalar.
-    pub(crate) fn map<E>(&self, mut f: impl FnMut(D) -> E) -> Net<E> {
+    /// The same net for another scalar; each number has its place of [`NUMBERS`], whether parts are absent or not.
+    pub(crate) fn map<E>(&self, mut f: impl FnMut(usize, D) -> E) -> Net<E> {
         Net {
-            end_radius: f(self.end_radius),
-            half_fibre: f(self.half_fibre),
-            cos_rest: f(self.cos_rest),
-            sin2_rest: f(self.sin2_rest),
-            turn: f(self.turn),
-            compliance: f(self.compliance),
-            area_factor: f(self.area_factor),
-            depth: f(self.depth),
-            lobes: self.lobes.map(|lobes| lobes.map(&mut f)),
-            bladder: self.bladder.map(|b| Bladder { c10: f(b.c10), c01: f(b.c01) }),
-            cloth: self.cloth.map(|c| Cloth { stiffness: f(c.stiffness), radius: f(c.radius) }),
+            end_radius: f(0, self.end_radius),
+            half_fibre: f(1, self.half_fibre),
+            cos_rest: f(2, self.cos_rest),
+            sin2_rest: f(3, self.sin2_rest),
+            turn: f(4, self.turn),
+            compliance: f(5, self.compliance),
+            area_factor: f(6, self.area_factor),
+            depth: f(7, self.depth),
+            lobes: self.lobes.map(|lobes| lobes.map(|i, d| f(8 + i, d))),
+            bladder: self.bladder.map(|b| Bladder { c10: f(13, b.c10), c01: f(14, b.c01) }),
+            cloth: self.cloth.map(|c| Cloth { stiffness: f(15, c.stiffness), radius: f(16, c.radius) }),
         }
+    }
+
+    /// Its numbers with their places.
+    pub(crate) fn each(&self, f: impl FnMut(usize, D)) {
+        self.map(f);
     }
 
     /// The values without derivatives.
     pub(crate) fn constant(&self) -> Net<f64> {
-        self.map(Real::value)
+        self.map(|_, d| d.value())
     }
 }
 
@@ -300,7 +308,7 @@ impl Net<f64> {
 
     /// The same net for another scalar, as a constant.
     pub(crate) fn lift_to<D: Real>(&self) -> Net<D> {
-        self.map(D::from)
+        self.map(|_, d| D::from(d))
     }
 
     /// The same net with a part of the stiffness of bladder and cloth.

@@ -7,7 +7,7 @@ use crate::closed_form::{self, ClosedForm, Graded};
 use crate::cylinder;
 use crate::groups::Groups;
 use crate::meridian::{COS, SIN, TENSION};
-use crate::net::Net;
+use crate::net::{NUMBERS, Net};
 use crate::problem::{MOST_STRAIN, Problem};
 use crate::shape::{Convergence, Method};
 use crate::shooting::{self, Ending, Total, Way};
@@ -44,7 +44,7 @@ pub(crate) enum Solution {
 }
 
 /// An equilibrium; dimensionless.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Outcome<const N: usize> {
     pub(crate) force: Total<N>,
     /// Whole volume with circular sections.
@@ -57,8 +57,15 @@ pub(crate) struct Outcome<const N: usize> {
     pub(crate) method: Method,
     pub(crate) convergence: Convergence,
     pub(crate) solution: Solution,
-    /// How the unknowns of the shooting follow.
-    pub(crate) follow: Option<[Total<N>; 2]>,
+    /// How the unknowns of the shooting follow, where many derivatives were asked for.
+    pub(crate) follow: Option<Follow>,
+}
+
+/// How the two unknowns of a shooting follow the contraction and the numbers of the net: by these as far as the variables moved them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Follow {
+    pub(crate) by_contraction: [f64; 2],
+    pub(crate) by_number: [[f64; NUMBERS]; 2],
 }
 
 impl Problem {
@@ -86,10 +93,10 @@ impl Problem {
 
     fn obstacle_to_closed_form(&self) -> Option<&'static str> {
         let net = &self.net;
-        if !self.muscle.is_pleated() {
+        if net.turn != 0.0 {
             Some("its fibres run at an angle")
-        } else if net.turn != 0.0 {
-            Some("its fibres are misaligned")
+        } else if net.bladder.is_some() {
+            Some("it has a bladder")
         } else if net.cloth.is_some() {
             Some("its cloth stops unfolding")
         } else if net.lobes.is_some() {
@@ -113,7 +120,7 @@ impl Problem {
             Method::ClosedForm => by_closed_form(net, contraction),
             // This crate never chooses elements.
             Method::Shooting | Method::Membrane => {
-                by_shooting(&self.net, net, contraction, from, (ending, Way::Ode))
+                by_shooting(&self.net, net, contraction, from, (ending, Way::Ode)).map(|(outcome, _)| outcome)
             }
         })
     }
@@ -283,7 +290,7 @@ fn by_shooting<const N: usize>(
     contraction: f64,
     from: Option<Unknowns>,
     (ending, way): (Ending, Way),
-) -> Result<Outcome<N>, FibreError> {
+) -> Result<(Outcome<N>, [Total<N>; 2]), FibreError> {
     let (unknowns, effort) = shooting::solve(plain, contraction, from, ending)?;
     if unknowns.is_slack(plain) {
         return Err(FibreError::Slack { contraction, limit: None });
@@ -295,7 +302,7 @@ fn by_shooting<const N: usize>(
         by_contraction: 2.0 * found.half_volume.by_contraction,
         by_parameter: found.half_volume.by_parameter.map(|v| 2.0 * v),
     };
-    Ok(Outcome {
+    let outcome = Outcome {
         force: found.force,
         volume,
         mid_radius: found.mid_radius,
@@ -310,8 +317,9 @@ fn by_shooting<const N: usize>(
             first_integral: run.first_integral,
         },
         solution: Solution::Shooting(found.unknowns),
-        follow: Some(found.follow),
-    })
+        follow: None,
+    };
+    Ok((outcome, found.follow))
 }
 
 /// By shooting with the derivatives by M - 2 groups, from which those by N - 2 variables follow.
@@ -322,7 +330,8 @@ fn by_groups<const N: usize, const M: usize>(
     contraction: f64,
     (from, ending): (Option<Unknowns>, Ending),
 ) -> Result<Outcome<N>, FibreError> {
-    let found = by_shooting::<M>(plain, &groups.net(net), contraction, from, (ending, Way::Fastest))?;
+    let (found, follow) =
+        by_shooting::<M>(plain, &groups.net(net), contraction, from, (ending, Way::Fastest))?;
     Ok(Outcome {
         force: groups.expand(&found.force),
         volume: groups.expand(&found.volume),
@@ -332,6 +341,9 @@ fn by_groups<const N: usize, const M: usize>(
         method: found.method,
         convergence: found.convergence,
         solution: found.solution,
-        follow: found.follow.map(|unknowns| unknowns.map(|total| groups.expand(&total))),
+        follow: Some(Follow {
+            by_contraction: [follow[0].by_contraction, follow[1].by_contraction],
+            by_number: follow.map(|unknown| groups.by_number(&unknown)),
+        }),
     })
 }

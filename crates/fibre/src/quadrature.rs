@@ -500,7 +500,7 @@ mod tests {
             let mut of_this = 0;
             for (side, ln_bulge) in [(1.0, -0.7), (1.0, -4.0), (-1.0, -2.0), (-1.0, -5.0)] {
                 for second in [-30.0, -8.0, -1.5, -0.5] {
-                    let lifted = net.map(Dual::<6>::from);
+                    let lifted = net.map(|_, d| Dual::<6>::from(d));
                     let seeded = Net {
                         turn: lifted.turn + Dual::variable(0.0, 2),
                         end_radius: lifted.end_radius + Dual::variable(0.0, 3),

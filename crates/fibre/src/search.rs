@@ -1,6 +1,5 @@
 //! The search along the contraction: from equilibrium to equilibrium until an excess of force or volume vanishes, or no further.
 
-use bulge_muscles::Quantity;
 use bulge_numerics::root::{RootError, newton_bracketed};
 
 use crate::FibreError;
@@ -96,7 +95,7 @@ impl<E: Fn(&Found) -> f64> Walk<'_, E> {
     /// The excess and its derivative by the contraction, taken from the response.
     fn value(&mut self, contraction: f64, alone: bool) -> Result<(f64, f64), FibreError> {
         let found = self.at(contraction, alone)?;
-        let l0 = self.problem.muscle.length().si();
+        let l0 = self.problem.parts.length;
         let y = (self.excess)(&found);
         let step = 1e-6 * contraction.abs().max(1e-3);
         Ok((y, slope_of(&found, y, &self.excess, step * l0) * l0))
@@ -239,7 +238,7 @@ impl Problem {
         let net = &self.net;
         let ends = (net.half_fibre / (1.0 + net.half_fibre)).powi(2);
         // On fittings of another radius the range of a short braid may lie far from 0.
-        let straight = if self.has_own_fitting() { shooting::straight_contraction(net) } else { None };
+        let straight = if self.parts.fitting.is_some() && !self.is_cylinder() { shooting::straight_contraction(net) } else { None };
         // Lobes that open early leave little to contract: about a third of their room at either end.
         let room = net.lobes.map(|lobes| (lobes.limit() - net.depth - net.end_radius) / net.half_fibre);
         straight.unwrap_or(0.0) + (0.12 * ends).min(room.map_or(f64::INFINITY, |room| 0.1 * room))
@@ -315,7 +314,7 @@ impl Problem {
     }
 
     fn on_one_of(&self, paths: &mut Paths, method: Method, goal: Goal, must_pull: bool) -> Option<Found> {
-        let radius = self.muscle.radius().si();
+        let radius = self.parts.radius;
         let [unit_force, unit_volume] = [self.pressure * radius * radius, radius.powi(3)];
         let excess = |place: &Place| match goal {
             Goal::Contraction(asked) => place.contraction - asked,

@@ -1,11 +1,12 @@
 //! The questions: given the pressure and one of contraction, length, force or volume, the rest; the contraction limit; exact derivatives.
 
-use bulge_muscles::{Parameter, Quantity};
+use bulge_muscles::{Muscle, Parameter};
 use bulge_numerics::Dual;
 
 use crate::FibreError;
 use crate::outcome::{Approach, Outcome, Solution};
-use crate::problem::{Problem, Variable};
+use crate::parts::{PARTS, Parts};
+use crate::problem::Problem;
 use crate::search::{FAR, Goal, Seen};
 use crate::shape::{Method, Response};
 use crate::shooting::{EXACT, Ending, Total, USUAL};
@@ -63,8 +64,22 @@ impl RangeEnd {
 pub struct Gradient {
     /// dF/d(contraction) \[N\], dV/d(contraction) \[m^3\].
     pub by_contraction: [f64; 2],
-    /// dF/da and dV/da for each variable that the muscle has, per SI unit, at constant contraction.
-    pub by_variable: Vec<(Variable, [f64; 2])>,
+    /// dF/dp \[N/Pa\], dV/dp \[m^3/Pa\], at constant contraction.
+    pub by_pressure: [f64; 2],
+    /// dF/da and dV/da for each number of the muscle's [`Parts`] by its name, per SI unit, at constant contraction.
+    pub by_part: Vec<(&'static str, [f64; 2])>,
+}
+
+impl Gradient {
+    /// dF/da and dV/da for a parameter of the muscle whose parts were asked, by the chain rule; none if the muscle doesn't have it.
+    #[must_use]
+    pub fn by(&self, muscle: &Muscle, parameter: Parameter) -> Option<[f64; 2]> {
+        muscle.get(parameter)?;
+        let slopes = Parts::seeded(muscle, &[parameter]).numbers();
+        Some(std::array::from_fn(|i| {
+            self.by_part.iter().zip(&slopes).map(|((_, by), (_, part))| by[i] * part.gradient()[0]).sum()
+        }))
+    }
 }
 
 /// An equilibrium with what is needed to go on from it.
@@ -162,32 +177,41 @@ impl Problem {
         }
     }
 
-    /// Exact derivatives of force and volume with respect to the contraction, the pressure and every parameter of the muscle, by dual
-    /// numbers and the implicit function theorem.
+    /// Exact derivatives of force and volume with respect to the contraction, the pressure and every number of the muscle's parts, by
+    /// dual numbers and the implicit function theorem. The number of fibres counts as continuous.
     ///
     /// # Errors
     /// See [`FibreError`].
     pub fn gradient(&self, contraction: f64, approach: Approach) -> Result<Gradient, FibreError> {
-        const N: usize = 2 + Variable::COUNT;
-        let seeded = self.seeded::<N>(|variable| 2 + variable.index());
-        let outcome =
-            self.outcome_of_many(self.method(approach)?, contraction, &self.net_of(&seeded), None, EXACT)?;
-        let [force, volume] = physical(&outcome, seeded);
-        let by_variable = Variable::all()
-            .filter(|variable| match variable {
-                Variable::Pressure => true,
-                Variable::Parameter(Parameter::FittingRadius) => self.has_own_fitting(),
-                Variable::Parameter(Parameter::GasWall) => self.muscle.is_stated(Parameter::GasWall),
-                Variable::Parameter(parameter) => self.muscle.get(*parameter).is_some(),
-            })
-            .map(|v| (v, [force.gradient()[2 + v.index()], volume.gradient()[2 + v.index()]]))
-            .collect();
-        Ok(Gradient { by_contraction: [force.gradient()[0], volume.gradient()[0]], by_variable })
+        const N: usize = 3 + PARTS;
+        let (mut names, mut place) = (Vec::with_capacity(PARTS), 2);
+        let parts: Parts<Dual<N>> = self.parts.map(|name, number| {
+            names.push(name);
+            place += 1;
+            Dual::variable(number, place)
+        });
+        let pressure = Dual::variable(self.pressure, 2);
+        let net = parts.net(pressure);
+        let outcome = self.outcome_of_many(self.method(approach)?, contraction, &net, None, EXACT)?;
+        let radius = parts.radius;
+        let out = |scale: Dual<N>, total: &Total<N>| {
+            let mut gradient = total.by_parameter;
+            gradient[0] = total.by_contraction;
+            *(scale * Dual::new(total.value, gradient)).gradient()
+        };
+        let force = out(pressure * radius * radius, &outcome.force);
+        let volume = out(radius * radius * radius, &outcome.volume);
+        let by_part = names.into_iter().enumerate().map(|(i, name)| (name, [force[3 + i], volume[3 + i]]));
+        Ok(Gradient {
+            by_contraction: [force[0], volume[0]],
+            by_pressure: [force[2], volume[2]],
+            by_part: by_part.collect(),
+        })
     }
 
     pub(crate) fn find(&self, given: Given, approach: Approach) -> Result<Found, FibreError> {
         let method = self.method(approach)?;
-        let l0 = self.muscle.length().si();
+        let l0 = self.parts.length;
         match given {
             Given::Contraction(contraction) => self.pulling(method, approach, contraction),
             Given::Length(length) => {
@@ -232,7 +256,7 @@ impl Problem {
 
     /// Whether the force is not negative: near the limit it is small against p R^2, and rounding may make it negative there.
     pub(crate) fn pulls(&self, response: &Response) -> bool {
-        response.force_n >= -1e-9 * self.pressure * self.muscle.radius().si().powi(2)
+        response.force_n >= -1e-9 * self.pressure * self.parts.radius.powi(2)
     }
 
     fn with_force(&self, method: Method, approach: Approach, force: f64) -> Result<Found, FibreError> {
@@ -312,8 +336,8 @@ impl Problem {
     /// The response in SI. The place 2 of the derivatives, if there is one, is by the pressure at constant p R^2 (see [`Net::with_pressure`]).
     fn found<const N: usize>(&self, contraction: f64, outcome: &Outcome<N>) -> Found {
         let p = self.pressure;
-        let radius = self.muscle.radius().si();
-        let l0 = self.muscle.length().si();
+        let radius = self.parts.radius;
+        let l0 = self.parts.length;
         let [unit_force, unit_volume] = [p * radius * radius, radius * radius * radius];
         let [force, volume] = [unit_force * outcome.force.value, unit_volume * outcome.volume.value];
         let by_pressure = |total: &Total<N>| total.by_parameter.get(2).copied().unwrap_or(0.0);
@@ -336,7 +360,7 @@ impl Problem {
             max_radius_m: radius
                 * outcome.mid_radius.value.max(if self.is_cylinder() { 0.0 } else { end_radius }),
             mid_radius_m: radius * outcome.mid_radius.value,
-            fibre_tension_n: unit_force * outcome.tension / self.fibre_number(|v| self.value(v)),
+            fibre_tension_n: unit_force * outcome.tension / self.parts.fibre_number(),
             fibre_strain: self.net.compliance * outcome.tension,
             stiffness_n_per_m: stiffness,
             volume_slope_m2: volume_slope,
@@ -350,18 +374,6 @@ impl Problem {
     }
 }
 
-/// Force \[N\] and circular volume \[m^3\] with derivatives: place 0 by the contraction, the others as seeded.
-fn physical<const N: usize>(outcome: &Outcome<N>, value: impl Fn(Variable) -> Dual<N>) -> [Dual<N>; 2] {
-    let radius = value(Variable::Parameter(Parameter::Radius));
-    let scales = [value(Variable::Pressure) * radius * radius, radius * radius * radius];
-    let totals = [&outcome.force, &outcome.volume];
-    std::array::from_fn(|i| {
-        let mut gradient = totals[i].by_parameter;
-        gradient[0] = totals[i].by_contraction;
-        scales[i] * Dual::new(totals[i].value, gradient)
-    })
-}
-
 /// dF/dl with the gas enclosed, (p + pa) V^g constant: dp/dl = -g (p + pa) V_l/(V + g (p + pa) V_p) in F_l + F_p dp/dl.
 pub(crate) fn closed_stiffness(
     g: f64,
@@ -371,14 +383,4 @@ pub(crate) fn closed_stiffness(
 ) -> f64 {
     let absolute = g * (pressure + AMBIENT_PRESSURE);
     force_l - force_p * absolute * volume_l / (volume + absolute * volume_p)
-}
-
-/// Names for [`Variable`] in reports.
-impl std::fmt::Display for Variable {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Pressure => f.write_str("pressure"),
-            Self::Parameter(parameter) => f.write_str(Parameter::name(*parameter)),
-        }
-    }
 }

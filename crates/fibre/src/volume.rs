@@ -3,7 +3,6 @@
 //! `F = -p dV/dl` where nothing stores energy: the volume rises with the contraction as long as the muscle pulls. Rubber and fibres that stretch give energy
 //! back, and it may fall before the range ends; and a short muscle of elastic fibres that is drawn out far holds more again.
 
-use bulge_muscles::Quantity;
 
 use crate::FibreError;
 use crate::problem::Problem;
@@ -43,8 +42,8 @@ impl Problem {
         if !volume.is_finite() {
             return Err(FibreError::NotFinite { what: "volume", value: volume });
         }
-        let (end, radius) = (self.net.acting_at(1.0), self.muscle.radius().si());
-        let least = end.volume_section(1.0, &end.section(1.0)) * radius.powi(2) * self.muscle.length().si();
+        let (end, radius) = (self.net.acting_at(1.0), self.parts.radius);
+        let least = end.volume_section(1.0, &end.section(1.0)) * radius.powi(2) * self.parts.length;
         if self.is_singular() && volume <= least {
             return Err(FibreError::VolumeTooSmall { volume_m3: volume, low_m3: least });
         }

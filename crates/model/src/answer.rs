@@ -4,7 +4,7 @@ use bulge_effects::{Jet, LANES};
 use bulge_numerics::Real;
 
 /// Most shape parameters that can be differentiated by at once.
-pub(crate) const SHAPE: usize = 8;
+pub(crate) const SHAPE: usize = LANES;
 
 /// A number with its derivatives by pressure, contraction and the shape parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +37,16 @@ pub(crate) struct Answer {
     pub(crate) tension: Graded,
     pub(crate) mid_radius: Graded,
     pub(crate) volume: Graded,
+}
+
+impl Answer {
+    pub(crate) fn parts(&self) -> [&Graded; 4] {
+        [&self.force, &self.tension, &self.mid_radius, &self.volume]
+    }
+
+    pub(crate) fn parts_mut(&mut self) -> [&mut Graded; 4] {
+        [&mut self.force, &mut self.tension, &mut self.mid_radius, &mut self.volume]
+    }
 }
 
 /// The same as numbers that carry the derivatives of one pass.

@@ -60,7 +60,7 @@ impl Equilibrium {
         approach: Approach,
         points: usize,
     ) -> Result<Self, MuscleWithEffectsError> {
-        let problem = Problem::new(extended.muscle(), pressure)?;
+        let problem = Problem::new(extended.parts(), pressure)?;
         if !extended.adds_force() {
             let shape = problem.shape(given, approach, points)?;
             return Ok(Self::of(extended, &problem, shape, None, approach));

@@ -1,7 +1,7 @@
 //! A model along a history: the force of every row, with exact derivatives.
 
 use bulge_effects::{self as effects, Action, Input, Jet, LANES, Moment, Setting, Stage};
-use bulge_muscles::Muscle;
+use bulge_fibre::Parts;
 use bulge_numerics::{Dual, Real};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -205,7 +205,7 @@ impl Model {
             body,
             theta,
             setting: self.bodies[body].setting,
-            strands: Strands::of(&self.bodies[body].muscle),
+            strands: Strands::of(&self.bodies[body].parts),
             shapes: Vec::new(),
             equilibrium: None,
             lattice: None,
@@ -216,10 +216,12 @@ impl Model {
         if let Base::Law { .. } = self.base {
             return Ok(run);
         }
-        let (muscle, variables) = self.reshape(body, theta, wanted)?;
-        if variables.len() > SHAPE {
-            return Err(ModelError::TooManyShapes { count: variables.len(), most: SHAPE });
+        run.shapes = self.shapes(wanted);
+        if run.shapes.len() > SHAPE {
+            return Err(ModelError::TooManyShapes { count: run.shapes.len(), most: SHAPE });
         }
+        let parts = self.parts_of(body, theta)?;
+        let shaped = self.shaped(body, theta, &run.shapes)?;
         let own = |moment: &Moment| self.body_of(moment.specimen) == body;
         let all = || (0..record.len()).filter(|row| own(&record.moments()[*row])).collect();
         let first = record.moments().iter().find(|moment| own(moment));
@@ -229,18 +231,16 @@ impl Model {
             contraction: first.map_or(0.0, |m| m.contraction),
             source: Box::new(source),
         };
-        let equilibrium = Self::equilibrium(&muscle, &variables).map_err(no_problem)?;
+        let equilibrium = Equilibrium::new(shaped).map_err(no_problem)?;
         // Lengths stay those stated: what an effect takes from them would else move without a derivative.
-        let found = Setting::of(&muscle);
-        run.setting = Setting { fibres: found.fibres, has_bladder: found.has_bladder, ..run.setting };
-        run.strands = Strands::of(&muscle);
-        run.shapes = variables.iter().map(|(index, _)| *index).collect();
+        run.setting = run.setting.with(&parts);
+        run.strands = Strands::of(&parts);
         if equilibrium.is_costly() && record.len() > FEWEST_NODES {
-            let shape = |theta: &[f64]| self.reshape(body, theta, &[]).ok().map(|(muscle, _)| muscle);
+            let shape = |theta: &[f64]| self.parts_of(body, theta).ok();
             run.widen(record, counts, slots);
-            run.lattice = slots.held_at(body, &muscle, theta, &run.shapes, shape);
+            run.lattice = slots.held_at(body, &parts, theta, &run.shapes, shape);
             if run.lattice.is_none() {
-                run.lattice = run.solved(record, &muscle, &equilibrium, counts, slots);
+                run.lattice = run.solved(record, &parts, &equilibrium, counts, slots);
             }
         }
         run.equilibrium = Some(equilibrium);
@@ -309,7 +309,7 @@ impl Run<'_> {
     fn solved(
         &self,
         record: &Record,
-        muscle: &Muscle,
+        parts: &Parts,
         equilibrium: &Equilibrium,
         counts: &dyn Fn(usize) -> bool,
         slots: &mut Slots,
@@ -329,7 +329,7 @@ impl Run<'_> {
             return None;
         }
         let asked = || Asked {
-            muscle: muscle.clone(),
+            parts: parts.clone(),
             numbers: self.shaping().collect(),
             shapes: self.shapes.iter().map(|index| self.model.name_of(*index)).collect(),
         };
@@ -344,8 +344,8 @@ impl Run<'_> {
         slots.nodes[self.body] = starts;
         if slots.holds {
             let (shapes, theta) = (self.shapes.clone(), self.theta.to_vec());
-            let (muscle, lattice) = (muscle.clone(), Arc::clone(&lattice));
-            slots.held[self.body] = Some(Arc::new(Held { shapes, theta, muscle, spans, lattice }));
+            let (parts, lattice) = (parts.clone(), Arc::clone(&lattice));
+            slots.held[self.body] = Some(Arc::new(Held { shapes, theta, parts, spans, lattice }));
         }
         Some(lattice)
     }
@@ -355,8 +355,7 @@ impl Run<'_> {
     fn widen(&self, record: &Record, counts: &dyn Fn(usize) -> bool, slots: &mut Slots) {
         let Some((held, alone)) = slots.missed(self.body) else { return };
         let there = || {
-            let (muscle, variables) = self.model.reshape(self.body, &held.theta, &held.shapes).ok()?;
-            Model::equilibrium(&muscle, &variables).ok()
+            Equilibrium::new(self.model.shaped(self.body, &held.theta, &held.shapes).ok()?).ok()
         };
         let Some(equilibrium) = (alone > FEWEST_NODES).then(there).flatten() else { return };
         let levels = held.lattice.is_of_levels();
@@ -372,9 +371,9 @@ impl Run<'_> {
         }
         let (lattice, starts) = wider.solved(&equilibrium, &slots.nodes[self.body]);
         slots.nodes[self.body] = starts;
-        let (shapes, theta, muscle) = (held.shapes.clone(), held.theta.clone(), held.muscle.clone());
+        let (shapes, theta, parts) = (held.shapes.clone(), held.theta.clone(), held.parts.clone());
         slots.held[self.body] =
-            Some(Arc::new(Held { shapes, theta, muscle, spans, lattice: Arc::new(lattice) }));
+            Some(Arc::new(Held { shapes, theta, parts, spans, lattice: Arc::new(lattice) }));
     }
 
     pub(crate) fn remembers(&self) -> bool {

@@ -21,8 +21,8 @@ impl Model {
             return error;
         };
         let specimen = rows.first().and_then(|row| record.moments().get(*row)).map_or(0, |m| m.specimen);
-        let muscle = self.reshape(self.body_of(specimen), theta, &[]).map(|(muscle, _)| muscle);
-        let problem = muscle.ok().and_then(|muscle| Problem::new(&muscle, Pressure::pa(pressure_pa)).ok());
+        let parts = self.parts_of(self.body_of(specimen), theta).ok();
+        let problem = parts.and_then(|parts| Problem::new(parts, Pressure::pa(pressure_pa)).ok());
         let source = match problem {
             Some(problem) => Box::new(problem.explained(*source, contraction, Approach::Auto)),
             None => source,

@@ -1,12 +1,14 @@
 //! A model: a muscle (or a force law) with chosen effects, and the list of its numbers.
 
 use bulge_effects::law::{Coefficient, Law, LawGeometry, Role};
-use bulge_effects::{Effect, Group, Moment, Reshaped, Setting, Stage};
-use bulge_muscles::{Muscle, MuscleError, Parameter};
+use bulge_effects::{Effect, Group, Moment, Setting, Stage};
+use bulge_fibre::{Jet, Parts, Problem};
+use bulge_muscles::{Muscle, Pressure};
+use bulge_numerics::Real;
 use serde::Serialize;
 use std::sync::Arc;
 
-use crate::base::{Equilibrium, ShapeVariable};
+use crate::base::Shaped;
 use crate::error::ModelError;
 use crate::parameter::ModelParameter;
 use crate::restriction::Restriction;
@@ -15,13 +17,8 @@ use crate::solved::Solved;
 /// Coarsest lattice that follows the force at all.
 const COARSEST: f64 = 0.25;
 
-/// Part of a parameter's usual size at which a number exists that doesn't at 0; derivatives change by about as much on the way.
+/// Part of a parameter's usual size at which a part of the muscle exists that doesn't at 0; derivatives change by about as much on the way.
 const BESIDE: f64 = 1e-7;
-/// The same for differences: the third power of it is left.
-const STEP: f64 = 2e-3;
-
-/// A parameter, and the numbers of the muscle that it moves with d(number)/d(parameter).
-type Moved = (usize, Vec<(Parameter, f64)>);
 
 /// An effect of a model.
 #[derive(Debug, Clone)]
@@ -48,16 +45,16 @@ pub(crate) enum Base {
 #[derive(Debug, Clone)]
 pub(crate) struct Body {
     pub(crate) muscle: Muscle,
-    /// Numbers that are not those of the muscle as stated.
-    own: Vec<Parameter>,
+    /// Its parts before effects.
+    pub(crate) parts: Parts,
     pub(crate) setting: Setting,
     pub(crate) geometry: LawGeometry,
 }
 
 impl Body {
-    fn of(muscle: Muscle, own: Vec<Parameter>) -> Self {
+    fn of(muscle: Muscle) -> Self {
         let (setting, geometry) = (Setting::of(&muscle), LawGeometry::from(&muscle));
-        Self { muscle, own, setting, geometry }
+        Self { parts: Parts::of(&muscle), muscle, setting, geometry }
     }
 }
 
@@ -98,7 +95,7 @@ impl Model {
         Self {
             muscle: muscle.clone(),
             base: Base::Equilibrium,
-            bodies: vec![Body::of(muscle.clone().without_specimens(), Vec::new())],
+            bodies: vec![Body::of(muscle.clone().without_specimens())],
             body_of: vec![0],
             effects: Vec::new(),
             specimens: vec!["1".to_owned()],
@@ -107,6 +104,14 @@ impl Model {
             refinement: 1.0,
             solved: Arc::default(),
         }
+    }
+
+    /// The same with parts that effects outside the model have changed.
+    pub(crate) fn of_parts(mut self, parts: Parts) -> Self {
+        for body in &mut self.bodies {
+            body.parts = parts.clone();
+        }
+        self
     }
 
     /// A force law instead of the equilibrium. Its coefficients are numbers of the model, fixed unless `free`; `values` are where they
@@ -187,9 +192,7 @@ impl Model {
             let same = self.bodies.iter().position(|body| body.muscle == muscle);
             self.body_of.push(same.unwrap_or(self.bodies.len()));
             if same.is_none() {
-                let differs = |p: &Parameter| muscle.get(*p) != self.muscle.get(*p);
-                let own = Parameter::ALL.into_iter().filter(differs).collect();
-                self.bodies.push(Body::of(muscle, own));
+                self.bodies.push(Body::of(muscle));
             }
         }
         Ok(self)
@@ -276,84 +279,64 @@ impl Model {
         start..start + chosen.count
     }
 
-    /// The muscle as the effects of the stage [`Stage::Shape`] change it: for drawings and for other solvers.
+    /// The parts of the muscle as the effects of the stage [`Stage::Shape`] change them: for drawings and for other solvers.
     ///
     /// # Errors
     /// If the muscle can't have an effect, or not with these values.
-    pub fn reshaped(&self, theta: &[f64]) -> Result<Muscle, ModelError> {
-        let stated = Body::of(self.muscle.clone().without_specimens(), Vec::new());
-        self.moves(&stated, &self.with_ties(theta), &[]).map(|(muscle, _)| muscle)
+    pub fn parts(&self, theta: &[f64]) -> Result<Parts, ModelError> {
+        let stated = Body::of(self.muscle.clone().without_specimens());
+        self.moving(&stated, &self.with_ties(theta), &[]).map(|parts| parts.values())
     }
 
-    /// The muscle to solve for one of the bodies, and for each of the `wanted` parameters that change it how they do.
-    pub(crate) fn reshape(
-        &self,
-        body: usize,
-        theta: &[f64],
-        wanted: &[usize],
-    ) -> Result<(Muscle, Vec<(usize, ShapeVariable)>), ModelError> {
+    /// The same of one of the bodies, ties being applied.
+    pub(crate) fn parts_of(&self, body: usize, theta: &[f64]) -> Result<Parts, ModelError> {
+        self.moving(&self.bodies[body], theta, &[]).map(|parts| parts.values())
+    }
+
+    /// Those of some parameters that belong to effects of the shape, in the order of the effects.
+    pub(crate) fn shapes(&self, wanted: &[usize]) -> Vec<usize> {
+        let of_shape = self.effects.iter().filter(|chosen| chosen.effect.stage() == Stage::Shape);
+        of_shape.flat_map(|chosen| self.range(chosen, 0)).filter(|index| wanted.contains(index)).collect()
+    }
+
+    /// The parts of one of the bodies to solve, with derivatives by the parameters `shapes`, each in its lane.
+    pub(crate) fn shaped(&self, body: usize, theta: &[f64], shapes: &[usize]) -> Result<Shaped, ModelError> {
         let body = &self.bodies[body];
-        let (muscle, moves) = self.moves(body, theta, wanted)?;
-        let exists = |moved: &[(Parameter, f64)], muscle: &Muscle| {
-            let has = |p| muscle.is_stated(p) || muscle.get(p).is_some_and(|v| v != 0.0);
-            !moved.is_empty() && moved.iter().all(|(p, _)| has(*p))
-        };
-        let mut variables = Vec::with_capacity(moves.len());
-        for (index, moved) in moves {
-            if exists(&moved, &muscle) {
-                variables.push((index, ShapeVariable::Numbers(moved)));
+        let parts = self.moving(body, theta, shapes)?;
+        let mut beside = Vec::new();
+        for (lane, index) in shapes.iter().enumerate() {
+            if parts.numbers().iter().any(|(_, number)| number.gradient()[lane] != 0.0) {
                 continue;
             }
-            let usual = self.parameters[index].typical_step();
-            let at = |step: f64| {
-                let mut nudged = theta.to_vec();
-                nudged[index] += step;
-                self.moves(body, &nudged, &[index])
-            };
-            let (beside, moves) = at(BESIDE * usual)?;
-            let moved =
-                moves.into_iter().find(|(i, _)| *i == index).map(|(_, moved)| moved).unwrap_or_default();
-            let variable = if exists(&moved, &beside) {
-                ShapeVariable::Beside { muscle: Box::new(beside), moved }
-            } else if beside == muscle {
-                ShapeVariable::Numbers(Vec::new())
-            } else {
-                let step = STEP * usual;
-                let [a, b, c] = [at(step)?.0, at(0.5 * step)?.0, at(0.25 * step)?.0];
-                ShapeVariable::Difference { muscles: Box::new([a, b, c]), step }
-            };
-            variables.push((index, variable));
+            let mut nudged = theta.to_vec();
+            nudged[*index] += BESIDE * self.parameters[*index].typical_step();
+            let there = self.moving(body, &nudged, shapes)?;
+            if there.values() != parts.values() {
+                beside.push((lane, there));
+            }
         }
-        Ok((muscle, variables))
+        Ok(Shaped { parts, beside })
     }
 
-    /// The muscle to solve, and for each of the `wanted` parameters which of its numbers they move, as far as the effects say.
-    fn moves(
-        &self,
-        body: &Body,
-        theta: &[f64],
-        wanted: &[usize],
-    ) -> Result<(Muscle, Vec<Moved>), ModelError> {
-        let mut muscle = body.muscle.clone();
-        let mut stated = self.muscle.clone();
-        let mut moved = Vec::new();
-        for chosen in self.effects.iter().filter(|c| c.effect.stage() == Stage::Shape) {
-            let range = self.range(chosen, 0);
-            let reshape = |muscle: &Muscle| chosen.effect.reshape(muscle, &theta[range.clone()]);
-            let mut reshaped = reshape(&muscle).map_err(about(chosen))?;
-            if !body.own.is_empty() {
-                let of_stated = reshape(&stated).map_err(about(chosen))?.muscle;
-                let own = [&stated, &of_stated, &muscle];
-                reshaped = in_proportion(reshaped, &body.own, own).map_err(about(chosen))?;
-                stated = of_stated;
-            }
-            muscle = reshaped.muscle;
-            for index in range.clone().filter(|index| wanted.contains(index)) {
-                let of_index = reshaped.moves.iter().filter(|(i, _, _)| range.start + i == index);
-                moved.push((index, of_index.map(|(_, parameter, factor)| (*parameter, *factor)).collect()));
+    /// The parts of a body as the effects change them, with derivatives by the parameters `shapes`.
+    fn moving(&self, body: &Body, theta: &[f64], shapes: &[usize]) -> Result<Parts<Jet>, ModelError> {
+        let seeded = |index: usize| match shapes.iter().position(|shape| *shape == index) {
+            Some(lane) => Jet::variable(theta[index], lane),
+            None => Jet::from(theta[index]),
+        };
+        let mut parts = body.parts.still();
+        let mut stated = (body.muscle != self.muscle).then(|| Parts::of(&self.muscle).still());
+        for chosen in self.effects.iter().filter(|chosen| chosen.effect.stage() == Stage::Shape) {
+            let theta: Vec<Jet> = self.range(chosen, 0).map(seeded).collect();
+            let before = parts.clone();
+            chosen.effect.reshape(&theta, &mut parts).map_err(about(chosen))?;
+            if let Some(stated) = &mut stated {
+                let stated_before = stated.clone();
+                chosen.effect.reshape(&theta, stated).map_err(about(chosen))?;
+                parts = in_proportion(&parts, &before, [&stated_before, stated]);
             }
         }
-        Ok((muscle, moved))
+        Ok(parts)
     }
 
     /// Whether each row takes an integration of the equilibrium ODE.
@@ -366,19 +349,12 @@ impl Model {
         }
         let theta = self.with_ties(theta);
         for body in 0..self.bodies.len() {
-            let (muscle, _) = self.reshape(body, &theta, &[])?;
-            if Self::equilibrium(&muscle, &[]).is_ok_and(|equilibrium| equilibrium.is_costly()) {
+            let problem = Problem::new(self.parts_of(body, &theta)?, Pressure::bar(1.0));
+            if problem.is_ok_and(|problem| problem.shoots()) {
                 return Ok(true);
             }
         }
         Ok(false)
-    }
-
-    pub(crate) fn equilibrium(
-        muscle: &Muscle,
-        variables: &[(usize, ShapeVariable)],
-    ) -> Result<Equilibrium, bulge_fibre::FibreError> {
-        Equilibrium::new(muscle, variables.iter().map(|(_, variable)| variable.clone()).collect())
     }
 
     /// Force at rest at a true pressure \[Pa\] and contraction: no direction, no rate, the first moment.
@@ -399,34 +375,21 @@ impl ModelParameter {
 }
 
 /// An effect that says what a number of the muscle is (a radius, not its error) says so of the muscle as stated. A specimen that has another such
-/// number keeps its ratio to that of the muscle: `[stated, changed, own]` are the muscle as stated before and after the effect, and the specimen before.
-fn in_proportion(
-    mut reshaped: Reshaped,
-    numbers: &[Parameter],
-    [stated, changed, own]: [&Muscle; 3],
-) -> Result<Reshaped, MuscleError> {
-    for &parameter in numbers {
-        let both = stated.get(parameter).filter(|v| *v != 0.0).zip(own.get(parameter));
-        let Some((stated, own)) = both.filter(|(stated, own)| stated.to_bits() != own.to_bits()) else {
-            continue;
-        };
-        let (Some(set), Some(found)) = (changed.get(parameter), reshaped.muscle.get(parameter)) else {
-            continue;
-        };
-        if set.to_bits() != found.to_bits() {
-            continue;
+/// number keeps its ratio to that of the muscle: `before` and `found` are the specimen before and after the effect, `stated` and `set` the muscle.
+fn in_proportion(found: &Parts<Jet>, before: &Parts<Jet>, [stated, set]: [&Parts<Jet>; 2]) -> Parts<Jet> {
+    let [before, stated, set] = [before, stated, set].map(Parts::numbers);
+    let of = |numbers: &[(&str, Jet)], name: &str| {
+        numbers.iter().find(|(other, _)| *other == name).map(|(_, number)| *number)
+    };
+    let same = |a: Jet, b: Jet| a.value().to_bits() == b.value().to_bits();
+    found.map(|name, number| match (of(&before, name), of(&stated, name), of(&set, name)) {
+        (Some(own), Some(stated), Some(set))
+            if stated.value() != 0.0 && !same(stated, own) && same(set, number) =>
+        {
+            own * (set / stated)
         }
-        reshaped.muscle = reshaped.muscle.with(parameter, own * (set / stated))?;
-        // Of a pleated muscle both are the radius that acts.
-        let radius =
-            |p| reshaped.muscle.is_pleated() && matches!(p, Parameter::Radius | Parameter::FittingRadius);
-        for (_, other, factor) in &mut reshaped.moves {
-            if *other == parameter || radius(*other) && radius(parameter) {
-                *factor *= own / stated;
-            }
-        }
-    }
-    Ok(reshaped)
+        _ => number,
+    })
 }
 
 pub(crate) fn about(chosen: &Chosen) -> impl Fn(bulge_muscles::MuscleError) -> ModelError {

@@ -4,7 +4,7 @@
 //! rate, no time). What belongs to a rig or to one specimen is left out: it is no part of the muscle.
 
 use bulge_effects::{Group, Known, Moment};
-use bulge_fibre::{Approach, FibreError, Given, Isobar, Problem, RangeEnd, Response, isobars};
+use bulge_fibre::{Approach, FibreError, Given, Isobar, Parts, Problem, RangeEnd, Response, isobars};
 use bulge_muscles::{Fault, Muscle, Pressure, Quantity};
 use rayon::prelude::*;
 
@@ -23,10 +23,12 @@ const ROUNDING: f64 = 1e-9;
 /// A muscle with the effects that its file states.
 #[derive(Debug, Clone)]
 pub struct MuscleWithEffects {
-    /// Reshaped, and without the effects.
-    muscle: Muscle,
+    /// As stated, with the effects that change its shape.
+    parts: Parts,
     model: Model,
-    /// Whether the force differs from that of the equilibrium of `muscle`.
+    /// Without effects, of the same parts.
+    bare: Model,
+    /// Whether the force differs from that of the equilibrium of `parts`.
     adds: bool,
     used: Vec<String>,
     left_out: Vec<String>,
@@ -58,18 +60,35 @@ impl MuscleWithEffects {
             used.push(card.name.to_owned());
             model = model.with(effect, Some(numbers))?;
         }
-        let muscle = model.reshaped(&model.start())?;
+        let parts = model.parts(&model.start())?;
+        let bare = Model::new(&plain).of_parts(parts.clone());
         let adds = !model.effects().is_empty();
-        Ok(Self { muscle, model, adds, used, left_out })
+        Ok(Self { parts, model, bare, adds, used, left_out })
     }
 
-    /// The muscle whose equilibrium is solved: as stated, with the effects that change its shape.
+    /// The muscle as stated, without the effects of the catalogue.
     #[must_use]
     pub fn muscle(&self) -> &Muscle {
-        &self.muscle
+        self.model.muscle()
     }
 
-    /// Whether the force differs from that of the equilibrium of [`MuscleWithEffects::muscle`].
+    /// The parts whose equilibrium is solved: as stated, with the effects that change the shape.
+    #[must_use]
+    pub fn parts(&self) -> &Parts {
+        &self.parts
+    }
+
+    /// The stated length \[m\], from which contractions count.
+    fn stated(&self) -> f64 {
+        self.model.muscle().length().si()
+    }
+
+    /// Whether effects have changed the length.
+    fn is_longer(&self) -> bool {
+        self.stated().to_bits() != self.parts.length.to_bits()
+    }
+
+    /// Whether the force differs from that of the equilibrium of [`MuscleWithEffects::parts`].
     #[must_use]
     pub fn adds_force(&self) -> bool {
         self.adds
@@ -87,7 +106,7 @@ impl MuscleWithEffects {
         &self.left_out
     }
 
-    /// An equilibrium of [`MuscleWithEffects::muscle`] with the force and the stiffness that the effects make of it. Its contraction becomes that from
+    /// An equilibrium of [`MuscleWithEffects::parts`] with the force and the stiffness that the effects make of it. Its contraction becomes that from
     /// the stated length, where an effect says that the fibres have another one.
     ///
     /// The gas stiffness follows with the force's derivative by the pressure, F_p:  K_gas = K' + (K_gas0 - K0) F_p'/F_p.
@@ -101,9 +120,8 @@ impl MuscleWithEffects {
         let p = response.pressure_pa;
         let contraction = self.stated_contraction(response);
         let with = pull(&self.model, p, contraction)?;
-        let without = pull(&Model::new(&self.muscle), p, response.contraction)?;
-        let slope = |pull: &Pull, muscle: &Muscle| -pull.by_contraction / muscle.length().si();
-        let added = slope(&with, self.model.muscle()) - slope(&without, &self.muscle);
+        let without = pull(&self.bare, p, response.contraction)?;
+        let added = without.by_contraction / self.parts.length - with.by_contraction / self.stated();
         let stiffness = response.stiffness_n_per_m + added;
         let ratio = with.by_pressure / without.by_pressure;
         let gas = |closed: f64| stiffness + (closed - response.stiffness_n_per_m) * ratio;
@@ -134,21 +152,14 @@ impl MuscleWithEffects {
 
     /// The contraction of an equilibrium from the stated length.
     fn stated_contraction(&self, response: &Response) -> f64 {
-        let stated = self.model.muscle().length().si();
-        if stated.to_bits() == self.muscle.length().si().to_bits() {
-            return response.contraction;
-        }
-        1.0 - response.length_m / stated
+        if self.is_longer() { 1.0 - response.length_m / self.stated() } else { response.contraction }
     }
 
-    /// What to ask of [`MuscleWithEffects::muscle`] for what is asked of the muscle with its effects; not for a force.
+    /// What to ask of [`MuscleWithEffects::parts`] for what is asked of the muscle with its effects; not for a force.
     #[must_use]
     pub fn given(&self, given: Given) -> Given {
-        let stated = self.model.muscle().length().si();
         match given {
-            Given::Contraction(e) if stated.to_bits() != self.muscle.length().si().to_bits() => {
-                Given::Length(stated * (1.0 - e))
-            }
+            Given::Contraction(e) if self.is_longer() => Given::Length(self.stated() * (1.0 - e)),
             _ => given,
         }
     }
@@ -163,7 +174,7 @@ impl MuscleWithEffects {
         given: Given,
         approach: Approach,
     ) -> Result<Response, MuscleWithEffectsError> {
-        let problem = Problem::new(&self.muscle, pressure)?;
+        let problem = Problem::new(&self.parts, pressure)?;
         let mut found = self.complete(&problem.solve(self.given(given), approach)?)?;
         let Given::Force(wanted) = given else { return Ok(found) };
         for _ in 0..MOST_STEPS {
@@ -172,7 +183,7 @@ impl MuscleWithEffects {
             if off.abs() <= 1e-10 * (wanted.abs() + found.force_n.abs()) + 1e-9 || !self.adds {
                 return Ok(found);
             }
-            let slope = -found.stiffness_n_per_m * self.model.muscle().length().si();
+            let slope = -found.stiffness_n_per_m * self.stated();
             let step = (-off / slope).clamp(-MOST_STEP, MOST_STEP);
             if !step.is_finite() || slope >= 0.0 {
                 break;
@@ -194,12 +205,11 @@ impl MuscleWithEffects {
         contractions: &[f64],
         approach: Approach,
     ) -> Result<Vec<Isobar>, MuscleWithEffectsError> {
-        let stated = self.model.muscle().length().si();
-        let own = self.muscle.length().si();
-        let same = stated.to_bits() == own.to_bits();
-        let asked: Vec<f64> =
-            contractions.iter().map(|e| if same { *e } else { 1.0 - stated * (1.0 - e) / own }).collect();
-        let mut found = isobars(&self.muscle, pressures, &asked, approach)?;
+        let own = |e: &f64| {
+            if self.is_longer() { 1.0 - self.stated() * (1.0 - e) / self.parts.length } else { *e }
+        };
+        let asked: Vec<f64> = contractions.iter().map(own).collect();
+        let mut found = isobars(&self.parts, pressures, &asked, approach)?;
         if !self.adds {
             return Ok(found);
         }
@@ -245,7 +255,7 @@ impl MuscleWithEffects {
         pressure: Pressure,
         approach: Approach,
     ) -> Result<RangeEnd, MuscleWithEffectsError> {
-        let problem = Problem::new(&self.muscle, pressure)?;
+        let problem = Problem::new(&self.parts, pressure)?;
         let end = problem.range_end(approach)?;
         if !self.adds {
             return Ok(end);
@@ -365,7 +375,7 @@ mod tests {
         let slope = -(at(0.1 + h).force_n - at(0.1 - h).force_n) / (2.0 * h * 0.25);
         assert!((at(0.1).stiffness_n_per_m / slope - 1.0).abs() < 1e-6);
         // The gas stiffens by the force per pressure: the same ratio for any exponent.
-        let (here, plain) = (at(0.1), Problem::new(muscle.muscle(), bar3()).unwrap());
+        let (here, plain) = (at(0.1), Problem::new(muscle.parts(), bar3()).unwrap());
         let plain = plain.solve(Given::Contraction(0.1), Approach::Auto).unwrap();
         let gas = |r: &Response, k: f64| k - r.stiffness_n_per_m;
         let ratio =
@@ -380,7 +390,7 @@ mod tests {
         let muscle = braid(HOOP);
         let found = muscle.solve(bar3(), Given::Force(200.0), Approach::Auto).unwrap();
         assert!((found.force_n - 200.0).abs() < 1e-6);
-        let alone = Problem::new(muscle.muscle(), bar3()).unwrap();
+        let alone = Problem::new(muscle.parts(), bar3()).unwrap();
         let limit = muscle.contraction_limit(bar3(), Approach::Auto).unwrap();
         assert!(limit < alone.contraction_limit(Approach::Auto).unwrap() - 1e-3);
         let there = muscle.solve(bar3(), Given::Contraction(limit), Approach::Auto).unwrap();
@@ -394,7 +404,7 @@ mod tests {
         let found = muscle.solve(bar3(), Given::Contraction(0.1), Approach::Auto).unwrap();
         assert!((found.length_m - 0.225).abs() < 1e-12 && (found.contraction - 0.1).abs() < 1e-12);
         // A cylinder of 252.5 mm at the same length.
-        let plain = Problem::new(muscle.muscle(), bar3()).unwrap();
+        let plain = Problem::new(muscle.parts(), bar3()).unwrap();
         let plain = plain.solve(Given::Length(0.225), Approach::Auto).unwrap();
         assert!((found.force_n / plain.force_n - 1.0).abs() < 1e-9);
         assert!((found.stiffness_n_per_m / plain.stiffness_n_per_m - 1.0).abs() < 1e-9);
@@ -409,7 +419,7 @@ mod tests {
             (["coulomb-friction".to_owned()].as_slice(), ["force-offset".to_owned()].as_slice())
         );
         let plain =
-            Problem::new(muscle.muscle(), bar3()).unwrap().solve(Given::Contraction(0.1), Approach::Auto);
+            Problem::new(muscle.parts(), bar3()).unwrap().solve(Given::Contraction(0.1), Approach::Auto);
         let found = muscle.solve(bar3(), Given::Contraction(0.1), Approach::Auto).unwrap();
         // Friction has no direction at rest.
         assert_eq!(found.force_n.to_bits(), plain.unwrap().force_n.to_bits());

@@ -3,8 +3,7 @@
 //! Most candidates of a search leave the muscle as it is, and start where others start: they ask for the same equilibria. What a lattice holds depends on what was
 //! asked for only if its searches began anew; such a lattice is kept, and whoever asks for the very same gets it, to the bit what he would have solved.
 
-use bulge_fibre::Start;
-use bulge_muscles::Muscle;
+use bulge_fibre::{Parts, Start};
 use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -19,7 +18,7 @@ pub(crate) type Starts = Arc<HashMap<[i64; 2], Start>>;
 /// What the nodes of a lattice depend on besides their places.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Asked {
-    pub(crate) muscle: Muscle,
+    pub(crate) parts: Parts,
     /// All numbers of effects that change the shape: a derivative may depend on those that leave the muscle as it is.
     pub(crate) numbers: Vec<(String, u64)>,
     /// Numbers by which derivatives are asked for.
@@ -73,7 +72,7 @@ mod tests {
 
     fn asked(radius: f64, number: f64) -> Asked {
         Asked {
-            muscle: braid(radius, 1e5).0,
+            parts: braid(radius, 1e5).0,
             numbers: vec![("radius-error".to_owned(), number.to_bits())],
             shapes: Vec::new(),
         }

@@ -1,7 +1,9 @@
 //! One specimen as a muscle of its own, with the effects that the muscle states.
 
 use bulge_effects::{Known, Stage, learnt};
-use bulge_muscles::{Muscle, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::Muscle;
+use bulge_numerics::Real;
 
 use crate::error::ModelError;
 
@@ -29,18 +31,25 @@ pub fn specimen(muscle: &Muscle, name: &str, known: &[Known]) -> Result<(Muscle,
     let mut own = muscle.of_specimen(name).map_err(about)?;
     let mut all = known.to_vec();
     for (effect, numbers) in all.iter_mut().filter(|(effect, _)| effect.stage() == Stage::Shape) {
-        let [of_muscle, of_own] = [effect.reshape(muscle, numbers), effect.reshape(&own, numbers)];
-        let (of_muscle, of_own) = (of_muscle.map_err(about)?, of_own.map_err(about)?);
-        let bits = |muscle: &Muscle, p: Parameter| muscle.get(p).map(f64::to_bits);
-        let is_set = |p: Parameter| {
-            bits(muscle, p) != bits(&own, p) && bits(&of_muscle.muscle, p) == bits(&of_own.muscle, p)
+        let theta: Vec<Jet> = numbers.iter().enumerate().map(|(i, v)| Jet::variable(*v, i)).collect();
+        let reshape = |parts: &Parts| {
+            let mut changed = parts.still();
+            effect.reshape(&theta, &mut changed).map(|()| changed.numbers())
+        };
+        let [muscle, own_parts] = [Parts::of(muscle), Parts::of(&own)];
+        let (of_muscle, of_own) = (reshape(&muscle).map_err(about)?, reshape(&own_parts).map_err(about)?);
+        let value = |numbers: &[(&str, f64)], name: &str| {
+            numbers.iter().find(|(other, _)| *other == name).map_or(0.0, |(_, number)| *number)
         };
         let mut changed = false;
-        for (i, parameter, _) in of_muscle.moves.iter().filter(|(_, p, _)| is_set(*p)) {
-            if let (Some(stated), Some(own)) =
-                (muscle.get(*parameter).filter(|v| *v != 0.0), own.get(*parameter))
-            {
-                numbers[*i] *= own / stated;
+        for ((name, set), (_, found)) in of_muscle.iter().zip(&of_own) {
+            let (stated, own) = (value(&muscle.numbers(), name), value(&own_parts.numbers(), name));
+            let same = set.value().to_bits() == found.value().to_bits();
+            if stated == 0.0 || stated.to_bits() == own.to_bits() || !same {
+                continue;
+            }
+            for (number, _) in numbers.iter_mut().zip(set.gradient()).filter(|(_, slope)| **slope != 0.0) {
+                *number *= own / stated;
                 changed = true;
             }
         }

@@ -1,7 +1,7 @@
 //! What strands and rubber of a muscle feel between two rows: how far the strands turned, also where the length is held.
 
 use bulge_effects::{Jet, Moment};
-use bulge_muscles::{Muscle, Quantity};
+use bulge_fibre::Parts;
 use bulge_numerics::Real;
 
 use crate::answer::Carried;
@@ -27,14 +27,12 @@ pub(crate) struct Strands {
 
 impl Strands {
     /// Of a muscle.
-    pub(crate) fn of(muscle: &Muscle) -> Self {
-        let number = muscle.fibres().map_or(1.0, f64::from);
-        let stated = muscle.fibre().map(|fibre| 1.0 / (fibre.stiffness().si() * number));
-        let angle = muscle.get(bulge_muscles::Parameter::BraidAngle).unwrap_or(0.0);
+    pub(crate) fn of(parts: &Parts) -> Self {
+        let is_solved = parts.compliance != 0.0;
         Self {
-            sine_per_radius: angle.sin() / muscle.radius().si(),
-            compliance: stated.unwrap_or(USUAL_COMPLIANCE),
-            is_solved: stated.is_some(),
+            sine_per_radius: parts.angle.sin() / parts.radius,
+            compliance: if is_solved { parts.compliance } else { USUAL_COMPLIANCE },
+            is_solved,
         }
     }
 

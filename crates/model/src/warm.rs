@@ -5,8 +5,7 @@
 //! which may be filled from the row before in the same segment: so results don't depend on the number of threads. And a search that
 //! doesn't get anywhere from there begins anew, so they depend on the slots no further than the accuracy of the solver.
 
-use bulge_fibre::Start;
-use bulge_muscles::Muscle;
+use bulge_fibre::{Parts, Start};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::lattice::{Lattice, Span};
@@ -44,8 +43,8 @@ pub(crate) struct Held {
     pub(crate) shapes: Vec<usize>,
     /// All parameters where it was solved.
     pub(crate) theta: Vec<f64>,
-    /// The muscle that they make.
-    pub(crate) muscle: Muscle,
+    /// The parts that they make.
+    pub(crate) parts: Parts,
     /// Where rows have asked for nodes.
     pub(crate) spans: Vec<Span>,
     pub(crate) lattice: Arc<Lattice>,
@@ -53,18 +52,18 @@ pub(crate) struct Held {
 
 impl Held {
     /// The lattice of one of the model's muscles with other parameters, to first order in what changes the shape; none if it lacks the derivatives asked for, or if a
-    /// parameter without derivatives has changed the shape too. `shape` makes the muscle of parameters.
+    /// parameter without derivatives has changed the shape too. `shape` makes the parts of parameters.
     fn near(
         &self,
         theta: &[f64],
         shapes: &[usize],
-        shape: impl Fn(&[f64]) -> Option<Muscle>,
+        shape: impl Fn(&[f64]) -> Option<Parts>,
     ) -> Option<Arc<Lattice>> {
         let mut back = theta.to_vec();
         for index in &self.shapes {
             back[*index] = self.theta[*index];
         }
-        let is_all = || shape(&back).is_some_and(|muscle| muscle == self.muscle);
+        let is_all = || shape(&back).is_some_and(|parts| parts == self.parts);
         let serves = (shapes.is_empty() || shapes == self.shapes) && is_all();
         serves.then(|| {
             let moved: Vec<f64> = self.shapes.iter().map(|i| theta[*i] - self.theta[*i]).collect();
@@ -76,8 +75,8 @@ impl Held {
     }
 
     /// The lattice of this very muscle; none if it is another, or if the lattice lacks the derivatives asked for.
-    fn of(&self, muscle: &Muscle, shapes: &[usize]) -> Option<Arc<Lattice>> {
-        let serves = (shapes.is_empty() || shapes == self.shapes) && *muscle == self.muscle;
+    fn of(&self, parts: &Parts, shapes: &[usize]) -> Option<Arc<Lattice>> {
+        let serves = (shapes.is_empty() || shapes == self.shapes) && *parts == self.parts;
         serves.then(|| Arc::clone(&self.lattice))
     }
 }
@@ -151,13 +150,13 @@ impl Slots {
     pub(crate) fn held_at(
         &self,
         body: usize,
-        muscle: &Muscle,
+        parts: &Parts,
         theta: &[f64],
         shapes: &[usize],
-        shape: impl Fn(&[f64]) -> Option<Muscle>,
+        shape: impl Fn(&[f64]) -> Option<Parts>,
     ) -> Option<Arc<Lattice>> {
         let held = self.held.get(body)?.as_ref()?;
-        if self.is_shared { held.of(muscle, shapes) } else { held.near(theta, shapes, shape) }
+        if self.is_shared { held.of(parts, shapes) } else { held.near(theta, shapes, shape) }
     }
 
     /// What is held of one of the model's muscles, if it may be widened: many rows were solved alone.

@@ -104,6 +104,16 @@ pub enum MuscleError {
         /// The family that has it.
         owner: Kind,
     },
+    /// An effect of the other family.
+    #[error("the effect `{effect}` belongs to {} muscles, and this one is {}", owner.name(), kind.name())]
+    EffectOfOtherKind {
+        /// Name of the effect.
+        effect: String,
+        /// The family of this muscle.
+        kind: Kind,
+        /// The family that has it.
+        owner: Kind,
+    },
     /// A bladder in a pleated muscle.
     #[error("a pleated muscle has no bladder: `bladder-elasticity` belongs to a braided muscle")]
     BladderInPleated,
@@ -163,7 +173,7 @@ impl MuscleError {
             Self::OtherKind { parameter, .. }
             | Self::NoWidth { parameter }
             | Self::NegativeWidth { parameter, .. } => parameter.key(),
-            Self::Learnt { .. } => "effects",
+            Self::Learnt { .. } | Self::EffectOfOtherKind { .. } => "effects",
             Self::SpecimenName { .. } => "specimens",
             Self::NoSpread => "instruments",
         }
@@ -183,26 +193,35 @@ impl MuscleError {
 }
 
 /// The ranges that several constructors share.
-pub(crate) mod check {
+pub mod check {
     use super::MuscleError;
     use crate::units::Quantity;
 
-    /// Finite and > 0.
-    pub(crate) fn positive<Q: Quantity>(key: &'static str, quantity: Q) -> Result<(), MuscleError> {
+    /// Refuses what is not finite and > 0.
+    ///
+    /// # Errors
+    /// [`MuscleError::NotPositive`].
+    pub fn positive<Q: Quantity>(key: &'static str, quantity: Q) -> Result<(), MuscleError> {
         let value = quantity.si();
         let holds = value.is_finite() && value > 0.0;
         if holds { Ok(()) } else { Err(MuscleError::NotPositive { key, value, unit: si_unit::<Q>() }) }
     }
 
-    /// Finite and >= 0.
-    pub(crate) fn not_negative<Q: Quantity>(key: &'static str, quantity: Q) -> Result<(), MuscleError> {
+    /// Refuses what is not finite and >= 0.
+    ///
+    /// # Errors
+    /// [`MuscleError::Negative`].
+    pub fn not_negative<Q: Quantity>(key: &'static str, quantity: Q) -> Result<(), MuscleError> {
         let value = quantity.si();
         let holds = value.is_finite() && value >= 0.0;
         if holds { Ok(()) } else { Err(MuscleError::Negative { key, value, unit: si_unit::<Q>() }) }
     }
 
-    /// At least three fibres.
-    pub(crate) fn count(count: u32) -> Result<(), MuscleError> {
+    /// Refuses fewer than three fibres.
+    ///
+    /// # Errors
+    /// [`MuscleError::TooFewFibres`].
+    pub fn count(count: u32) -> Result<(), MuscleError> {
         if count >= 3 { Ok(()) } else { Err(MuscleError::TooFewFibres { count }) }
     }
 

@@ -4,22 +4,12 @@ use crate::dimension::Dimension;
 use crate::error::MuscleError;
 use crate::file_error::FileError;
 use crate::muscle::Muscle;
+use crate::parameter::Parameter;
 use crate::settings::nearest;
 use crate::units::{any_with_width, exact_any_text, shortened, unit};
 use serde::Serialize;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// The effects with fields of their own in a [`crate::Muscle`], by their names in a file; every other `[effects.NAME]` is a [`Learnt`] one.
-pub const SHAPE_EFFECTS: [&str; 7] = [
-    "bladder-elasticity",
-    "limited-unfolding",
-    "end-radius",
-    "wall-thickness",
-    "pleat-depth",
-    "fibre-misalignment",
-    "lobes",
-];
 
 /// An effect by its name, with its values.
 ///
@@ -118,7 +108,7 @@ impl Learnt {
     /// An effect with its values, in their order.
     ///
     /// # Errors
-    /// If the name or a key is no plain word, the name is one of [`SHAPE_EFFECTS`], a key comes twice, a value is not finite, a width is not
+    /// If the name or a key is no plain word, the name is one of [`Parameter::effects`], a key comes twice, a value is not finite, a width is not
     /// finite and > 0, or a unit is not of its dimension.
     pub fn new(name: impl Into<String>, values: Vec<LearntValue>) -> Result<Self, MuscleError> {
         let name = name.into();
@@ -126,7 +116,7 @@ impl Learnt {
         if !is_plain(&name) {
             return wrong("is no plain word of letters, digits, `-` and `_`".to_owned());
         }
-        if SHAPE_EFFECTS.contains(&name.as_str()) {
+        if Parameter::effects().any(|other| other == name) {
             return wrong("has fields of its own in a muscle, such as `Muscle::with` changes".to_owned());
         }
         for (i, value) in values.iter().enumerate() {
@@ -214,7 +204,7 @@ impl Learnt {
         if known.contains(&self.name.as_str()) {
             return Ok(());
         }
-        let all: Vec<&'n str> = SHAPE_EFFECTS.into_iter().chain(known.iter().copied()).collect();
+        let all: Vec<&'n str> = Parameter::effects().chain(known.iter().copied()).collect();
         let instead = match nearest(&self.name, all.iter().copied()) {
             Some(near) => format!("did you mean `{near}`? An effect of your own needs its file: {OWN_FILE}"),
             None => format!(
@@ -277,11 +267,11 @@ mod tests {
 
     #[test]
     fn the_shape_effects_are_those_of_the_keys() {
-        let mut names = SHAPE_EFFECTS;
+        let mut names: Vec<&str> = Parameter::effects().collect();
         let mut known: Vec<&str> = crate::keys::of("effects").iter().map(|(key, _)| *key).collect();
         names.sort_unstable();
         known.sort_unstable();
-        assert_eq!(names.as_slice(), known);
+        assert_eq!(names, known);
     }
 
     #[test]

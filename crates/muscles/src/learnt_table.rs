@@ -1,7 +1,8 @@
 //! Learnt effects in a muscle file: every table of `[effects]` that is not one of the shape effects.
 
 use crate::file_error::FileError;
-use crate::learnt::{Learnt, LearntValue, Place, SHAPE_EFFECTS, SourceFile, is_plain};
+use crate::learnt::{Learnt, LearntValue, Place, SourceFile, is_plain};
+use crate::parameter::Parameter;
 use crate::settings::{Setting, Settings};
 use crate::units::{any_with_width, shortened};
 use std::ops::Range;
@@ -11,7 +12,7 @@ impl Settings<'_> {
     /// The effects in the table `[effects]` that this crate doesn't know, in the order of the file.
     pub(crate) fn learnt(&self) -> Result<Vec<Learnt>, FileError> {
         let (origin, text) = self.source();
-        let names = self.names().into_iter().filter(|(name, _)| !SHAPE_EFFECTS.contains(name));
+        let names = self.names().into_iter().filter(|(name, _)| Parameter::effects().all(|other| other != *name));
         let mut file: Option<Arc<SourceFile>> = None;
         let source = || Arc::new(SourceFile { origin: origin.to_owned(), text: text.to_owned() });
         names

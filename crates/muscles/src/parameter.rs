@@ -107,6 +107,27 @@ impl Parameter {
         }
     }
 
+    /// The effect in whose table it stands in a muscle file and its key there, if it does.
+    #[must_use]
+    pub fn effect(self) -> Option<(&'static str, &'static str)> {
+        self.key().strip_prefix("effects.")?.split_once('.')
+    }
+
+    /// The parameter that stands under this key in the table `[effects.NAME]`.
+    #[must_use]
+    pub fn of_effect(name: &str, key: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|parameter| parameter.effect() == Some((name, key)))
+    }
+
+    /// The effects whose tables hold parameters of the muscle; every other `[effects.NAME]` is a [`crate::Learnt`] one.
+    pub fn effects() -> impl Iterator<Item = &'static str> {
+        let is_first = |(i, name): &(usize, &str)| {
+            !Self::ALL[..*i].iter().any(|other| other.effect().is_some_and(|(other, _)| other == *name))
+        };
+        let all = Self::ALL.into_iter().enumerate();
+        all.filter_map(|(i, parameter)| Some((i, parameter.effect()?.0))).filter(is_first).map(|(_, name)| name)
+    }
+
     /// The SI unit; "1" for a count.
     #[must_use]
     pub const fn unit(self) -> &'static str {
@@ -195,6 +216,9 @@ mod tests {
             assert_eq!(Parameter::ALL.iter().filter(|other| other.key() == parameter.key()).count(), 1);
         }
         assert_eq!(Parameter::named("lenght"), None);
+        assert_eq!(Parameter::of_effect("pleat-depth", "depth"), Some(Parameter::PleatDepth));
+        assert_eq!((Parameter::of_effect("pleat-depth", "radius"), Parameter::Wall.effect()), (None, None));
+        assert_eq!(Parameter::effects().count(), 7);
     }
 
     #[test]

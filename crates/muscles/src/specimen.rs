@@ -95,14 +95,7 @@ impl Muscle {
     }
 
     fn with_numbers_of(&self, specimen: &Specimen) -> Result<Self, MuscleError> {
-        let mut muscle = self.clone().without_specimens();
-        for &(parameter, value) in &specimen.numbers {
-            // A number that stays what it is leaves the muscle as it is, to the bit.
-            if muscle.get(parameter) != Some(value) {
-                muscle = muscle.with(parameter, value)?;
-            }
-        }
-        Ok(muscle)
+        self.clone().without_specimens().with_all(&specimen.numbers)
     }
 
     /// Compares the specimens that are stated with those of the data; returns those of the data of which nothing is stated: they are the muscle as it is.

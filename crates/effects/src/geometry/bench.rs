@@ -1,7 +1,9 @@
 //! For tests of shape effects: muscles and the force of their equilibrium.
 
-use bulge_fibre::{Approach, Problem};
-use bulge_muscles::{Angle, Braided, Construction, Ends, Length, Muscle, Pressure, preset};
+use bulge_fibre::{Approach, Parts, Problem};
+use bulge_muscles::{Angle, Braided, Construction, Ends, Length, Muscle, MuscleError, Pressure, preset};
+
+use crate::effect::Effect;
 
 /// The textbook cylinder of a muscle of 20 mm: r0 = 10 mm, 25 deg, 250 mm.
 pub(crate) fn cylinder() -> Muscle {
@@ -14,8 +16,16 @@ pub(crate) fn pleated() -> Muscle {
     preset("ppam-2-r16").unwrap()
 }
 
+/// The parts of a muscle as an effect changes them.
+pub(crate) fn with(effect: &dyn Effect, theta: &[f64], muscle: &Muscle) -> Result<Parts, MuscleError> {
+    effect.reshaped(theta, muscle)
+}
+
 /// Force of the equilibrium \[N\] at a pressure in bar.
-pub(crate) fn force(muscle: &Muscle, bar: f64, contraction: f64) -> f64 {
-    let problem = Problem::new(muscle, Pressure::bar(bar)).unwrap();
+pub(crate) fn force<'a, P>(parts: &'a P, bar: f64, contraction: f64) -> f64
+where
+    Parts: From<&'a P>,
+{
+    let problem = Problem::new(parts, Pressure::bar(bar)).unwrap();
     problem.follow(contraction, Approach::Auto).unwrap().force_n
 }

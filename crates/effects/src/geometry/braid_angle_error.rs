@@ -1,9 +1,12 @@
 //! Braid angle error: the fibres run at another angle at rest than stated (catalogue G14).
 
-use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Kind, MuscleError};
+use bulge_numerics::Real;
+use std::f64::consts::FRAC_PI_2;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::DEGREE;
 
@@ -61,35 +64,38 @@ impl Effect for BraidAngleError {
 }
 
 impl ShapeEffect for BraidAngleError {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        let stated = muscle.get(Parameter::BraidAngle).unwrap_or(0.0);
-        Reshaped::setting(muscle, &[(Parameter::BraidAngle, stated + theta[0])])
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        let angle = parts.angle + theta[0];
+        if !(angle.value() > 0.0 && angle.value() < FRAC_PI_2) {
+            return Err(MuscleError::BraidAngle { degrees: angle.value().to_degrees() });
+        }
+        parts.angle = angle;
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{cylinder, force};
+    use crate::geometry::bench::{cylinder, force, with};
     use bulge_muscles::preset;
 
     #[test]
     fn half_a_degree_is_five_per_cent() {
         let muscle = cylinder();
-        let steep = BraidAngleError.reshape(&muscle, &[0.5_f64.to_radians()]).unwrap();
-        assert_eq!(steep.moves, [(0, Parameter::BraidAngle, 1.0)]);
+        let steep = with(&BraidAngleError, &[0.5_f64.to_radians()], &muscle).unwrap();
         let shape = |degrees: f64| {
             let (s, c) = degrees.to_radians().sin_cos();
             (3.0 * c * c - 1.0) / (s * s)
         };
-        let ratio = force(&steep.muscle, 3.0, 0.0) / force(&muscle, 3.0, 0.0);
+        let ratio = force(&steep, 3.0, 0.0) / force(&muscle, 3.0, 0.0);
         assert!((ratio - shape(25.5) / shape(25.0)).abs() < 1e-9);
         assert!((ratio - 0.950).abs() < 2e-3, "{ratio}");
     }
 
     #[test]
     fn angles_that_are_none_and_other_muscles_are_refused() {
-        assert!(BraidAngleError.reshape(&cylinder(), &[-0.5]).is_err());
-        assert!(BraidAngleError.reshape(&preset("ppam-2-r16").unwrap(), &[0.01]).is_err());
+        assert!(with(&BraidAngleError, &[-0.5], &cylinder()).is_err());
+        assert!(with(&BraidAngleError, &[0.01], &preset("ppam-2-r16").unwrap()).is_err());
     }
 }

@@ -1,9 +1,11 @@
 //! End radius: the fibres leave the fittings at another radius than stated (S1, section 3.1).
 
-use bulge_muscles::{Muscle, MuscleError, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Length, MuscleError, Parameter, Quantity, check};
+use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
@@ -58,24 +60,29 @@ impl Effect for EndRadius {
 }
 
 impl ShapeEffect for EndRadius {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        Reshaped::setting(muscle, &[(Parameter::FittingRadius, theta[0])])
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        check::positive("effects.end-radius.radius", Length::from_si(theta[0].value()))?;
+        parts.set_fitting(theta[0]);
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::bench::with;
     use bulge_muscles::preset;
 
     #[test]
     fn the_radius_moves_and_nothing_else() {
         let muscle = preset("ppam-2-r11.5").unwrap();
-        let same = EndRadius.reshape(&muscle, &[0.0115]).unwrap();
-        assert_eq!(same.muscle, muscle);
-        let wide = EndRadius.reshape(&muscle, &[0.016]).unwrap();
-        assert_eq!(wide.muscle.get(Parameter::FittingRadius), Some(0.016));
-        assert_eq!(wide.moves, [(0, Parameter::FittingRadius, 1.0)]);
-        assert!(EndRadius.reshape(&muscle, &[-0.016]).is_err());
+        let same = with(&EndRadius, &[0.0115], &muscle).unwrap();
+        assert_eq!(same, Parts::of(&muscle));
+        let wide = with(&EndRadius, &[0.016], &muscle).unwrap();
+        assert_eq!(wide, Parts { radius: 0.016, ..Parts::of(&muscle) });
+        let braid = preset("dmsp-20-250").unwrap();
+        let narrow = with(&EndRadius, &[0.009], &braid).unwrap();
+        assert_eq!(narrow, Parts { fitting: Some(0.009), ..Parts::of(&braid) });
+        assert!(with(&EndRadius, &[-0.016], &muscle).is_err());
     }
 }

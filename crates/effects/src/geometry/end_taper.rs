@@ -1,9 +1,10 @@
 //! End taper: the ends of the braid are clamped, not cylindrical (catalogue G11; theory of Adkins and Rivlin, Liu and Rahn).
 
-use bulge_muscles::{Ends, Kind, Muscle, MuscleError};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Ends, Kind, MuscleError};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 
 /// `ends = "cylinder"` becomes `ends = "clamped"`: the exact shape of the net; no parameter.
@@ -53,15 +54,16 @@ impl Effect for EndTaper {
 }
 
 impl ShapeEffect for EndTaper {
-    fn reshape(&self, muscle: &Muscle, _: &[f64]) -> Result<Reshaped, MuscleError> {
-        Ok(Reshaped { muscle: muscle.clone().with_ends(Ends::Clamped), moves: Vec::new() })
+    fn reshape(&self, _: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        parts.ends = Ends::Clamped;
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{cylinder, force};
+    use crate::geometry::bench::{cylinder, force, with};
     use bulge_muscles::{Parameter, preset};
 
     #[test]
@@ -70,9 +72,8 @@ mod tests {
         assert!((force(&muscle, 3.0, 0.2) - 304.5).abs() < 0.05);
         for (length, expected) in [(0.25, 265.7), (0.06, 159.3), (0.03, 60.7)] {
             let short = muscle.with(Parameter::Length, length).unwrap();
-            let clamped = EndTaper.reshape(&short, &[]).unwrap();
-            assert!(clamped.moves.is_empty());
-            assert!((force(&clamped.muscle, 3.0, 0.2) - expected).abs() < 0.05, "{length}");
+            let clamped = with(&EndTaper, &[], &short).unwrap();
+            assert!((force(&clamped, 3.0, 0.2) - expected).abs() < 0.05, "{length}");
         }
     }
 
@@ -80,15 +81,15 @@ mod tests {
     fn nothing_else_changes() {
         let full = cylinder().with(Parameter::Wall, 0.002).unwrap().with_gas_wall(None).unwrap();
         let full = full.with_width(Parameter::Length, 2e-4).unwrap();
-        let clamped = EndTaper.reshape(&full, &[]).unwrap().muscle;
-        assert_eq!(format!("{clamped:?}"), format!("{full:?}").replace("Cylinder", "Clamped"));
+        let clamped = with(&EndTaper, &[], &full).unwrap();
+        assert_eq!(clamped, Parts { ends: Ends::Clamped, ..Parts::of(&full) });
     }
 
     #[test]
     fn what_is_clamped_or_pleated_stays() {
         for name in ["dmsp-20-250", "ppam-2-r16"] {
             let muscle = preset(name).unwrap();
-            assert_eq!(EndTaper.reshape(&muscle, &[]).unwrap().muscle, muscle);
+            assert_eq!(with(&EndTaper, &[], &muscle).ok(), (!muscle.is_pleated()).then(|| Parts::of(&muscle)));
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Fibre length: the fibres are longer than the stated length of the muscle (catalogue G4 and M8).
 
-use bulge_muscles::{Muscle, MuscleError, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Length, MuscleError, Quantity, check};
+use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Input, Reshaped, Row, ShapeEffect};
+use crate::effect::{Action, Effect, Input, Row, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT;
 
@@ -58,11 +60,9 @@ impl Effect for FibreLength {
 }
 
 impl ShapeEffect for FibreLength {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        let stated = muscle.length().to_m();
-        let mut reshaped = Reshaped::setting(muscle, &[(Parameter::Length, stated * (1.0 + theta[0]))])?;
-        reshaped.moves = vec![(0, Parameter::Length, stated)];
-        Ok(reshaped)
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        parts.length = parts.length * (theta[0] + 1.0);
+        check::positive("length", Length::from_si(parts.length.value()))
     }
 
     fn act(&self, Row { theta, .. }: Row<'_>, input: &mut Input) {
@@ -73,15 +73,14 @@ impl ShapeEffect for FibreLength {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{cylinder, force, pleated};
+    use crate::geometry::bench::{cylinder, force, pleated, with};
     use crate::probe::input;
     use bulge_numerics::Real;
 
     #[test]
     fn the_distance_of_the_fittings_stays() {
-        let longer = FibreLength.reshape(&pleated(), &[0.01]).unwrap();
-        assert_eq!(longer.moves, [(0, Parameter::Length, 0.11)]);
-        let length = longer.muscle.length().to_m();
+        let longer = with(&FibreLength, &[0.01], &pleated()).unwrap();
+        let length = longer.length;
         let contraction = input(&FibreLength, &[0.01], |_| ()).contraction.value();
         assert!((length - 0.1111).abs() < 1e-15);
         assert!((length * (1.0 - contraction) - 0.11 * 0.9).abs() < 1e-15);
@@ -90,7 +89,7 @@ mod tests {
     /// The force of a cylinder depends on contraction alone: (1 - eps)^2 over (1 + delta)^2.
     #[test]
     fn a_cylinder_only_sees_the_contraction() {
-        let muscle = FibreLength.reshape(&cylinder(), &[-0.02]).unwrap().muscle;
+        let muscle = with(&FibreLength, &[-0.02], &cylinder()).unwrap();
         let contraction = input(&FibreLength, &[-0.02], |_| ()).contraction.value();
         let (a, b) = (3.0 / 25.0_f64.to_radians().tan().powi(2), 1.0 / 25.0_f64.to_radians().sin().powi(2));
         let expected = std::f64::consts::PI * 1e-4 * 3e5 * (a * (0.9_f64 / 0.98).powi(2) - b);

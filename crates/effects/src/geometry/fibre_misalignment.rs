@@ -1,9 +1,12 @@
 //! Fibre misalignment: the fibres of a pleated muscle run as a slight helix (catalogue G7).
 
-use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Kind, MuscleError};
+use bulge_numerics::Real;
+use std::f64::consts::FRAC_PI_2;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::DEGREE;
 
@@ -55,22 +58,30 @@ impl Effect for FibreMisalignment {
 }
 
 impl ShapeEffect for FibreMisalignment {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        // The force is even in the angle.
-        Reshaped::with_part(muscle, Parameter::Misalignment, theta[0])
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        let angle = theta[0];
+        // The force is even in the angle: its derivative at 0 says nothing, so nothing is there yet.
+        if angle.value() == 0.0 {
+            return Ok(());
+        }
+        if angle.value().abs() >= FRAC_PI_2 || angle.value().is_nan() {
+            return Err(MuscleError::Misalignment { degrees: angle.value().to_degrees() });
+        }
+        parts.angle = angle;
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{force, pleated};
+    use crate::geometry::bench::{force, pleated, with};
 
     #[test]
     fn the_loss_is_even_in_the_angle_and_goes_with_its_square() {
         let muscle = pleated();
         let loss = |degrees: f64, contraction: f64| {
-            let helix = FibreMisalignment.reshape(&muscle, &[degrees.to_radians()]).unwrap().muscle;
+            let helix = with(&FibreMisalignment, &[degrees.to_radians()], &muscle).unwrap();
             force(&helix, 1.0, contraction) - force(&muscle, 1.0, contraction)
         };
         for contraction in [0.1, 0.2] {
@@ -82,9 +93,9 @@ mod tests {
 
     #[test]
     fn straight_fibres_are_the_same_muscle() {
-        assert_eq!(FibreMisalignment.reshape(&pleated(), &[0.0]).unwrap(), Reshaped::unchanged(&pleated()));
-        let helix = FibreMisalignment.reshape(&pleated(), &[0.05]).unwrap();
-        assert_eq!(helix.muscle.get(Parameter::Misalignment), Some(0.05));
-        assert_eq!(helix.moves, [(0, Parameter::Misalignment, 1.0)]);
+        assert_eq!(with(&FibreMisalignment, &[0.0], &pleated()).unwrap(), Parts::of(&pleated()));
+        let helix = with(&FibreMisalignment, &[0.05], &pleated()).unwrap();
+        assert_eq!(helix, Parts { angle: 0.05, ..Parts::of(&pleated()) });
+        assert!(with(&FibreMisalignment, &[1.6], &pleated()).is_err());
     }
 }

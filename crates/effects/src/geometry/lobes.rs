@@ -1,9 +1,11 @@
 //! Lobes: inextensible cloth bulges between the fibres and stops the unfolding (catalogue G5).
 
-use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Kind, Length, MuscleError, Parameter, Quantity, check};
+use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
@@ -59,24 +61,32 @@ impl Effect for Lobes {
 }
 
 impl ShapeEffect for Lobes {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        Reshaped::with_part(muscle, Parameter::ClothCircumference, theta[0])
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        let circumference = theta[0];
+        if circumference.value() == 0.0 {
+            return Ok(());
+        }
+        check::positive("effects.lobes.circumference", Length::from_si(circumference.value()))?;
+        if parts.fibres.is_none() {
+            return Err(MuscleError::LobesOfContinuous);
+        }
+        parts.lobes = Some(circumference);
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{force, pleated};
+    use crate::geometry::bench::{force, pleated, with};
     use bulge_muscles::preset;
 
     #[test]
     fn cloth_holds_the_muscle_back() {
         let muscle = pleated();
         // The equator of the muscle without lobes is at 44.8 mm at 20 % and at 53.6 mm at 40 %: 2 pi 47 mm stops it between.
-        let lobed = Lobes.reshape(&muscle, &[2.0 * std::f64::consts::PI * 0.047]).unwrap();
-        assert_eq!(lobed.moves, [(0, Parameter::ClothCircumference, 1.0)]);
-        let gain = |contraction| force(&lobed.muscle, 1.0, contraction) / force(&muscle, 1.0, contraction);
+        let lobed = with(&Lobes, &[2.0 * std::f64::consts::PI * 0.047], &muscle).unwrap();
+        let gain = |contraction| force(&lobed, 1.0, contraction) / force(&muscle, 1.0, contraction);
         let gains = [0.02, 0.1, 0.2, 0.3].map(gain);
         assert!(gains.is_sorted_by(|a, b| a > b), "{gains:?}");
         assert!(gains[0] > 1.0 && gains[2] > 0.8 && gains[3] < 0.2, "{gains:?}");
@@ -84,8 +94,8 @@ mod tests {
 
     #[test]
     fn none_is_the_same_muscle_and_a_membrane_has_none() {
-        assert_eq!(Lobes.reshape(&pleated(), &[0.0]).unwrap(), Reshaped::unchanged(&pleated()));
-        assert!(Lobes.reshape(&preset("ppam-1").unwrap(), &[0.4]).is_err());
-        assert!(Lobes.reshape(&preset("dmsp-20-250").unwrap(), &[0.4]).is_err());
+        assert_eq!(with(&Lobes, &[0.0], &pleated()).unwrap(), Parts::of(&pleated()));
+        assert!(with(&Lobes, &[0.4], &preset("ppam-1").unwrap()).is_err());
+        assert!(with(&Lobes, &[0.4], &preset("dmsp-20-250").unwrap()).is_err());
     }
 }

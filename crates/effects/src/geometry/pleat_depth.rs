@@ -1,9 +1,11 @@
 //! Pleat depth: under pressure the crests of the cloth stand outside the fibres (catalogue G3).
 
-use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Kind, Length, MuscleError, Parameter, Quantity, check};
+use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
@@ -53,29 +55,30 @@ impl Effect for PleatDepth {
 }
 
 impl ShapeEffect for PleatDepth {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        let stated = muscle.get(Parameter::PleatDepth).unwrap_or(0.0);
-        if theta[0] == 0.0 && stated != 0.0 {
-            return Ok(Reshaped::unchanged(muscle));
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        let depth = theta[0];
+        check::not_negative("effects.pleat-depth.depth", Length::from_si(depth.value()))?;
+        // At 0 the muscle keeps the depth that it states.
+        if depth.value() != 0.0 || parts.depth.value() == 0.0 {
+            parts.depth = depth;
         }
-        Reshaped::setting(muscle, &[(Parameter::PleatDepth, theta[0])])
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{cylinder, force, pleated};
+    use crate::geometry::bench::{cylinder, force, pleated, with};
     use bulge_muscles::preset;
 
     #[test]
     fn it_pulls_as_fittings_of_the_radius_of_the_crests() {
         let narrow = preset("ppam-2-r11.5").unwrap();
-        let deep = PleatDepth.reshape(&narrow, &[0.0045]).unwrap();
-        assert_eq!(deep.moves, [(0, Parameter::PleatDepth, 1.0)]);
+        let deep = with(&PleatDepth, &[0.0045], &narrow).unwrap();
         for contraction in [0.03, 0.1, 0.3] {
             let (found, expected) =
-                (force(&deep.muscle, 2.0, contraction), force(&pleated(), 2.0, contraction));
+                (force(&deep, 2.0, contraction), force(&pleated(), 2.0, contraction));
             assert!((found / expected - 1.0).abs() < 1e-9, "{contraction}: {found} {expected}");
         }
     }
@@ -83,10 +86,10 @@ mod tests {
     #[test]
     fn no_depth_is_the_same_muscle() {
         let muscle = pleated();
-        assert_eq!(PleatDepth.reshape(&muscle, &[0.0]).unwrap().muscle, muscle);
+        assert_eq!(with(&PleatDepth, &[0.0], &muscle).unwrap(), Parts::of(&muscle));
         let deep = muscle.with(Parameter::PleatDepth, 0.001).unwrap();
-        assert_eq!(PleatDepth.reshape(&deep, &[0.0]).unwrap(), Reshaped::unchanged(&deep));
-        assert!(PleatDepth.reshape(&cylinder(), &[0.001]).is_err());
-        assert!(PleatDepth.reshape(&muscle, &[-0.001]).is_err());
+        assert_eq!(with(&PleatDepth, &[0.0], &deep).unwrap(), Parts::of(&deep));
+        assert!(with(&PleatDepth, &[0.001], &cylinder()).is_err());
+        assert!(with(&PleatDepth, &[-0.001], &muscle).is_err());
     }
 }

@@ -1,9 +1,11 @@
 //! Radius error: the braid has another radius at rest than stated (S5, table 2: three candidates for one muscle).
 
-use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Kind, Length, MuscleError, Parameter, Quantity, check};
+use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
@@ -61,33 +63,34 @@ impl Effect for RadiusError {
 }
 
 impl ShapeEffect for RadiusError {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        Reshaped::setting(muscle, &[(Parameter::Radius, theta[0])])
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        check::positive("radius", Length::from_si(theta[0].value()))?;
+        parts.radius = theta[0];
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{cylinder, force};
+    use crate::geometry::bench::{cylinder, force, with};
     use bulge_muscles::preset;
 
     #[test]
     fn the_force_of_a_cylinder_goes_with_the_square() {
         let muscle = cylinder();
-        let wide = RadiusError.reshape(&muscle, &[0.01 * 1.07]).unwrap();
-        assert_eq!(wide.moves, [(0, Parameter::Radius, 1.0)]);
-        assert!((force(&wide.muscle, 3.0, 0.2) / force(&muscle, 3.0, 0.2) - 1.1449).abs() < 1e-9);
+        let wide = with(&RadiusError, &[0.01 * 1.07], &muscle).unwrap();
+        assert!((force(&wide, 3.0, 0.2) / force(&muscle, 3.0, 0.2) - 1.1449).abs() < 1e-9);
         // S5's muscle against its nominal radius: 296.2 and 257.5 N per bar.
-        let found = RadiusError.reshape(&muscle, &[0.010_725]).unwrap().muscle;
+        let found = with(&RadiusError, &[0.010_725], &muscle).unwrap();
         assert!((force(&found, 1.0, 0.0) - 296.2).abs() < 0.1);
     }
 
     #[test]
     fn fittings_follow() {
         let muscle = preset("dmsp-20-250").unwrap();
-        let wide = RadiusError.reshape(&muscle, &[0.012]).unwrap().muscle;
-        assert_eq!(wide.get(Parameter::FittingRadius), Some(0.012));
-        assert!(RadiusError.reshape(&muscle, &[0.0]).is_err());
+        let wide = with(&RadiusError, &[0.012], &muscle).unwrap();
+        assert_eq!((wide.radius, wide.fitting), (0.012, None));
+        assert!(with(&RadiusError, &[0.0], &muscle).is_err());
     }
 }

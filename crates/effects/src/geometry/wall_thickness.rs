@@ -1,9 +1,11 @@
 //! Wall thickness: the gas acts inside a wall of constant thickness, not at the braid (Chou and Hannaford 1996; catalogue G9).
 
-use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Kind, Length, MuscleError, Parameter, Quantity, check};
+use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MILLIMETRE;
 
@@ -54,37 +56,42 @@ impl Effect for WallThickness {
 }
 
 impl ShapeEffect for WallThickness {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        Reshaped::with_part(muscle, Parameter::GasWall, theta[0])
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        let thickness = theta[0];
+        check::not_negative("effects.wall-thickness.thickness", Length::from_si(thickness.value()))?;
+        // At 0 the gas stays where the muscle states it.
+        if thickness.value() != 0.0 || parts.depth.value() == 0.0 {
+            parts.depth = -thickness;
+        }
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{cylinder, force, pleated};
+    use crate::geometry::bench::{cylinder, force, pleated, with};
     use std::f64::consts::PI;
 
     #[test]
     fn a_cylinder_loses_what_chou_and_hannaford_say() {
         let muscle = cylinder();
         let (thickness, p) = (0.002, 3e5);
-        let thick = WallThickness.reshape(&muscle, &[thickness]).unwrap();
-        assert_eq!(thick.moves, [(0, Parameter::GasWall, 1.0)]);
+        let thick = with(&WallThickness, &[thickness], &muscle).unwrap();
         for contraction in [0.0, 0.1, 0.25] {
             let cos = (1.0 - contraction) * 25.0_f64.to_radians().cos();
             let sin = (1.0 - cos * cos).sqrt();
             let across = 2.0 * 0.01 / 25.0_f64.to_radians().sin();
             let expected = PI * p * (across * thickness * (2.0 * sin - 1.0 / sin) - thickness * thickness);
-            let found = force(&thick.muscle, 3.0, contraction) - force(&muscle, 3.0, contraction);
+            let found = force(&thick, 3.0, contraction) - force(&muscle, 3.0, contraction);
             assert!((found / expected - 1.0).abs() < 1e-9, "{contraction}: {found} {expected}");
         }
     }
 
     #[test]
     fn none_is_the_same_muscle() {
-        assert_eq!(WallThickness.reshape(&cylinder(), &[0.0]).unwrap(), Reshaped::unchanged(&cylinder()));
-        assert!(WallThickness.reshape(&cylinder(), &[-0.001]).is_err());
-        assert!(WallThickness.reshape(&pleated(), &[0.002]).is_err());
+        assert_eq!(with(&WallThickness, &[0.0], &cylinder()).unwrap(), Parts::of(&cylinder()));
+        assert!(with(&WallThickness, &[-0.001], &cylinder()).is_err());
+        assert!(with(&WallThickness, &[0.002], &pleated()).is_err());
     }
 }

@@ -1,9 +1,10 @@
 //! Second constant of the bladder: the part of rubber that a neo-Hookean law misses (Mooney-Rivlin; catalogue E8).
 
-use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Kind, MuscleError};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MEGAPASCAL;
 
@@ -56,38 +57,39 @@ impl Effect for BladderC01 {
 }
 
 impl ShapeEffect for BladderC01 {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        Reshaped::with_part(muscle, Parameter::C01, theta[0])
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        parts.set_rubber("effects.bladder-elasticity.c01", theta[0], |rubber| &mut rubber.c01)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{cylinder, force};
+    use bulge_muscles::Parameter;
+    use crate::geometry::bench::{cylinder, force, with};
     use std::f64::consts::PI;
 
     #[test]
     fn a_cylinder_loses_what_the_energy_of_the_tube_says() {
         let muscle = cylinder().with(Parameter::Wall, 0.002).unwrap();
         let (c01, wall, radius, contraction) = (1e5, 0.002, 0.01, 0.1);
-        let rubber = BladderC01.reshape(&muscle, &[c01]).unwrap();
-        assert_eq!(rubber.moves, [(0, Parameter::C01, 1.0)]);
+        let rubber = with(&BladderC01, &[c01], &muscle).unwrap();
         let (s, c) = 25.0_f64.to_radians().sin_cos();
         let l1: f64 = 1.0 - contraction;
         let l2 = (1.0 - (l1 * c).powi(2)).sqrt() / s;
         let w_1 = 2.0 * c01 * (l1 * l2 * l2 - 1.0 / l1.powi(3));
         let w_2 = 2.0 * c01 * (l2 * l1 * l1 - 1.0 / l2.powi(3));
         let expected = 2.0 * PI * radius * wall * (w_1 - w_2 * l1 * (c / s).powi(2) / l2);
-        let found = force(&rubber.muscle, 2.0, contraction) - force(&muscle, 2.0, contraction);
+        let found = force(&rubber, 2.0, contraction) - force(&muscle, 2.0, contraction);
         assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
     }
 
     #[test]
     fn it_leaves_the_first_constant() {
         let neo = cylinder().with(Parameter::Wall, 0.002).unwrap().with(Parameter::C10, 3e5).unwrap();
-        let both = BladderC01.reshape(&neo, &[1e5]).unwrap().muscle;
-        assert_eq!((both.get(Parameter::C10), both.get(Parameter::C01)), (Some(3e5), Some(1e5)));
-        assert_eq!(BladderC01.reshape(&neo, &[0.0]).unwrap(), Reshaped::unchanged(&neo));
+        let both = with(&BladderC01, &[1e5], &neo).unwrap();
+        let rubber = both.rubber.unwrap();
+        assert_eq!((rubber.c10, rubber.c01), (3e5, 1e5));
+        assert_eq!(with(&BladderC01, &[0.0], &neo).unwrap(), Parts::of(&neo));
     }
 }

@@ -1,9 +1,10 @@
 //! Bladder elasticity: the rubber tube inside a braid resists being deformed (Mooney-Rivlin; catalogue E7 and E8).
 
-use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Kind, MuscleError};
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::MEGAPASCAL;
 
@@ -59,42 +60,42 @@ impl Effect for BladderElasticity {
 }
 
 impl ShapeEffect for BladderElasticity {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        Reshaped::with_part(muscle, Parameter::C10, theta[0])
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        parts.set_rubber("effects.bladder-elasticity.c10", theta[0], |rubber| &mut rubber.c10)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{cylinder, force, pleated};
+    use bulge_muscles::Parameter;
+    use crate::geometry::bench::{cylinder, force, pleated, with};
     use std::f64::consts::PI;
 
     #[test]
     fn a_cylinder_loses_what_the_energy_of_the_tube_says() {
         let muscle = cylinder().with(Parameter::Wall, 0.002).unwrap();
         let (c10, wall, radius, contraction) = (3e5, 0.002, 0.01, 0.1);
-        let rubber = BladderElasticity.reshape(&muscle, &[c10]).unwrap();
-        assert_eq!(rubber.moves, [(0, Parameter::C10, 1.0)]);
+        let rubber = with(&BladderElasticity, &[c10], &muscle).unwrap();
         let (s, c) = 25.0_f64.to_radians().sin_cos();
         let l1: f64 = 1.0 - contraction;
         let l2 = (1.0 - (l1 * c).powi(2)).sqrt() / s;
         let w_1 = 2.0 * c10 * (l1 - 1.0 / (l1.powi(3) * l2 * l2));
         let w_2 = 2.0 * c10 * (l2 - 1.0 / (l2.powi(3) * l1 * l1));
         let expected = 2.0 * PI * radius * wall * (w_1 - w_2 * l1 * (c / s).powi(2) / l2);
-        let found = force(&rubber.muscle, 2.0, contraction) - force(&muscle, 2.0, contraction);
+        let found = force(&rubber, 2.0, contraction) - force(&muscle, 2.0, contraction);
         assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
     }
 
     #[test]
     fn no_modulus_is_the_same_muscle() {
         // Without a wall too: a muscle that can't have a bladder has none.
-        assert_eq!(BladderElasticity.reshape(&cylinder(), &[0.0]).unwrap(), Reshaped::unchanged(&cylinder()));
-        assert!(BladderElasticity.reshape(&cylinder(), &[3e5]).is_err());
-        assert!(BladderElasticity.reshape(&pleated(), &[3e5]).is_err());
+        assert_eq!(with(&BladderElasticity, &[0.0], &cylinder()).unwrap(), Parts::of(&cylinder()));
+        assert!(with(&BladderElasticity, &[3e5], &cylinder()).is_err());
+        assert!(with(&BladderElasticity, &[3e5], &pleated()).is_err());
         let stated = cylinder().with(Parameter::Wall, 0.002).unwrap().with(Parameter::C10, 2e5).unwrap();
-        assert_eq!(BladderElasticity.reshape(&stated, &[0.0]).unwrap(), Reshaped::unchanged(&stated));
-        let other = BladderElasticity.reshape(&stated, &[3e5]).unwrap().muscle;
-        assert_eq!(other.get(Parameter::C10), Some(3e5));
+        assert_eq!(with(&BladderElasticity, &[0.0], &stated).unwrap(), Parts::of(&stated));
+        let other = with(&BladderElasticity, &[3e5], &stated).unwrap();
+        assert_eq!(other.rubber.unwrap().c10, 3e5);
     }
 }

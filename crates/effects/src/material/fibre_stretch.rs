@@ -1,9 +1,11 @@
 //! Fibre stretch: the fibres are not inextensible (Daerden 1999 for the PPAM, Davis 2003 for the braid; catalogue E1, E2 and B3).
 
-use bulge_muscles::{Kind, Muscle, MuscleError, Parameter};
+use bulge_fibre::{Jet, Parts};
+use bulge_muscles::{Force, Kind, MuscleError, Quantity, check};
+use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::PERCENT_PER_KILONEWTON;
 
@@ -67,31 +69,27 @@ impl Effect for FibreStretch {
 }
 
 impl ShapeEffect for FibreStretch {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        // Fibres that don't stretch have no stiffness: there is no derivative by it.
-        if theta[0] == 0.0 {
-            return Ok(Reshaped::unchanged(muscle));
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        let compliance = theta[0];
+        // Fibres that don't stretch are solved in another way, which knows of no stretch.
+        if compliance.value() == 0.0 {
+            return Ok(());
         }
-        let counted = if muscle.kind() == Kind::Braided && muscle.fibres().is_none() {
-            muscle.with(Parameter::Fibres, ASSUMED_FIBRES)?
-        } else {
-            muscle.clone()
-        };
-        // The stiffness of a continuous membrane is that of its whole circumference.
-        let number = counted.fibres().map_or(1.0, f64::from);
-        let stiffness = 1.0 / (theta[0] * number);
-        Ok(Reshaped {
-            muscle: counted.with(Parameter::FibreStiffness, stiffness)?,
-            moves: vec![(0, Parameter::FibreStiffness, -stiffness / theta[0])],
-        })
+        check::positive("fibre.stiffness", Force::from_si(compliance.value().recip()))?;
+        // Tension and stress are told of one fibre.
+        if parts.kind == Kind::Braided && parts.fibres.is_none() {
+            parts.fibres = Some(Jet::from(ASSUMED_FIBRES));
+        }
+        parts.compliance = compliance;
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{cylinder, force, pleated};
-    use bulge_muscles::preset;
+    use crate::geometry::bench::{cylinder, force, pleated, with};
+    use bulge_muscles::{Parameter, preset};
 
     #[test]
     fn forces_of_an_independent_solution() {
@@ -101,9 +99,9 @@ mod tests {
             (12.3e3, [7237.0, 5352.0, 4031.0, 2885.0, 1596.0]),
             (8.2e3, [6443.0, 5057.0, 3917.0, 2840.0, 1578.0]),
         ] {
-            let elastic = FibreStretch.reshape(&pleated(), &[1.0 / (40.0 * each)]).unwrap();
+            let elastic = with(&FibreStretch, &[1.0 / (40.0 * each)], &pleated()).unwrap();
             for (contraction, expected) in at.into_iter().zip(forces) {
-                let found = force(&elastic.muscle, 3.0, contraction);
+                let found = force(&elastic, 3.0, contraction);
                 assert!((found - expected).abs() < 0.6, "{each} {contraction}: {found} {expected}");
             }
         }
@@ -111,24 +109,19 @@ mod tests {
 
     #[test]
     fn one_fibre_has_its_part_of_the_stiffness() {
-        let elastic = FibreStretch.reshape(&pleated(), &[2e-6]).unwrap();
-        let [(0, Parameter::FibreStiffness, slope)] = elastic.moves[..] else {
-            panic!("{:?}", elastic.moves)
-        };
-        assert!((elastic.muscle.get(Parameter::FibreStiffness).unwrap() / 12_500.0 - 1.0).abs() < 1e-14);
-        // -1/(c^2 n)
-        assert!((slope / (-1.0 / (4e-12 * 40.0)) - 1.0).abs() < 1e-14);
-        let continuous = FibreStretch.reshape(&preset("ppam-1").unwrap(), &[2e-6]).unwrap().muscle;
-        assert!((continuous.get(Parameter::FibreStiffness).unwrap() / 5e5 - 1.0).abs() < 1e-14);
+        let elastic = with(&FibreStretch, &[2e-6], &pleated()).unwrap();
+        assert_eq!((elastic.compliance, elastic.fibres), (2e-6, Some(40.0)));
+        let continuous = with(&FibreStretch, &[2e-6], &preset("ppam-1").unwrap()).unwrap();
+        assert_eq!((continuous.compliance, continuous.fibres), (2e-6, None));
     }
 
     /// Catalogue E2: dF = -4 pi^2 p^2 cos(theta)/(k^4 K) to first order, with 1/k = r0/sin(alpha0).
     #[test]
     fn a_braid_stretches_whatever_its_count() {
         let (muscle, compliance, contraction) = (cylinder(), 1e-8, 0.1);
-        let elastic = FibreStretch.reshape(&muscle, &[compliance]).unwrap().muscle;
+        let elastic = with(&FibreStretch, &[compliance], &muscle).unwrap();
         let counted = muscle.with(Parameter::Fibres, 48.0).unwrap();
-        let again = FibreStretch.reshape(&counted, &[compliance]).unwrap().muscle;
+        let again = with(&FibreStretch, &[compliance], &counted).unwrap();
         let found = force(&elastic, 3.0, contraction) - force(&muscle, 3.0, contraction);
         assert!((force(&elastic, 3.0, contraction) / force(&again, 3.0, contraction) - 1.0).abs() < 1e-12);
         let (s, c) = 25.0_f64.to_radians().sin_cos();
@@ -140,8 +133,8 @@ mod tests {
     #[test]
     fn no_compliance_is_the_same_muscle() {
         for muscle in [pleated(), cylinder()] {
-            assert_eq!(FibreStretch.reshape(&muscle, &[0.0]).unwrap(), Reshaped::unchanged(&muscle));
-            assert!(FibreStretch.reshape(&muscle, &[-1e-6]).is_err());
+            assert_eq!(with(&FibreStretch, &[0.0], &muscle).unwrap(), Parts::of(&muscle));
+            assert!(with(&FibreStretch, &[-1e-6], &muscle).is_err());
         }
     }
 }

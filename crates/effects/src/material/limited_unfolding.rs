@@ -1,9 +1,11 @@
 //! Limited unfolding: the cloth of a pleated muscle unfolds only so far and then stretches (S1, section 2; catalogue G6).
 
-use bulge_muscles::{Kind, Length, LineStiffness, Muscle, MuscleError, Parameter, Quantity, Unfolding};
+use bulge_fibre::{Jet, Parts, TautCloth};
+use bulge_muscles::{Kind, Length, LineStiffness, MuscleError, Parameter, Quantity, check};
+use bulge_numerics::Real;
 
 use crate::card::{Card, Evidence, Group, Needs, ParameterCard, Parity, Signature, Twin};
-use crate::effect::{Action, Effect, Reshaped, ShapeEffect};
+use crate::effect::{Action, Effect, ShapeEffect};
 use crate::mechanism::{Form, Mechanism};
 use crate::unit::{KILONEWTON_PER_METRE, MILLIMETRE};
 
@@ -60,35 +62,36 @@ impl Effect for LimitedUnfolding {
 }
 
 impl ShapeEffect for LimitedUnfolding {
-    fn reshape(&self, muscle: &Muscle, theta: &[f64]) -> Result<Reshaped, MuscleError> {
-        if theta[0] == 0.0 {
-            return Ok(Reshaped::unchanged(muscle));
+    fn reshape(&self, theta: &[Jet], parts: &mut Parts<Jet>) -> Result<(), MuscleError> {
+        let [stiffness, radius] = [theta[0], theta[1]];
+        if stiffness.value() == 0.0 {
+            return Ok(());
         }
-        let cloth = Unfolding::new(LineStiffness::from_si(theta[0]), Length::from_si(theta[1]))?;
-        Ok(Reshaped {
-            muscle: muscle.clone().with_unfolding(cloth),
-            moves: vec![(0, Parameter::HoopStiffness, 1.0), (1, Parameter::UnfoldedRadius, 1.0)],
-        })
+        let stiff = LineStiffness::from_si(stiffness.value());
+        check::positive("effects.limited-unfolding.hoop_stiffness", stiff)?;
+        check::positive("effects.limited-unfolding.unfolded_radius", Length::from_si(radius.value()))?;
+        parts.cloth = Some(TautCloth { stiffness, radius });
+        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bench::{force, pleated};
+    use crate::geometry::bench::{force, pleated, with};
 
     #[test]
     fn it_acts_only_beyond_its_radius() {
         // The equator is at 44.8 mm at 20 %, at 53.6 mm at 40 % (catalogue G5).
-        let cloth = LimitedUnfolding.reshape(&pleated(), &[8e4, 0.0526]).unwrap();
-        let part = |contraction| force(&cloth.muscle, 2.0, contraction) / force(&pleated(), 2.0, contraction);
+        let cloth = with(&LimitedUnfolding, &[8e4, 0.0526], &pleated()).unwrap();
+        let part = |contraction| force(&cloth, 2.0, contraction) / force(&pleated(), 2.0, contraction);
         assert!((part(0.2) - 1.0).abs() < 1e-9 && (part(0.3) - 1.0).abs() < 1e-9);
         assert!(part(0.4) < 0.99, "{}", part(0.4));
-        let early = LimitedUnfolding.reshape(&pleated(), &[8e4, 0.040]).unwrap().muscle;
+        let early = with(&LimitedUnfolding, &[8e4, 0.040], &pleated()).unwrap();
         assert!(force(&early, 2.0, 0.2) < 0.99 * force(&pleated(), 2.0, 0.2));
         // Soft cloth acts in proportion to its stiffness.
         let soft = |stiffness| {
-            let soft = LimitedUnfolding.reshape(&pleated(), &[stiffness, 0.040]).unwrap().muscle;
+            let soft = with(&LimitedUnfolding, &[stiffness, 0.040], &pleated()).unwrap();
             force(&soft, 2.0, 0.25) - force(&pleated(), 2.0, 0.25)
         };
         assert!((soft(20.0) / soft(10.0) - 2.0).abs() < 1e-2);
@@ -96,14 +99,12 @@ mod tests {
 
     #[test]
     fn both_numbers_are_set_together() {
-        let cloth = LimitedUnfolding.reshape(&pleated(), &[8e4, 0.05]).unwrap();
-        assert_eq!(cloth.muscle.get(Parameter::HoopStiffness), Some(8e4));
-        assert_eq!(cloth.muscle.get(Parameter::UnfoldedRadius), Some(0.05));
-        assert_eq!(cloth.moves.len(), 2);
+        let cloth = with(&LimitedUnfolding, &[8e4, 0.05], &pleated()).unwrap();
+        assert_eq!(cloth.cloth, Some(TautCloth { stiffness: 8e4, radius: 0.05 }));
         assert_eq!(
-            LimitedUnfolding.reshape(&pleated(), &[0.0, 0.05]).unwrap(),
-            Reshaped::unchanged(&pleated())
+            with(&LimitedUnfolding, &[0.0, 0.05], &pleated()).unwrap(),
+            Parts::of(&pleated())
         );
-        assert!(LimitedUnfolding.reshape(&pleated(), &[-1.0, 0.05]).is_err());
+        assert!(with(&LimitedUnfolding, &[-1.0, 0.05], &pleated()).is_err());
     }
 }

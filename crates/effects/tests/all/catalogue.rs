@@ -1,5 +1,6 @@
 //! The whole catalogue: names, cards, what `off` means, and every derivative against differences.
 
+use bulge_fibre::Parts;
 use bulge_effects::{
     Action, Balance, Card, CardDocument, Catalogue, Effect, Form, Input, Jet, LoadEffect, Mechanism, Moment,
     ParameterCard, Row, Setting, Stage, describe, overview,
@@ -288,7 +289,8 @@ fn off_changes_nothing_bit_for_bit() {
         }
         for muscle in muscles(effect.as_ref()) {
             let off: Vec<f64> = cards(effect.as_ref(), &muscle).iter().map(|card| card.off).collect();
-            assert_eq!(effect.reshape(&muscle, &off).unwrap().muscle, muscle, "{name}: {}", muscle.name());
+            let parts = Parts::of(&muscle);
+            assert_eq!(effect.reshaped(&off, &parts).unwrap(), parts, "{name}: {}", muscle.name());
             let lanes = off.iter().enumerate().map(|(i, value)| Jet::variable(*value, i)).collect::<Vec<_>>();
             for _ in 0..10 {
                 let sweep = sweep(&mut random, 12);
@@ -379,7 +381,7 @@ fn check_derivatives(effect: &dyn Effect, muscle: &Muscle, theta: &[f64], sweep:
 }
 
 #[test]
-fn moves_agree_with_differences() {
+fn parts_move_as_differences_say() {
     let mut random = Random::new(0x30FE, 0);
     for effect in effects() {
         let (effect, name) = (effect.as_ref(), effect.card().name.to_owned());
@@ -387,32 +389,30 @@ fn moves_agree_with_differences() {
         let mut reshaped = 0;
         for muscle in muscles(effect) {
             let cards = cards(effect, &muscle);
+            let parts = Parts::of(&muscle);
             for _ in 0..5 {
                 let theta: Vec<f64> = cards.iter().map(|card| inside(&mut random, card)).collect();
+                let lanes: Vec<Jet> = theta.iter().enumerate().map(|(i, v)| Jet::variable(*v, i)).collect();
+                let mut found = parts.still();
                 // A muscle may be unable to have the effect: no wall, no countable fibres.
-                let Ok(found) = effect.reshape(&muscle, &theta) else { continue };
-                reshaped += usize::from(found.muscle != muscle);
-                assert_eq!(
-                    is_shape && !cards.is_empty(),
-                    !found.moves.is_empty(),
-                    "{name} on {}",
-                    muscle.name()
-                );
-                for (i, parameter, derivative) in found.moves {
+                if effect.reshape(&lanes, &mut found).is_err() {
+                    continue;
+                }
+                reshaped += usize::from(found.values() != parts);
+                let numbers: Vec<Jet> = found.numbers().into_iter().map(|(_, number)| number).collect();
+                for (i, value) in theta.iter().enumerate() {
+                    let moves = numbers.iter().any(|number| number.gradient()[i] != 0.0);
+                    assert_eq!(moves, is_shape, "{name} on {}, parameter {i}", muscle.name());
                     let get = |h: f64| {
                         let mut moved = theta.clone();
                         moved[i] += h;
-                        effect
-                            .reshape(&muscle, &moved)
-                            .unwrap()
-                            .muscle
-                            .get(parameter)
-                            .map(|value| vec![value])
-                            .unwrap()
+                        let there = effect.reshaped(&moved, &parts).unwrap();
+                        there.numbers().into_iter().map(|(_, number)| number).collect::<Vec<f64>>()
                     };
-                    let difference = difference(get, 1e-4 * theta[i].abs())[0];
-                    let error = (difference / derivative - 1.0).abs();
-                    assert!(error < 1e-9, "{name}, {parameter:?}: {derivative} against {difference}");
+                    for (difference, exact) in difference(get, 1e-4 * value.abs()).iter().zip(&numbers) {
+                        let error = (difference - exact.gradient()[i]).abs();
+                        assert!(error <= 1e-9 * difference.abs(), "{name}, {i}: {exact:?}, {difference}");
+                    }
                 }
             }
         }

@@ -1,18 +1,19 @@
 //! The same question at many pressures and contractions: what doesn't depend on them is worked out once.
 
-use bulge_muscles::{Muscle, Pressure, Quantity};
+use bulge_muscles::{Pressure, Quantity};
 
 use super::straight::Straight;
 use super::{Linearised, Start};
 use crate::FibreError;
 use crate::outcome::Approach;
-use crate::problem::{Problem, Variable};
+use crate::parts::{Jet, Parts};
+use crate::problem::Problem;
 
-/// A muscle with the variables by which its answers are differentiated.
+/// The parts of a muscle with the derivatives that its answers have.
 #[derive(Debug, Clone)]
 pub struct Repeated {
     problem: Problem,
-    variables: Vec<Variable>,
+    moving: Parts<Jet>,
     /// Where there is a closed form.
     straight: Option<Straight>,
 }
@@ -21,14 +22,14 @@ pub struct Repeated {
 const REFERENCE: f64 = 1e5;
 
 impl Repeated {
-    /// Checks the ranges and the variables.
+    /// Checks the ranges.
     ///
     /// # Errors
-    /// Those of [`Problem::new`], [`FibreError::NoVariable`] and [`FibreError::AskedTwice`].
-    pub fn new(muscle: &Muscle, variables: Vec<Variable>) -> Result<Self, FibreError> {
-        let problem = Problem::new(muscle, Pressure::pa(REFERENCE))?;
-        let straight = Straight::of(&problem, &variables)?;
-        Ok(Self { problem, variables, straight })
+    /// Those of [`Problem::new`].
+    pub fn new(moving: Parts<Jet>) -> Result<Self, FibreError> {
+        let problem = Problem::new(moving.values(), Pressure::pa(REFERENCE))?;
+        let straight = Straight::of(&problem, &moving);
+        Ok(Self { problem, moving, straight })
     }
 
     /// The muscle at some pressure.
@@ -56,7 +57,7 @@ impl Repeated {
                 self.problem.at_pressure(pressure)?.linearised_from(
                     start,
                     contraction,
-                    &self.variables,
+                    &self.moving,
                     Approach::Auto,
                 )
             },
@@ -69,7 +70,7 @@ impl Repeated {
 mod tests {
     use super::*;
     use crate::linearised::Linear;
-    use bulge_muscles::{Parameter, from_toml};
+    use bulge_muscles::{Muscle, Parameter, from_toml};
 
     fn pleated(extra: &str) -> Muscle {
         let text = format!(
@@ -82,10 +83,9 @@ mod tests {
     fn close(a: &Linear, b: &Linear, [value, slope]: [f64; 2], sizes: &[f64]) {
         assert!((a.value - b.value).abs() <= value * b.value.abs(), "{a:?} {b:?}");
         let slopes = |l: &Linear| -> Vec<f64> {
-            [l.by_contraction, l.by_pressure].iter().chain(l.by_variable()).copied().collect()
+            [l.by_contraction, l.by_pressure].iter().chain(&l.by_lane).copied().collect()
         };
         let (a_slopes, b_slopes) = (slopes(a), slopes(b));
-        assert_eq!((a_slopes.len(), b_slopes.len()), (sizes.len(), sizes.len()));
         for ((x, y), size) in a_slopes.into_iter().zip(b_slopes).zip(sizes) {
             // A slope may vanish where the value doesn't.
             assert!((x - y).abs() <= slope * (y.abs() + b.value.abs() / size), "{x} {y}");
@@ -101,25 +101,27 @@ mod tests {
 
     #[test]
     fn the_short_way_is_the_usual_one() {
-        let of = |list: &[Parameter]| list.iter().map(|p| Variable::Parameter(*p)).collect::<Vec<_>>();
-        let mut stiff = of(&[Parameter::Length, Parameter::FibreStiffness, Parameter::Radius]);
-        stiff.push(Variable::Pressure);
+        use Parameter::{FibreStiffness, Fibres, Length, Radius};
         let cases = [
-            (pleated(""), of(&[Parameter::Radius, Parameter::Length, Parameter::Fibres])),
-            (pleated("[fibre]\nstiffness = \"12.5 kN\"\n[effects.pleat-depth]\ndepth = \"2 mm\""), stiff),
+            (pleated(""), vec![Radius, Length, Fibres]),
+            (
+                pleated("[fibre]\nstiffness = \"12.5 kN\"\n[effects.pleat-depth]\ndepth = \"2 mm\""),
+                vec![Length, FibreStiffness, Radius],
+            ),
             (pleated("[fibre]\nstiffness = \"12.5 kN\""), Vec::new()),
         ];
-        for (muscle, variables) in cases {
-            let repeated = Repeated::new(&muscle, variables.clone()).unwrap();
+        for (muscle, parameters) in cases {
+            let moving = Parts::seeded(&muscle, &parameters);
+            let repeated = Repeated::new(moving.clone()).unwrap();
             assert!(repeated.straight.is_some());
             let mut near: Option<Start> = None;
             for i in 0..40 {
                 let (pressure, contraction) =
                     (Pressure::kpa(100.0 + 5.0 * f64::from(i)), 0.01 + 0.009 * f64::from(i));
                 let problem = Problem::new(&muscle, pressure).unwrap();
-                let usual = problem.linearised(contraction, &variables, Approach::Auto).unwrap();
+                let usual = problem.linearised(contraction, &moving, Approach::Auto).unwrap();
                 let mut sizes = vec![1.0, pressure.si()];
-                sizes.extend(variables.iter().map(|variable| problem.value(*variable)));
+                sizes.extend(parameters.iter().filter_map(|parameter| muscle.get(*parameter)));
                 let short = repeated.linearised_from(None, pressure, contraction).unwrap();
                 all_close(&short, &usual, [1e-14, 1e-12], &sizes);
                 let moved = repeated.linearised_from(near.as_ref(), pressure, contraction).unwrap();
@@ -131,16 +133,15 @@ mod tests {
 
     #[test]
     fn errors_are_those_of_the_usual_way() {
-        let repeated = Repeated::new(&pleated(""), Vec::new()).unwrap();
+        let repeated = Repeated::new(Parts::of(&pleated("")).still()).unwrap();
         let at = |pa: f64, contraction: f64| {
             let usual = Problem::new(&pleated(""), Pressure::pa(pa))
-                .and_then(|problem| problem.linearised(contraction, &[], Approach::Auto));
+                .and_then(|problem| problem.linearised(contraction, &problem.parts().still(), Approach::Auto));
             let short = repeated.linearised_from(None, Pressure::pa(pa), contraction);
             assert_eq!(short.unwrap_err(), usual.unwrap_err());
         };
         at(-1.0, 0.1);
         at(1e5, -0.01);
         at(1e5, 1.2);
-        assert!(Repeated::new(&pleated(""), vec![Variable::Parameter(Parameter::BraidAngle)]).is_err());
     }
 }

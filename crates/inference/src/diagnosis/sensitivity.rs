@@ -429,5 +429,5 @@ fn is_absent_below(effect: &Arc<dyn Effect>, model: &Model, size: &Size, step: f
     let mut values: Vec<f64> = cards.iter().map(|card| card.of(muscle).typical).collect();
     let Some(value) = values.get_mut(size.place) else { return false };
     *value = size.off + 1e-3 * step;
-    effect.reshape(muscle, &values).is_err()
+    effect.reshaped(&values, muscle).is_err()
 }

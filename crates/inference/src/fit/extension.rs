@@ -2,7 +2,7 @@
 
 use bulge_effects::{Group, learnt};
 use bulge_model::{Chosen, Model, ModelError, ModelParameter};
-use bulge_muscles::{Dimension, FittedNumber, FittedNumbers, LearntValue, Muscle, SHAPE_EFFECTS, units};
+use bulge_muscles::{Dimension, FittedNumber, FittedNumbers, LearntValue, Muscle, Parameter, units};
 
 use crate::fit::document::{Fit, Fitted};
 
@@ -150,8 +150,13 @@ fn put(
 ) -> Result<Muscle, ModelError> {
     let card = chosen.effect.card();
     let about = |source| ModelError::Reshape { effect: card.name.to_owned(), source: Box::new(source) };
-    if SHAPE_EFFECTS.contains(&card.name) {
-        let reshaped = chosen.effect.reshape(muscle, numbers).map_err(about)?.muscle;
+    let cards = chosen.effect.parameters();
+    let own: Option<Vec<_>> = cards.iter().map(|of| Parameter::of_effect(card.name, of.key)).collect();
+    if let Some(own) = own.filter(|own| !own.is_empty()) {
+        let stated: Vec<_> = own.into_iter().zip(numbers.iter().copied()).collect();
+        // What is absent at 0 is not stated.
+        let is_off = stated.iter().any(|(_, value)| *value == 0.0);
+        let reshaped = if is_off { muscle.clone() } else { muscle.with_all(&stated).map_err(about)? };
         // In the ratio in which they were while it was fitted.
         return Ok(reshaped.with_specimens_following(muscle));
     }

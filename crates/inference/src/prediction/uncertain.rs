@@ -2,7 +2,7 @@
 
 use bulge_effects::{Catalogue, Known};
 use bulge_model::{Model, ModelParameter};
-use bulge_muscles::{FittedNumber, FittedNumbers, Muscle, SHAPE_EFFECTS};
+use bulge_muscles::{FittedNumber, FittedNumbers, Muscle, Parameter};
 
 use crate::error::InferenceError;
 use crate::fit::nuisance::with_nuisances;
@@ -102,22 +102,15 @@ impl Uncertain {
 /// Fitted effects that are in the muscle's own numbers.
 fn shapes(fitted: &FittedNumbers) -> Vec<&str> {
     let is_fitted = |name: &&str| fitted.numbers.iter().any(|number| number.effect == *name);
-    SHAPE_EFFECTS.into_iter().filter(is_fitted).collect()
+    Parameter::effects().filter(is_fitted).collect()
 }
 
 /// The model with an effect whose numbers are the muscle's own, so that it doesn't change it; none if they can't be found.
 fn with_shape(model: &Model, muscle: &Muscle, catalogue: &Catalogue, name: &str) -> Option<Model> {
     let effect = catalogue.find(name).ok()?;
-    let usual: Vec<f64> = effect.parameters().into_iter().map(|card| card.of(muscle).typical).collect();
-    let moves = effect.reshape(muscle, &usual).ok()?.moves;
-    let own = |place: usize| {
-        let is_own = |(index, _, factor): &&(usize, bulge_muscles::Parameter, f64)| {
-            *index == place && (factor - 1.0).abs() < SAME
-        };
-        moves.iter().filter(is_own).find_map(|(_, parameter, _)| muscle.get(*parameter))
-    };
-    let values: Vec<f64> = (0..usual.len()).map(own).collect::<Option<_>>()?;
-    (effect.reshape(muscle, &values).ok()?.muscle == *muscle).then_some(())?;
+    let own = |key: &str| muscle.get(Parameter::of_effect(name, key)?);
+    let values: Vec<f64> = effect.parameters().iter().map(|card| own(card.key)).collect::<Option<_>>()?;
+    (effect.reshaped(&values, muscle).ok()? == muscle.into()).then_some(())?;
     model.with(effect, Some(&values)).ok()
 }
 

@@ -1,16 +1,18 @@
 //! Interpolation is exact to its degree; rows beyond the end of equilibria leave the others as they are.
 
 use super::*;
+use crate::base::Shaped;
+use bulge_fibre::Parts;
 use bulge_muscles::{Angle, Bladder, Braided, Construction, Length, Muscle, Pressure};
 
 /// A braid of 25 degrees on rubber, its radius in mm and c10 in Pa.
-pub(crate) fn braid(radius: f64, c10: f64) -> (Muscle, Equilibrium) {
+pub(crate) fn braid(radius: f64, c10: f64) -> (Parts, Equilibrium) {
     let braided = Braided::new(Length::mm(radius), Angle::deg(25.0)).unwrap();
     let muscle = Muscle::new("b", Length::mm(120.0), Construction::Braided(braided)).unwrap();
     let rubber = Bladder::new(Pressure::pa(c10), Pressure::pa(0.0), Length::mm(1.5)).unwrap();
-    let muscle = muscle.with_bladder(rubber).unwrap();
-    let equilibrium = Equilibrium::new(&muscle, Vec::new()).unwrap();
-    (muscle, equilibrium)
+    let parts = Parts::of(&muscle.with_bladder(rubber).unwrap());
+    let equilibrium = Equilibrium::new(Shaped { parts: parts.still(), beside: Vec::new() }).unwrap();
+    (parts, equilibrium)
 }
 
 /// Nodes for rows about a pressure, from 1 % to a contraction.

@@ -1,0 +1,369 @@
+//! The parts of a muscle: what its fibre net is made of, in SI. A base muscle is a constructor of these parts, effects of the shape change them,
+//! and a [`crate::Problem`] makes them dimensionless.
+
+use bulge_muscles::{
+    Construction, Ends, FibreCount, Kind, Muscle, MuscleError, Parameter, Pressure, Quantity, check,
+};
+use bulge_numerics::{Dual, Real};
+use std::f64::consts::PI;
+
+use crate::FibreError;
+use crate::lobes::Lobes;
+use crate::net::{Bladder, Cloth, Net};
+use crate::problem::{
+    BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, PLEATED_SLENDERNESS, WIDEST_FITTING,
+};
+
+/// Derivatives that a [`Jet`] carries.
+pub const LANES: usize = 8;
+
+/// A number with its derivatives by up to [`LANES`] variables.
+pub type Jet = Dual<LANES>;
+
+/// Numbers of [`Parts`], at most.
+pub(crate) const PARTS: usize = 14;
+
+/// What a fibre net is made of, in SI; with [`Jet`]s, and how each number depends on the variables of whoever made it.
+///
+/// ```
+/// use bulge_fibre::{Approach, Jet, Parts, Problem};
+/// use bulge_muscles::{Pressure, preset};
+///
+/// // How the force depends on the depth of the pleats.
+/// let mut parts = Parts::of(&preset("ppam-2-r16")?);
+/// parts.depth = 0.002;
+/// let mut moving: Parts<Jet> = parts.still();
+/// moving.depth = Jet::variable(0.002, 0);
+/// let problem = Problem::new(parts, Pressure::bar(2.0))?;
+/// let found = problem.linearised(0.1, &moving, Approach::Auto)?;
+/// assert!(found.force_n.by_lane[0] > 0.0); // N/m
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parts<D = f64> {
+    /// The family, which sets the ranges that are computed, and whether the reference radius is that of the fittings.
+    pub kind: Kind,
+    /// What holds the ends.
+    pub ends: Ends,
+    /// Whether the cloth between the fibres is flat, so that a cross-section is a polygon; else it is a circle.
+    pub is_polygon: bool,
+    /// Unpressurised length l0 \[m\].
+    pub length: D,
+    /// Reference radius R \[m\]: of a pleated muscle that of the fibres at the fittings, of a braid that at rest.
+    pub radius: D,
+    /// Radius of a braid at the fittings, where it is other than at rest \[m\].
+    pub fitting: Option<D>,
+    /// Angle between fibre and axis at rest \[rad\].
+    pub angle: D,
+    /// Number of fibres, if they are counted.
+    pub fibres: Option<D>,
+    /// Strain of all fibres together over their tension, 1/(n EA) \[1/N\]; 0: they don't stretch.
+    pub compliance: D,
+    /// How far outside the fibres the pressure acts \[m\]: at the crests of pleats; negative: inside, at the inner face of a wall.
+    pub depth: D,
+    /// Thickness of the wall of a braid \[m\].
+    pub wall: Option<D>,
+    /// Circumference of cloth that bulges in a lobe between every two fibres \[m\].
+    pub lobes: Option<D>,
+    /// Rubber that follows the net.
+    pub rubber: Option<Rubber<D>>,
+    /// Cloth that stops unfolding.
+    pub cloth: Option<TautCloth<D>>,
+}
+
+/// A rubber tube that follows the net: W = c10 (I1 - 3) + c01 (I2 - 3), incompressible (Mooney and Rivlin).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rubber<D = f64> {
+    /// First constant \[Pa\].
+    pub c10: D,
+    /// Second constant \[Pa\].
+    pub c01: D,
+    /// Thickness at rest \[m\].
+    pub wall: D,
+}
+
+/// Cloth that is taut from a radius on: energy K (2 pi (r - r_u))^2/(4 pi r_u) per meridian length beyond it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TautCloth<D = f64> {
+    /// Hoop stiffness K \[N/m\].
+    pub stiffness: D,
+    /// Radius r_u from which it is taut \[m\].
+    pub radius: D,
+}
+
+impl<D: Real> Parts<D> {
+    /// The parts of a muscle, with the value (and derivatives) of each of its parameters from `number`.
+    fn with_numbers(muscle: &Muscle, number: impl Fn(Parameter, f64) -> D) -> Self {
+        let get = |parameter| muscle.get(parameter).map(|value| number(parameter, value));
+        let own = |parameter| get(parameter).filter(|_| muscle.is_stated(parameter));
+        let or_0 = |number: Option<D>| number.unwrap_or(D::from(0.0));
+        let is_pleated = muscle.is_pleated();
+        let fibres = get(Parameter::Fibres);
+        let all = fibres.unwrap_or(D::from(1.0));
+        let cloth = get(Parameter::HoopStiffness).zip(get(Parameter::UnfoldedRadius));
+        let (ends, is_polygon) = match muscle.construction() {
+            Construction::Pleated(pleated) => {
+                (Ends::Clamped, matches!(pleated.fibres(), FibreCount::Discrete(_)))
+            }
+            Construction::Braided(braided) => (braided.ends(), false),
+        };
+        let wall = get(Parameter::Wall);
+        // Gas on the inner face of the wall follows the wall.
+        let gas = own(Parameter::GasWall).or(wall.filter(|_| muscle.gas_wall().is_some()));
+        let rubber = muscle.bladder().map(|rubber| Rubber {
+            c10: or_0(get(Parameter::C10)),
+            c01: or_0(get(Parameter::C01)),
+            // A bladder of another thickness than that of the muscle's wall doesn't follow it.
+            wall: wall
+                .filter(|_| muscle.wall() == Some(rubber.wall()))
+                .unwrap_or(D::from(rubber.wall().si())),
+        });
+        Self {
+            kind: muscle.kind(),
+            ends,
+            is_polygon,
+            length: or_0(get(Parameter::Length)),
+            radius: or_0(get(Parameter::Radius)),
+            fitting: own(Parameter::FittingRadius).filter(|_| !is_pleated),
+            angle: or_0(get(Parameter::BraidAngle).or(get(Parameter::Misalignment))),
+            fibres,
+            compliance: or_0(get(Parameter::FibreStiffness).map(|one| D::from(1.0) / (one * all))),
+            depth: or_0(get(Parameter::PleatDepth).or(gas.map(|wall| -wall))),
+            wall,
+            lobes: get(Parameter::ClothCircumference),
+            rubber,
+            cloth: cloth.map(|(stiffness, radius)| TautCloth { stiffness, radius }),
+        }
+    }
+}
+
+impl From<&Muscle> for Parts {
+    fn from(muscle: &Muscle) -> Self {
+        Self::of(muscle)
+    }
+}
+
+impl From<&Self> for Parts {
+    fn from(parts: &Self) -> Self {
+        parts.clone()
+    }
+}
+
+impl Parts<Jet> {
+    /// The parts of a muscle with derivatives by some of its parameters, each in its lane. Parameters beyond [`LANES`], or that the
+    /// muscle doesn't have, carry none; the number of fibres counts as continuous.
+    #[must_use]
+    pub fn seeded(muscle: &Muscle, parameters: &[Parameter]) -> Self {
+        let lane = |parameter| parameters.iter().position(|other| *other == parameter);
+        Self::with_numbers(muscle, |parameter, value| match lane(parameter) {
+            Some(lane) => Jet::variable(value, lane),
+            None => Jet::from(value),
+        })
+    }
+}
+
+impl Parts {
+    /// The parts of a muscle as its file states them.
+    #[must_use]
+    pub fn of(muscle: &Muscle) -> Self {
+        Self::with_numbers(muscle, |_, value| value)
+    }
+
+    /// The same without derivatives by anything.
+    #[must_use]
+    pub fn still(&self) -> Parts<Jet> {
+        self.map(|_, number| Jet::from(number))
+    }
+
+    /// Refuses what no problem is made of: walls that leave no room for gas inside the braid and its fittings.
+    ///
+    /// # Errors
+    /// [`MuscleError::WallTooThick`].
+    pub fn check(&self) -> Result<(), MuscleError> {
+        let fitting = self.fitting.unwrap_or(self.radius);
+        let walls = [("wall", self.wall.unwrap_or(0.0), self.radius), {
+            ("effects.wall-thickness", -self.depth, self.radius.min(fitting))
+        }];
+        match walls.into_iter().find(|(_, wall, radius)| wall >= radius) {
+            Some((key, wall_m, radius_m)) => Err(MuscleError::WallTooThick { key, wall_m, radius_m }),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses what is out of the ranges that are computed.
+    pub(crate) fn check_ranges(&self) -> Result<(), FibreError> {
+        let end_m = self.fitting.unwrap_or(self.radius);
+        if let Some(cloth) = self.cloth.filter(|cloth| cloth.radius < end_m) {
+            return Err(FibreError::ClothTooNarrow { taut_m: cloth.radius, end_m });
+        }
+        let inside = |what, value: f64, [low, high]: [f64; 2]| {
+            // A ratio of two decimal lengths may miss a round limit by rounding.
+            let slack = 1e-9 * high;
+            if value >= low - slack && value <= high + slack {
+                Ok(())
+            } else {
+                Err(FibreError::OutOfRange { what, value, low, high })
+            }
+        };
+        let slenderness = self.length / self.radius;
+        if let Some(circumference) = self.lobes {
+            // The lobes form one circle of the cloth's circumference; at the fitting they must be further in.
+            let taut_m = circumference / (2.0 * PI);
+            let end_m = self.radius + self.depth;
+            if taut_m <= end_m {
+                return Err(FibreError::ClothTooNarrow { taut_m, end_m });
+            }
+            let fibres = self.fibres.unwrap_or(0.0);
+            inside("number of fibres with lobes between them", fibres, LOBED_FIBRES)?;
+            let length = fibres * self.length / taut_m;
+            let range = [0.0, LOBED_LENGTH];
+            inside("number of fibres times length over radius of the open lobes", length, range)?;
+        }
+        let degrees = self.angle.to_degrees();
+        match (self.kind, self.ends) {
+            (Kind::Pleated, _) if self.angle == 0.0 => {
+                inside("slenderness l0/R", slenderness, PLEATED_SLENDERNESS)
+            }
+            (Kind::Pleated, _) => {
+                let range = [PLEATED_SLENDERNESS[0], BRAIDED_SLENDERNESS[1]];
+                inside("slenderness l0/R (with misaligned fibres)", slenderness, range)?;
+                inside("misalignment in degrees", degrees, [-BRAID_ANGLE[1], BRAID_ANGLE[1]])
+            }
+            (Kind::Braided, Ends::Clamped) => {
+                inside("length l0/r0", slenderness, BRAIDED_SLENDERNESS)?;
+                inside("fitting radius over the braid radius", end_m / self.radius, [0.2, 2.0])?;
+                inside("braid angle in degrees", degrees, BRAID_ANGLE)?;
+                let widest_m = self.radius / self.angle.sin();
+                if end_m > WIDEST_FITTING * widest_m {
+                    return Err(FibreError::FittingTooWide { end_m, widest_m });
+                }
+                Ok(())
+            }
+            (Kind::Braided, Ends::Cylinder) => Ok(()),
+        }
+    }
+}
+
+impl<D: Copy> Parts<D> {
+    /// The same with every number changed, in a fixed order; the names are those of the fields.
+    pub fn map<E>(&self, mut f: impl FnMut(&'static str, D) -> E) -> Parts<E> {
+        let fitting = |f: &mut dyn FnMut(&'static str, D) -> E| self.fitting.map(|d| f("fitting", d));
+        Parts {
+            kind: self.kind,
+            ends: self.ends,
+            is_polygon: self.is_polygon,
+            length: f("length", self.length),
+            radius: f("radius", self.radius),
+            fitting: fitting(&mut f),
+            angle: f("angle", self.angle),
+            fibres: self.fibres.map(|d| f("fibres", d)),
+            compliance: f("compliance", self.compliance),
+            depth: f("depth", self.depth),
+            wall: self.wall.map(|d| f("wall", d)),
+            lobes: self.lobes.map(|d| f("lobes", d)),
+            rubber: self.rubber.map(|rubber| Rubber {
+                c10: f("rubber.c10", rubber.c10),
+                c01: f("rubber.c01", rubber.c01),
+                wall: f("rubber.wall", rubber.wall),
+            }),
+            cloth: self.cloth.map(|cloth| TautCloth {
+                stiffness: f("cloth.stiffness", cloth.stiffness),
+                radius: f("cloth.radius", cloth.radius),
+            }),
+        }
+    }
+
+    /// Its numbers with their names, in the order of [`Parts::map`].
+    #[must_use]
+    pub fn numbers(&self) -> Vec<(&'static str, D)> {
+        let mut numbers = Vec::with_capacity(PARTS);
+        self.map(|name, number| numbers.push((name, number)));
+        numbers
+    }
+
+}
+
+/// Whether a number carries a derivative.
+fn moves(number: &Jet) -> bool {
+    number.gradient().iter().any(|slope| *slope != 0.0)
+}
+
+impl Parts<Jet> {
+    /// Sets the radius that the fibres have at the fittings: of a pleated muscle its radius, of a braid another one than at rest.
+    pub fn set_fitting(&mut self, radius: Jet) {
+        match self.kind {
+            Kind::Pleated => self.radius = radius,
+            // Fittings that follow the braid go on following where they are as wide.
+            Kind::Braided if self.fitting.is_none() && radius.value() == self.radius.value() && !moves(&radius) => {}
+            Kind::Braided => self.fitting = Some(radius),
+        }
+    }
+
+    /// Sets a constant of the rubber, which is that of the wall if there is none yet. At 0 the muscle keeps what it states.
+    ///
+    /// # Errors
+    /// If the constant is negative or not finite, or a wall is needed and not known; `key` is where it stands in a muscle file.
+    pub fn set_rubber(
+        &mut self,
+        key: &'static str,
+        constant: Jet,
+        which: impl Fn(&mut Rubber<Jet>) -> &mut Jet,
+    ) -> Result<(), MuscleError> {
+        check::not_negative(key, Pressure::pa(constant.value()))?;
+        if constant.value() == 0.0 && (self.rubber.is_some() || !moves(&constant)) {
+            return Ok(());
+        }
+        let Some(wall) = self.rubber.map(|rubber| rubber.wall).or(self.wall) else {
+            // What isn't there yet needs no wall.
+            return if constant.value() == 0.0 { Ok(()) } else { Err(MuscleError::NoWall) };
+        };
+        let none = Jet::from(0.0);
+        *which(self.rubber.get_or_insert(Rubber { c10: none, c01: none, wall })) = constant;
+        Ok(())
+    }
+}
+
+impl<D: Real> Parts<D> {
+    /// The values without derivatives.
+    #[must_use]
+    pub fn values(&self) -> Parts {
+        self.map(|_, number| number.value())
+    }
+
+    /// Number of fibres over which tension and stiffness are counted; 1 where the muscle doesn't say or is continuous.
+    pub(crate) fn fibre_number(&self) -> D {
+        self.fibres.unwrap_or(D::from(1.0))
+    }
+
+    /// The dimensionless net under a pressure \[Pa\]: lengths over R, forces over p R^2.
+    pub(crate) fn net(&self, pressure: D) -> Net<D> {
+        let radius = self.radius;
+        // Fibres at an angle make the unpressurised muscle a braid of radius R. The law of pinned crossings needs a second
+        // family, or cloth that takes the torque: a lone family would follow geodesics.
+        let (sin, cos) = self.angle.sin_cos();
+        let mut net = Net {
+            half_fibre: self.length / (radius * 2.0) / cos,
+            cos_rest: cos,
+            sin2_rest: sin * sin,
+            turn: sin,
+            end_radius: self.fitting.map_or(D::from(1.0), |fitting| fitting / radius),
+            depth: self.depth / radius,
+            compliance: pressure * radius * radius * self.compliance,
+            ..Net::plain().lift_to()
+        };
+        if let Some(n) = self.fibres.filter(|_| self.is_polygon) {
+            net.area_factor = n * (D::from(2.0 * PI) / n).sin_cos().0 / (2.0 * PI);
+            net.lobes = self.lobes.map(|circumference| Lobes::new(n, circumference / radius));
+        }
+        net.bladder = self.rubber.map(|rubber| {
+            // 2 pi r0 t W per axial length at rest; cos(alpha0) of that per fibre length.
+            let scale = rubber.wall * cos * (2.0 * PI) / (radius * pressure);
+            Bladder { c10: scale * rubber.c10, c01: scale * rubber.c01 }
+        });
+        net.cloth = self.cloth.map(|cloth| Cloth {
+            stiffness: cloth.stiffness / (pressure * radius),
+            radius: cloth.radius / radius,
+        });
+        net
+    }
+}
