@@ -1,6 +1,6 @@
 //! Exact derivatives against differences of solutions.
 
-use bulge_fibre::{ADIABATIC, AMBIENT_PRESSURE, Approach, Gradient, Problem, Variable};
+use bulge_fibre::{ADIABATIC, AMBIENT_PRESSURE, Approach, LANES, Parts, Problem};
 use bulge_muscles::{Muscle, Parameter, Pressure, Quantity};
 
 use crate::check::{Check, Claim, Tally, Trouble};
@@ -54,7 +54,7 @@ fn compare(
     approach: Approach,
 ) -> Result<(), Trouble> {
     let problem = Problem::new(muscle, PRESSURE)?;
-    let Gradient { by_contraction, by_variable } = problem.gradient(contraction, approach)?;
+    let gradient = problem.gradient(contraction, approach)?;
     let found = problem.follow(contraction, approach)?;
     let read = |problem: &Problem, eps: f64| {
         problem.follow(eps, approach).map(|found| [found.force_n, found.volume_m3])
@@ -70,20 +70,22 @@ fn compare(
     };
     let difference =
         derivative(|eps| read(&problem, eps), contraction, 0.01 * stride(muscle) * contraction.abs())?;
-    add("contraction", by_contraction, contraction, difference);
-    for (variable, exact) in by_variable {
-        let Some((value, step)) = step_of(muscle, variable) else { continue };
-        let outputs = |value: f64| Ok::<_, Trouble>(read(&changed(muscle, variable, value)?, contraction)?);
-        add(&variable.to_string(), exact, value, derivative(outputs, value, step)?);
+    add("contraction", gradient.by_contraction, contraction, difference);
+    let pressure = PRESSURE.to_pa();
+    let outputs =
+        |value: f64| Ok::<_, Trouble>(read(&Problem::new(muscle, Pressure::pa(value))?, contraction)?);
+    add("pressure", gradient.by_pressure, pressure, derivative(outputs, pressure, 0.01 * pressure)?);
+    for parameter in Parameter::ALL {
+        let Some(exact) = gradient.by(muscle, parameter) else { continue };
+        let Some((value, step)) = step_of(muscle, parameter) else { continue };
+        let outputs = |value: f64| Ok::<_, Trouble>(read(&changed(muscle, parameter, value)?, contraction)?);
+        add(parameter.name(), exact, value, derivative(outputs, value, step)?);
     }
     Ok(())
 }
 
-/// Value and step of a variable; none if it is 0, or a count too small to be moved by whole numbers.
-fn step_of(muscle: &Muscle, variable: Variable) -> Option<(f64, f64)> {
-    let Variable::Parameter(parameter) = variable else {
-        return Some((PRESSURE.to_pa(), 0.01 * PRESSURE.to_pa()));
-    };
+/// Value and step of a parameter; none if it is 0, or a count too small to be moved by whole numbers.
+fn step_of(muscle: &Muscle, parameter: Parameter) -> Option<(f64, f64)> {
     let value = muscle.get(parameter).unwrap_or(0.0);
     match parameter {
         Parameter::Fibres => (value >= 20.0).then_some((value, 1.0)),
@@ -93,15 +95,10 @@ fn step_of(muscle: &Muscle, variable: Variable) -> Option<(f64, f64)> {
     }
 }
 
-/// The problem with another value of a variable.
-fn changed(muscle: &Muscle, variable: Variable, value: f64) -> Result<Problem, Trouble> {
-    Ok(match variable {
-        Variable::Pressure => Problem::new(muscle, Pressure::pa(value))?,
-        Variable::Parameter(Parameter::Fibres) => {
-            Problem::new(&muscle.with(Parameter::Fibres, value.round())?, PRESSURE)?
-        }
-        Variable::Parameter(parameter) => Problem::new(&muscle.with(parameter, value)?, PRESSURE)?,
-    })
+/// The problem with another value of a parameter.
+fn changed(muscle: &Muscle, parameter: Parameter, value: f64) -> Result<Problem, Trouble> {
+    let value = if parameter == Parameter::Fibres { value.round() } else { value };
+    Ok(Problem::new(&muscle.with(parameter, value)?, PRESSURE)?)
 }
 
 /// All outputs of the linearised answer by the contraction, the pressure and every parameter, from the start of a neighbour.
@@ -116,14 +113,9 @@ pub(crate) fn linearised() -> Check {
     .run(|tally| {
         for (name, muscle, contraction) in every_kind()? {
             let problem = Problem::new(&muscle, PRESSURE)?;
-            let variables: Vec<Variable> = Variable::all()
-                .filter(|variable| match variable {
-                    Variable::Pressure => true,
-                    Variable::Parameter(parameter) => muscle.get(*parameter).is_some(),
-                })
-                .collect();
-            let near = problem.linearised(1.001 * contraction, &variables, Approach::Auto)?;
-            let here = problem.linearised_from(near.start(), contraction, &variables, Approach::Auto)?;
+            let still = problem.parts().still();
+            let near = problem.linearised(1.001 * contraction, &still, Approach::Auto)?;
+            let here = problem.linearised_from(near.start(), contraction, &still, Approach::Auto)?;
             let found = problem.follow(contraction, Approach::Auto)?;
             let values = outputs(&problem, contraction)?;
             tally.relative(here.force_n.value, found.force_n, || format!("force, {name}"));
@@ -138,14 +130,28 @@ pub(crate) fn linearised() -> Check {
                 }
             };
             add("contraction", linear.map(|l| l.by_contraction), contraction, difference);
-            for (place, variable) in variables.into_iter().enumerate() {
-                let exact = linear.map(|l| l.by_variable()[place]);
-                if let Some((value, step)) = step_of(&muscle, variable) {
-                    let at = |value: f64| outputs(&changed(&muscle, variable, value)?, contraction);
-                    add(&variable.to_string(), exact, value, derivative(at, value, step)?);
-                }
-                if variable == Variable::Pressure {
-                    add("pressure, always", linear.map(|l| l.by_pressure), PRESSURE.to_pa(), exact);
+            let pressure = PRESSURE.to_pa();
+            let at = |value: f64| outputs(&Problem::new(&muscle, Pressure::pa(value))?, contraction);
+            let difference = derivative(at, pressure, 0.01 * pressure)?;
+            add("pressure", linear.map(|l| l.by_pressure), pressure, difference);
+            let has = |parameter: &Parameter| muscle.get(*parameter).is_some();
+            let parameters: Vec<Parameter> = Parameter::ALL.into_iter().filter(has).collect();
+            for parameters in parameters.chunks(LANES) {
+                let moving = Parts::seeded(&muscle, parameters);
+                let near = problem.linearised(1.001 * contraction, &moving, Approach::Auto)?;
+                let here = problem.linearised_from(near.start(), contraction, &moving, Approach::Auto)?;
+                let linear =
+                    [here.force_n, here.equator_force_n, here.mid_radius_m, here.volume_polygon_m3];
+                for (lane, &parameter) in parameters.iter().enumerate() {
+                    let of_pleated = parameter == Parameter::FittingRadius && muscle.is_pleated();
+                    if !muscle.is_stated(parameter) || of_pleated {
+                        continue;
+                    }
+                    if let Some((value, step)) = step_of(&muscle, parameter) {
+                        let at = |value: f64| outputs(&changed(&muscle, parameter, value)?, contraction);
+                        let exact = linear.map(|l| l.by_lane[lane]);
+                        add(parameter.name(), exact, value, derivative(at, value, step)?);
+                    }
                 }
             }
         }
@@ -155,7 +161,7 @@ pub(crate) fn linearised() -> Check {
 
 /// Values of the linearised answer.
 fn outputs(problem: &Problem, contraction: f64) -> Result<[f64; 4], Trouble> {
-    let found = problem.linearised(contraction, &[], Approach::Auto)?;
+    let found = problem.linearised(contraction, &problem.parts().still(), Approach::Auto)?;
     Ok([
         found.force_n.value,
         found.equator_force_n.value,

@@ -1,6 +1,6 @@
 //! The force as a derivative of energy: what an equilibrium must obey, whatever carries the load.
 
-use bulge_fibre::{Approach, Given, MeridianPoint, Problem, Shape, Variable};
+use bulge_fibre::{Approach, Given, MeridianPoint, Problem, Shape};
 use bulge_muscles::{Construction, Muscle, Pressure, Quantity};
 use std::f64::consts::PI;
 
@@ -47,14 +47,12 @@ pub(crate) fn maxwell() -> Check {
         for (name, muscle, contraction) in every_kind()? {
             let problem = Problem::new(&muscle, PRESSURE)?;
             let gradient = problem.gradient(contraction, Approach::Auto)?;
-            let by_pressure =
-                gradient.by_variable.iter().find(|(variable, _)| *variable == Variable::Pressure);
-            let (_, [force, _]) = by_pressure.ok_or("no derivative with respect to the pressure")?;
+            let [force, _] = gradient.by_pressure;
             let found = problem.follow(contraction, Approach::Auto)?;
             let polygon = found.volume_polygon_m3 / found.volume_m3;
             let volume = polygon * gradient.by_contraction[1] / muscle.length().si();
-            tally.relative(*force, volume, || name.into());
-            tally.relative(*force, -found.volume_slope_m2, || format!("reported slope, {name}"));
+            tally.relative(force, volume, || name.into());
+            tally.relative(force, -found.volume_slope_m2, || format!("reported slope, {name}"));
         }
         Ok(())
     })

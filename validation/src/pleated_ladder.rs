@@ -1,6 +1,6 @@
 //! The pleated muscle of S1 against its measured force (S1 eq. 31, Table 1): how the error falls when an effect after the other is fitted.
 
-use bulge_fibre::{Approach, Problem, Variable};
+use bulge_fibre::{Approach, Parts, Problem};
 use bulge_muscles::{Fibre, Force, Length, LineStiffness, Muscle, Parameter, Pressure, Unfolding};
 use bulge_numerics::least_squares::{Bounds, Options, Residuals, minimise};
 use std::ops::Range;
@@ -91,17 +91,16 @@ impl Residuals for Misfit {
             muscle = muscle.with(*parameter, part * start).map_err(|error| error.to_string())?;
         }
         let asked = if jacobian.is_some() { &self.free[..] } else { &[] };
-        let variables: Vec<_> = asked.iter().map(|(parameter, _)| Variable::Parameter(*parameter)).collect();
+        let parameters: Vec<_> = asked.iter().map(|(parameter, _)| *parameter).collect();
+        let moving = Parts::seeded(&muscle, &parameters);
         for (i, &(bar, contraction, force)) in self.points[rows].iter().enumerate() {
             let found = Problem::new(&muscle, Pressure::bar(bar))
-                .and_then(|problem| problem.linearised(contraction, &variables, Approach::Auto))
+                .and_then(|problem| problem.linearised(contraction, &moving, Approach::Auto))
                 .map_err(|error| error.to_string())?;
             residuals[i] = scale * (found.force_n.value - force);
             if let Some(jacobian) = jacobian.as_deref_mut() {
                 let row = &mut jacobian[i * self.free.len()..][..self.free.len()];
-                for ((out, slope), (_, start)) in
-                    row.iter_mut().zip(found.force_n.by_variable()).zip(&self.free)
-                {
+                for ((out, slope), (_, start)) in row.iter_mut().zip(found.force_n.by_lane).zip(&self.free) {
                     *out = scale * slope * start;
                 }
             }

@@ -159,7 +159,8 @@ impl CurveCommand {
             let muscle = extended.muscle();
             let end = extended.range_end(pressure, self.method.approach());
             let limit = end.map_err(about_extended(muscle, pressure))?.contraction();
-            let longest = Problem::new(muscle, pressure).map_err(about(muscle, pressure))?.longest();
+            let longest =
+                Problem::new(extended.parts(), pressure).map_err(about(muscle, pressure))?.longest();
             match longest {
                 // Next to where the fibres are drawn straight the force has no limit.
                 Some(longest) if longest >= 0.0 => [longest + DRAWN_OUT * (limit - longest), limit],
@@ -192,7 +193,7 @@ fn series(
     let muscle = extended.muscle();
     let pressure = Pressure::pa(isobar.pressure_pa);
     let about = about(muscle, pressure);
-    let problem = Problem::new(muscle, pressure).map_err(&about)?;
+    let problem = Problem::new(extended.parts(), pressure).map_err(&about)?;
     let count = command.frames.min(isobar.points.len());
     let last = isobar.points.len() - 1;
     let shapes: Vec<(f64, Shape)> = (0..count)

@@ -88,7 +88,7 @@ impl ShapeCommand {
             return Err(Failure::Value { option: "--points", what });
         }
         let cloth = self.cloth.as_deref().map(|text| quantity::<Length>("--cloth", text)).transpose()?;
-        let problem = Problem::new(&muscle, pressure).map_err(about(&muscle, pressure))?;
+        let problem = Problem::new(extended.parts(), pressure).map_err(about(&muscle, pressure))?;
         let approach = self.method.approach();
         let found = if self.method == MethodArgument::Membrane {
             let shape = elements::shape(&problem, &extended, pressure, given, self.points)?;

@@ -38,11 +38,7 @@ impl Problem {
     #[must_use]
     pub fn pleated_numbers(&self, response: &Response) -> Option<PleatedNumbers> {
         let net = &self.net;
-        if net.turn != 0.0
-            || net.cloth.is_some()
-            || net.lobes.is_some()
-            || net.depth != 0.0
-        {
+        if net.turn != 0.0 || net.cloth.is_some() || net.lobes.is_some() || net.depth != 0.0 {
             return None;
         }
         let l0 = self.parts.length;

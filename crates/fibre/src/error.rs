@@ -57,12 +57,6 @@ pub enum FibreError {
         /// r0/sin(alpha0) \[m\].
         widest_m: f64,
     },
-    /// A derivative by something that the muscle doesn't have.
-    #[error("this muscle has no `{name}` to differentiate by: give it one first, with `Muscle::with`")]
-    NoVariable {
-        /// Name of the parameter.
-        name: &'static str,
-    },
     /// The contraction lies beyond the one at which the force vanishes.
     #[error(
         "no equilibrium with a pulling force at contraction {:.4} %: the limit of this muscle is {:.4} %, where the force vanishes",

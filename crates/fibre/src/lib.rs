@@ -30,7 +30,8 @@ pub use linearised::{Linear, Linearised, Repeated, Start};
 pub use outcome::Approach;
 pub use parts::{Jet, LANES, Parts, Rubber, TautCloth};
 pub use problem::{
-    BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, MOST_STRAIN, PLEATED_SLENDERNESS, Problem, WIDEST_FITTING,
+    BRAID_ANGLE, BRAIDED_SLENDERNESS, LOBED_FIBRES, LOBED_LENGTH, MOST_STRAIN, PLEATED_SLENDERNESS, Problem,
+    WIDEST_FITTING,
 };
 pub use shape::{Convergence, MeridianPoint, Method, Response, Shape};
 pub use solve::{ADIABATIC, AMBIENT_PRESSURE, Given, Gradient, RangeEnd};

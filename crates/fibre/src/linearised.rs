@@ -13,9 +13,9 @@ pub use repeated::Repeated;
 
 use crate::FibreError;
 use crate::closed_form::Near;
-use crate::outcome::{Approach, Outcome, Solution};
 use crate::net::NUMBERS;
 use crate::outcome::Follow;
+use crate::outcome::{Approach, Outcome, Solution};
 use crate::parts::{Jet, LANES, Parts};
 use crate::problem::Problem;
 use crate::shape::Convergence;

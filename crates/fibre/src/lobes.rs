@@ -307,7 +307,8 @@ mod tests {
             let r = 1.0 + bulge;
             let slope = lobes.acting_at(r).section(r).area_r;
             assert!((slope - bulge * f64::exp(-y)).abs() < 1e-10, "{y}: {bulge} {slope}");
-            let dual = lobes.map(|_, d| Dual::<1>::from(d)).bulge(Dual::from(1.0), Dual::variable(y, 0)).unwrap();
+            let dual =
+                lobes.map(|_, d| Dual::<1>::from(d)).bulge(Dual::from(1.0), Dual::variable(y, 0)).unwrap();
             let h = 1e-5;
             let difference =
                 (lobes.bulge(1.0, y + h).unwrap() - lobes.bulge(1.0, y - h).unwrap()) / (2.0 * h);

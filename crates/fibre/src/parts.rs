@@ -280,7 +280,6 @@ impl<D: Copy> Parts<D> {
         self.map(|name, number| numbers.push((name, number)));
         numbers
     }
-
 }
 
 /// Whether a number carries a derivative.
@@ -294,7 +293,8 @@ impl Parts<Jet> {
         match self.kind {
             Kind::Pleated => self.radius = radius,
             // Fittings that follow the braid go on following where they are as wide.
-            Kind::Braided if self.fitting.is_none() && radius.value() == self.radius.value() && !moves(&radius) => {}
+            Kind::Braided
+                if self.fitting.is_none() && radius.value() == self.radius.value() && !moves(&radius) => {}
             Kind::Braided => self.fitting = Some(radius),
         }
     }

@@ -238,7 +238,11 @@ impl Problem {
         let net = &self.net;
         let ends = (net.half_fibre / (1.0 + net.half_fibre)).powi(2);
         // On fittings of another radius the range of a short braid may lie far from 0.
-        let straight = if self.parts.fitting.is_some() && !self.is_cylinder() { shooting::straight_contraction(net) } else { None };
+        let straight = if self.parts.fitting.is_some() && !self.is_cylinder() {
+            shooting::straight_contraction(net)
+        } else {
+            None
+        };
         // Lobes that open early leave little to contract: about a third of their room at either end.
         let room = net.lobes.map(|lobes| (lobes.limit() - net.depth - net.end_radius) / net.half_fibre);
         straight.unwrap_or(0.0) + (0.12 * ends).min(room.map_or(f64::INFINITY, |room| 0.1 * room))

@@ -71,10 +71,13 @@ pub struct Gradient {
 }
 
 impl Gradient {
-    /// dF/da and dV/da for a parameter of the muscle whose parts were asked, by the chain rule; none if the muscle doesn't have it.
+    /// dF/da and dV/da for a parameter of the muscle whose parts were asked, by the chain rule; none if the muscle doesn't state it. The radius
+    /// of a pleated muscle is that at its fittings.
     #[must_use]
     pub fn by(&self, muscle: &Muscle, parameter: Parameter) -> Option<[f64; 2]> {
-        muscle.get(parameter)?;
+        if !muscle.is_stated(parameter) || parameter == Parameter::FittingRadius && muscle.is_pleated() {
+            return None;
+        }
         let slopes = Parts::seeded(muscle, &[parameter]).numbers();
         Some(std::array::from_fn(|i| {
             self.by_part.iter().zip(&slopes).map(|((_, by), (_, part))| by[i] * part.gradient()[0]).sum()

@@ -3,7 +3,6 @@
 //! `F = -p dV/dl` where nothing stores energy: the volume rises with the contraction as long as the muscle pulls. Rubber and fibres that stretch give energy
 //! back, and it may fall before the range ends; and a short muscle of elastic fibres that is drawn out far holds more again.
 
-
 use crate::FibreError;
 use crate::problem::Problem;
 use crate::search::{Goal, Seen};

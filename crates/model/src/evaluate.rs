@@ -354,9 +354,7 @@ impl Run<'_> {
     /// of an isometric test out of it.
     fn widen(&self, record: &Record, counts: &dyn Fn(usize) -> bool, slots: &mut Slots) {
         let Some((held, alone)) = slots.missed(self.body) else { return };
-        let there = || {
-            Equilibrium::new(self.model.shaped(self.body, &held.theta, &held.shapes).ok()?).ok()
-        };
+        let there = || Equilibrium::new(self.model.shaped(self.body, &held.theta, &held.shapes).ok()?).ok();
         let Some(equilibrium) = (alone > FEWEST_NODES).then(there).flatten() else { return };
         let levels = held.lattice.is_of_levels();
         let unsolved = Lattice::unsolved(&equilibrium, held.shapes.len(), self.model.refinement, levels);

@@ -200,11 +200,12 @@ impl Learnt {
     }
 
     /// Refuses a name that is neither among `known` nor a shape effect, with the nearest one of all.
-    pub(crate) fn check<'n>(&self, known: &[&'n str]) -> Result<(), FileError> {
+    pub(crate) fn check(&self, known: &[&str]) -> Result<(), FileError> {
         if known.contains(&self.name.as_str()) {
             return Ok(());
         }
-        let all: Vec<&'n str> = Parameter::effects().chain(known.iter().copied()).collect();
+        let mut all: Vec<&str> = Parameter::effects().collect();
+        all.extend(known);
         let instead = match nearest(&self.name, all.iter().copied()) {
             Some(near) => format!("did you mean `{near}`? An effect of your own needs its file: {OWN_FILE}"),
             None => format!(

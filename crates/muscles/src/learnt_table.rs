@@ -12,7 +12,8 @@ impl Settings<'_> {
     /// The effects in the table `[effects]` that this crate doesn't know, in the order of the file.
     pub(crate) fn learnt(&self) -> Result<Vec<Learnt>, FileError> {
         let (origin, text) = self.source();
-        let names = self.names().into_iter().filter(|(name, _)| Parameter::effects().all(|other| other != *name));
+        let names =
+            self.names().into_iter().filter(|(name, _)| Parameter::effects().all(|other| other != *name));
         let mut file: Option<Arc<SourceFile>> = None;
         let source = || Arc::new(SourceFile { origin: origin.to_owned(), text: text.to_owned() });
         names

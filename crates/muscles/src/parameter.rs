@@ -125,7 +125,9 @@ impl Parameter {
             !Self::ALL[..*i].iter().any(|other| other.effect().is_some_and(|(other, _)| other == *name))
         };
         let all = Self::ALL.into_iter().enumerate();
-        all.filter_map(|(i, parameter)| Some((i, parameter.effect()?.0))).filter(is_first).map(|(_, name)| name)
+        all.filter_map(|(i, parameter)| Some((i, parameter.effect()?.0)))
+            .filter(is_first)
+            .map(|(_, name)| name)
     }
 
     /// The SI unit; "1" for a count.

@@ -1,13 +1,13 @@
 //! The family of muscles that the axes of a plan span: the muscle at a point of the axes, and its outputs.
 
 use bulge_effects::{Catalogue, Group, Known, known};
-use bulge_fibre::{Approach, FibreError, Given, Gradient, Problem, RangeEnd, Response, Variable};
+use bulge_fibre::{Approach, FibreError, Given, Gradient, Problem, RangeEnd, Response};
 use bulge_model::MuscleWithEffects;
 use bulge_muscles::{Muscle, Parameter, Pressure, Quantity as _};
 use std::f64::consts::TAU;
 
 use crate::family_error::FamilyError;
-use crate::output::Output;
+use crate::output::{Output, Variable};
 use crate::plan::{Plan, Quantity};
 
 /// A base muscle and what its axes vary.
@@ -25,10 +25,10 @@ pub struct Family {
 #[derive(Debug, Clone)]
 pub struct Member {
     problem: Problem,
-    /// Where effects add to the force of the equilibrium.
-    extended: Option<MuscleWithEffects>,
-    /// The muscle, effects and pressure that are stated, where there are effects.
-    stated: Option<Box<(Muscle, Vec<Known>, f64)>>,
+    /// As stated.
+    muscle: Muscle,
+    /// The effects that are stated, and the muscle with them, if there are any.
+    extended: Option<(Vec<Known>, MuscleWithEffects)>,
     approach: Approach,
     /// p l0^2 a and l0^3: what makes force and volume dimensionless.
     scales: [f64; 2],
@@ -208,7 +208,7 @@ impl Family {
 
     /// Derivatives of force and volume by an axis other than the contraction, and those of the logarithms of their scales.
     fn along(&self, axis: usize, value: f64, member: &Member, exact: &Gradient) -> ([f64; 2], [f64; 2]) {
-        let muscle = member.problem.muscle();
+        let muscle = &member.muscle;
         let has = |quantity: &Quantity| self.axes.contains(quantity);
         let (length, radius) = (muscle.length().si(), muscle.end_radius().si());
         // d ln(n sin(2 pi/n))/dn and d ln(sin(2 pi/n))/dn.
@@ -250,8 +250,7 @@ impl Family {
         }
         let mut along = [0.0; 2];
         for (variable, rate) in moved {
-            let by = exact.by_variable.iter().find(|(other, _)| *other == variable);
-            let by = by.map_or([0.0; 2], |(_, by)| *by);
+            let by = by_variable(exact, muscle, variable).unwrap_or_default();
             along[0] += by[0] * rate;
             along[1] += by[1] * rate;
         }
@@ -298,21 +297,19 @@ impl Member {
             Some(n) => f64::from(n) / TAU * (TAU / f64::from(n)).sin(),
             None => 1.0,
         };
-        let (extended, stated, muscle) = if effects.is_empty() {
-            (None, None, muscle)
+        let extended = if effects.is_empty() {
+            None
         } else {
             let extended = MuscleWithEffects::new(&muscle, &effects)?;
-            let changed = extended.muscle().clone();
-            (Some(extended), Some(Box::new((muscle, effects, pressure))), changed)
+            Some((effects, extended))
         };
-        let problem = Problem::new(&muscle, Pressure::pa(pressure))?;
-        Ok(Member {
-            problem,
-            extended,
-            stated,
-            approach,
-            scales: [pressure * length * length * factor, length.powi(3)],
-        })
+        let pressure_pa = Pressure::pa(pressure);
+        let problem = match &extended {
+            Some((_, extended)) => Problem::new(extended.parts(), pressure_pa)?,
+            None => Problem::new(&muscle, pressure_pa)?,
+        };
+        let scales = [pressure * length * length * factor, length.powi(3)];
+        Ok(Self { problem, muscle, extended, approach, scales })
     }
 
     /// The problem that is solved.
@@ -327,7 +324,7 @@ impl Member {
     /// If it isn't found.
     pub fn contraction_limit(&self) -> Result<f64, FamilyError> {
         match &self.extended {
-            Some(extended) => Ok(extended.contraction_limit(self.problem.pressure(), self.approach)?),
+            Some((_, extended)) => Ok(extended.contraction_limit(self.problem.pressure(), self.approach)?),
             None => Ok(self.problem.contraction_limit(self.approach)?),
         }
     }
@@ -338,7 +335,7 @@ impl Member {
     /// If it isn't found.
     pub fn range_end(&self) -> Result<RangeEnd, FamilyError> {
         match &self.extended {
-            Some(extended) => Ok(extended.range_end(self.problem.pressure(), self.approach)?),
+            Some((_, extended)) => Ok(extended.range_end(self.problem.pressure(), self.approach)?),
             None => Ok(self.problem.range_end(self.approach)?),
         }
     }
@@ -394,12 +391,12 @@ impl Member {
     }
 
     fn response(&self, contraction: f64) -> Result<Response, FamilyError> {
-        let Some(extended) = &self.extended else {
+        let Some((_, extended)) = &self.extended else {
             return Ok(self.problem.follow(contraction, self.approach)?);
         };
         // The contraction is that from the stated length, which effects may have changed.
         let own = match extended.given(Given::Contraction(contraction)) {
-            Given::Length(length) => 1.0 - length / self.problem.muscle().length().si(),
+            Given::Length(length) => 1.0 - length / self.problem.parts().length,
             _ => contraction,
         };
         Ok(extended.complete(&self.problem.follow(own, self.approach)?)?)
@@ -413,25 +410,26 @@ impl Member {
     ) -> Result<(), FamilyError> {
         let [force_scale, volume_scale] = self.scales;
         let needs = |output: &Output| matches!(output, Output::ForceBy(_) | Output::VolumeBy(_));
-        let gradient = if outputs.iter().any(needs) && self.stated.is_none() {
+        let gradient = if outputs.iter().any(needs) && self.extended.is_none() {
             Some(self.problem.gradient(response.contraction, self.approach)?)
         } else {
             None
         };
         // The contraction is that from the stated length.
-        let length = match &self.stated {
-            Some(stated) => stated.0.length().si(),
+        let length = match &self.extended {
+            Some(_) => self.muscle.length().si(),
             None => response.length_m / (1.0 - response.contraction),
         };
         let by = |variable: Variable, which: usize| -> Result<f64, FamilyError> {
-            if let Some(stated) = &self.stated {
+            if let Some((effects, _)) = &self.extended {
                 let contraction = 1.0 - response.length_m / length;
-                return Ok(self.by_stated(stated, variable, contraction)?[which]);
+                return Ok(self.by_stated(effects, variable, contraction)?[which]);
             }
-            let of = gradient.as_ref().and_then(|g| g.by_variable.iter().find(|(v, _)| *v == variable));
-            Ok(of.map(|(_, by)| by[which]).ok_or(FibreError::NoVariable { name: name_of(variable) })?)
+            let by = gradient.as_ref().and_then(|gradient| by_variable(gradient, &self.muscle, variable));
+            by.map(|by| by[which]).ok_or(FamilyError::NoVariable { name: variable.name() })
         };
-        let radius = self.problem.muscle().end_radius().si();
+        let parts = self.problem.parts();
+        let radius = parts.fitting.unwrap_or(parts.radius);
         // Circular volume over that of the sections that carry the pressure.
         let circular = response.volume_m3 / response.volume_polygon_m3;
         for (value, output) in values.iter_mut().zip(outputs) {
@@ -463,27 +461,28 @@ impl Member {
     /// Derivatives of force and volume by a number of the stated muscle, whose effects follow it: differences of fourth order.
     fn by_stated(
         &self,
-        (muscle, effects, pressure): &(Muscle, Vec<Known>, f64),
+        effects: &[Known],
         variable: Variable,
         contraction: f64,
     ) -> Result<[f64; 2], FamilyError> {
+        let (muscle, pressure) = (&self.muscle, self.problem.pressure().si());
         let value = match variable {
-            Variable::Pressure => Some(*pressure),
+            Variable::Pressure => Some(pressure),
             // Whole numbers have no differences.
             Variable::Parameter(Parameter::Fibres) => None,
             Variable::Parameter(parameter) => muscle.get(parameter),
         };
-        let value = value.ok_or(FibreError::NoVariable { name: name_of(variable) })?;
+        let value = value.ok_or(FamilyError::NoVariable { name: variable.name() })?;
         let step = 1e-4 * value.abs().max(1e-3);
         let mut by = [0.0; 2];
         for (times, weight) in [(-2.0, 1.0), (-1.0, -8.0), (1.0, 8.0), (2.0, -1.0)] {
             let moved = value + times * step;
             let (muscle, pressure) = match variable {
                 Variable::Pressure => (muscle.clone(), moved),
-                Variable::Parameter(parameter) => (muscle.clone().with(parameter, moved)?, *pressure),
+                Variable::Parameter(parameter) => (muscle.with(parameter, moved)?, pressure),
             };
             let response =
-                Self::new(muscle, effects.clone(), pressure, self.approach)?.response(contraction)?;
+                Self::new(muscle, effects.to_vec(), pressure, self.approach)?.response(contraction)?;
             by[0] += weight * response.force_n / (12.0 * step);
             by[1] += weight * response.volume_m3 / (12.0 * step);
         }
@@ -491,9 +490,10 @@ impl Member {
     }
 }
 
-fn name_of(variable: Variable) -> &'static str {
+/// Derivatives of force and volume by a variable; none if the muscle doesn't have it.
+fn by_variable(gradient: &Gradient, muscle: &Muscle, variable: Variable) -> Option<[f64; 2]> {
     match variable {
-        Variable::Pressure => "pressure",
-        Variable::Parameter(parameter) => parameter.name(),
+        Variable::Pressure => Some(gradient.by_pressure),
+        Variable::Parameter(parameter) => gradient.by(muscle, parameter),
     }
 }

@@ -22,6 +22,12 @@ pub enum FamilyError {
     /// An effect that the muscle file states in a wrong way.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A derivative by something that the muscle doesn't have.
+    #[error("this muscle has no `{name}` to differentiate by: give it one first, with `Muscle::with`")]
+    NoVariable {
+        /// Name of the variable.
+        name: &'static str,
+    },
     /// An elastic group for a muscle without a number of fibres.
     #[error("the elastic group p sin(2 pi/n) R^2/EA needs a number of fibres n")]
     NoFibreNumber,

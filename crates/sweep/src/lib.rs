@@ -33,7 +33,7 @@ pub use joint::{
     JointState, Linkage, Outside, Readings, Side, SideState,
 };
 pub use muscle_field::MuscleField;
-pub use output::Output;
+pub use output::{Output, Variable};
 pub use plan::Plan;
 pub use points::{Points, Reason, Values, evaluate};
 pub use run::{Piece, Progress, RunOptions, Summary, SweepError, begin, complete, manifest, piece, run};

@@ -1,7 +1,32 @@
 //! What is computed at each point, with names and units.
 
-use bulge_fibre::Variable;
+use bulge_muscles::Parameter;
 use serde::Serialize;
+
+/// What force and volume are differentiated by, besides the contraction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variable {
+    /// Gauge pressure \[Pa\].
+    Pressure,
+    /// A parameter of the muscle, in SI.
+    Parameter(Parameter),
+}
+
+impl Variable {
+    /// All of them: the pressure, then the parameters in their order.
+    pub fn all() -> impl Iterator<Item = Self> {
+        std::iter::once(Self::Pressure).chain(Parameter::ALL.into_iter().map(Self::Parameter))
+    }
+
+    /// Its name in outputs.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pressure => "pressure",
+            Self::Parameter(parameter) => parameter.name(),
+        }
+    }
+}
 
 /// One output of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,8 +126,8 @@ impl Output {
             Self::VolumeVByContraction => "volume_v_by_contraction".to_owned(),
             Self::ForceByContraction => "force_by_contraction".to_owned(),
             Self::VolumeByContraction => "volume_by_contraction".to_owned(),
-            Self::ForceBy(variable) => format!("force_by_{variable}"),
-            Self::VolumeBy(variable) => format!("volume_by_{variable}"),
+            Self::ForceBy(variable) => format!("force_by_{}", variable.name()),
+            Self::VolumeBy(variable) => format!("volume_by_{}", variable.name()),
         }
     }
 

@@ -68,7 +68,7 @@ pub(crate) fn surface(shaped: &Shaped, state: State) -> Result<Surface, Refusal>
         fibres: mesh.fibres,
         fields: mesh.point_fields.into_iter().map(|(name, values)| field(name, &values)).collect(),
         force_n: shape.response.force_n,
-        length_m: muscle.length().si() * (1.0 - shape.response.contraction),
+        length_m: shape.response.length_m,
         radius_m: shape.meridian.iter().map(|point| point.r_m).fold(0.0, f64::max),
         contraction: shape.response.contraction,
         pressure_pa: state.pressure_pa,

@@ -25,7 +25,7 @@ impl Log {
         what: &str,
         outcome: Result<Response, FibreError>,
     ) -> Option<Response> {
-        let case = || format!("{what}: {:?}", problem.muscle());
+        let case = || format!("{what}: {:?}", problem.parts());
         match outcome {
             Ok(found) => {
                 self.solved += 1;
@@ -109,14 +109,14 @@ fn wrong_with(r: &Response) -> Option<String> {
 /// Contractions over the range of a muscle and just inside and outside its ends.
 fn contractions(problem: &Problem, log: &mut Log) -> Vec<f64> {
     // Elastic nets drawn far out are slow to refuse: they have no limit there.
-    let far = if problem.muscle().fibre().is_some() { -0.02 } else { -0.3 };
+    let far = if problem.parts().compliance > 0.0 { -0.02 } else { -0.3 };
     let mut asked = vec![far, -0.01, -1e-6, -1e-12, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 0.7, 1.0, 1.5];
     match problem.contraction_limit(Approach::Auto) {
         Ok(limit) => {
             asked.extend([0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99].map(|part| part * limit));
             asked.extend([-1e-6, -1e-9, -1e-12, 0.0, 1e-12, 1e-9, 1e-6].map(|step| limit + step));
             if !limit.is_finite() {
-                log.violations.push(format!("limit {limit}; {:?}", problem.muscle()));
+                log.violations.push(format!("limit {limit}; {:?}", problem.parts()));
             }
         }
         Err(error) => {
@@ -412,7 +412,7 @@ fn a_length_of_zero_is_refused() {
             let refused = problem.solve(Given::Contraction(contraction), Approach::Auto).unwrap_err();
             let otherwise = [
                 problem.follow(contraction, Approach::Auto).unwrap_err(),
-                problem.linearised(contraction, &[], Approach::Auto).unwrap_err(),
+                problem.linearised(contraction, &problem.parts().still(), Approach::Auto).unwrap_err(),
                 problem.gradient(contraction, Approach::Auto).unwrap_err(),
                 problem.shape(Given::Contraction(contraction), Approach::Auto, 11).unwrap_err(),
                 problem.isobar(&[contraction], Approach::Auto).unwrap_err(),

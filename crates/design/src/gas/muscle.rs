@@ -22,21 +22,11 @@ pub(super) fn pulling(
         .solve(Pressure::pa(pressure_pa), Given::Contraction(contraction), approach)
         .map_err(|error| failed(pressure_pa, error))?;
     // Effects may turn the pull of the equilibrium into a push. Rounding may as well, at the limit.
-    let scale = pressure_pa * muscle.muscle().radius().si().powi(2);
+    let scale = pressure_pa * muscle.parts().radius.powi(2);
     if found.force_n < -1e-9 * scale {
         return Err(failed(pressure_pa, FibreError::WouldPush { contraction, force_n: found.force_n }));
     }
     Ok(found)
-}
-
-/// Unpressurised length from which contractions of a muscle with its effects count \[m\].
-pub(super) fn stated_length(muscle: &MuscleWithEffects) -> f64 {
-    let own = muscle.muscle().length().si();
-    // An effect may say that the fibres have another length: the length at half the contraction tells the stated one.
-    match muscle.given(Given::Contraction(0.5)) {
-        Given::Length(length) => 2.0 * length,
-        _ => own,
-    }
 }
 
 /// Whether shape and force per pressure are the same at any pressure.
@@ -46,7 +36,7 @@ pub(super) fn is_scale_free(muscle: &MuscleWithEffects) -> Result<bool, GasError
 }
 
 pub(super) fn problem(muscle: &MuscleWithEffects, pressure_pa: f64) -> Result<Problem, GasError> {
-    Problem::new(muscle.muscle(), Pressure::pa(pressure_pa)).map_err(|error| failed(pressure_pa, error))
+    Problem::new(muscle.parts(), Pressure::pa(pressure_pa)).map_err(|error| failed(pressure_pa, error))
 }
 
 /// The muscle with its effects at a pressure and a contraction, also where it would push.
@@ -87,7 +77,7 @@ pub(super) struct Lowest {
 impl Lowest {
     /// At a contraction; none where the fibres are taut from the beginning, or never.
     pub(super) fn of(muscle: &MuscleWithEffects, contraction: f64, approach: Approach) -> Option<Self> {
-        muscle.muscle().bladder()?;
+        muscle.parts().rubber?;
         let at = |p: f64| taut(muscle, p, contraction, approach);
         // Upwards until it works, then halving between.
         let (mut low, mut high) = (0.0, LOWEST_TAUT_PA);
@@ -134,7 +124,7 @@ fn taut(
     contraction: f64,
     approach: Approach,
 ) -> Result<Response, GasError> {
-    let own = muscle.muscle().length().si();
+    let own = muscle.parts().length;
     let own_contraction = match muscle.given(Given::Contraction(contraction)) {
         Given::Length(length) => 1.0 - length / own,
         _ => contraction,
@@ -151,7 +141,7 @@ pub(super) fn load_at(load: &Load<'_>, muscle: &MuscleWithEffects, contraction: 
         Load::Held(_) => f64::INFINITY,
         Load::Force(force) => *force,
         Load::Spring { preload_n, rate_n_per_m, from } => {
-            preload_n + rate_n_per_m * stated_length(muscle) * (contraction - from)
+            preload_n + rate_n_per_m * muscle.muscle().length().si() * (contraction - from)
         }
         Load::Law(law) => law(contraction),
     }

@@ -11,13 +11,12 @@
 //! F_p and V_p are exact (`Problem::gradient`, or F/p and 0 where nothing but the pressure shapes the muscle). What effects of the load add to F_p is a
 //! central difference over 1e-3 of the pressure.
 
-use bulge_fibre::Variable;
 use bulge_muscles::Quantity as _;
 use serde::Serialize;
 
 use super::GasError;
 use super::closed::{ClosedMuscle, ClosedState};
-use super::muscle::{failed, follow, problem, stated_length};
+use super::muscle::{failed, follow, problem};
 
 /// Part of the pressure over which the force of added effects is differenced.
 const DIFFERENCE: f64 = 1e-3;
@@ -79,16 +78,14 @@ impl ClosedMuscle<'_> {
         let p = state.pressure_pa;
         let problem = problem(self.muscle, p)?;
         let failed = |error: bulge_fibre::FibreError| failed(p, error);
-        let own = 1.0 - state.response.length_m / self.muscle.muscle().length().si();
+        let own = 1.0 - state.response.length_m / self.muscle.parts().length;
         let plain = |p: f64| {
             problem.at_pressure(bulge_muscles::Pressure::pa(p)).and_then(|at| at.follow(own, self.approach))
         };
         let mut by = if problem.is_scale_free() {
             [plain(p).map_err(failed)?.force_n / p, 0.0]
         } else {
-            let gradient = problem.gradient(own, self.approach).map_err(failed)?;
-            let found = gradient.by_variable.iter().find(|(variable, _)| *variable == Variable::Pressure);
-            found.map_or([0.0; 2], |(_, by)| *by)
+            problem.gradient(own, self.approach).map_err(failed)?.by_pressure
         };
         if self.muscle.adds_force() {
             let added = |p: f64| {
@@ -104,7 +101,7 @@ impl ClosedMuscle<'_> {
     /// Unpressurised length from which contractions count \[m\].
     #[must_use]
     pub fn rest_length_m(&self) -> f64 {
-        stated_length(self.muscle)
+        self.muscle.muscle().length().si()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use bulge_fibre::{FibreError, Given, Problem, Response, Shape};
 use bulge_model::MuscleWithEffects;
-use bulge_muscles::{Construction, Pressure, Quantity as _};
+use bulge_muscles::{Pressure, Quantity as _};
 
 use super::channel::{Channel, Totals};
 use super::surface::Surface;
@@ -66,13 +66,9 @@ impl Sensor {
         options: Options,
     ) -> Result<Self, SensingError> {
         options.check()?;
-        let own = muscle.muscle();
-        let at_rest = match own.construction() {
-            Construction::Pleated(pleated) => pleated.misalignment(),
-            Construction::Braided(braided) => braided.braid_angle(),
-        };
-        let sigma = at_rest.si().cos();
-        let (r, fibre) = (own.radius().si(), own.length().si() / sigma);
+        let own = muscle.parts();
+        let sigma = own.angle.cos();
+        let (r, fibre) = (own.radius, own.length / sigma);
         winding.check(r)?;
         let unsolved = |error| SensingError::Equilibrium {
             pressure_pa: pressure.si(),
@@ -97,7 +93,7 @@ impl Sensor {
     /// # Errors
     /// As [`Sensor::new`] for the winding.
     pub fn rewound(&self, winding: Winding) -> Result<Self, SensingError> {
-        winding.check(self.problem.muscle().radius().si())?;
+        winding.check(self.problem.parts().radius)?;
         let totals = self.reference_totals(&winding)?;
         Ok(Self { winding, length_0: totals.length, ..self.clone() })
     }
@@ -130,7 +126,7 @@ impl Sensor {
     /// Unpressurised length of the muscle \[m\], which turns a contraction into a shortening.
     #[must_use]
     pub fn muscle_length_m(&self) -> f64 {
-        self.problem.muscle().length().si()
+        self.problem.parts().length
     }
 
     /// Gauge pressure \[Pa\].

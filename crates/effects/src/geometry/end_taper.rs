@@ -89,7 +89,10 @@ mod tests {
     fn what_is_clamped_or_pleated_stays() {
         for name in ["dmsp-20-250", "ppam-2-r16"] {
             let muscle = preset(name).unwrap();
-            assert_eq!(with(&EndTaper, &[], &muscle).ok(), (!muscle.is_pleated()).then(|| Parts::of(&muscle)));
+            assert_eq!(
+                with(&EndTaper, &[], &muscle).ok(),
+                (!muscle.is_pleated()).then(|| Parts::of(&muscle))
+            );
         }
     }
 }

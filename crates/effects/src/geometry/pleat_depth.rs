@@ -77,8 +77,7 @@ mod tests {
         let narrow = preset("ppam-2-r11.5").unwrap();
         let deep = with(&PleatDepth, &[0.0045], &narrow).unwrap();
         for contraction in [0.03, 0.1, 0.3] {
-            let (found, expected) =
-                (force(&deep, 2.0, contraction), force(&pleated(), 2.0, contraction));
+            let (found, expected) = (force(&deep, 2.0, contraction), force(&pleated(), 2.0, contraction));
             assert!((found / expected - 1.0).abs() < 1e-9, "{contraction}: {found} {expected}");
         }
     }

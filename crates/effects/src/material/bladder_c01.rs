@@ -65,8 +65,8 @@ impl ShapeEffect for BladderC01 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bulge_muscles::Parameter;
     use crate::geometry::bench::{cylinder, force, with};
+    use bulge_muscles::Parameter;
     use std::f64::consts::PI;
 
     #[test]

@@ -68,8 +68,8 @@ impl ShapeEffect for BladderElasticity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bulge_muscles::Parameter;
     use crate::geometry::bench::{cylinder, force, pleated, with};
+    use bulge_muscles::Parameter;
     use std::f64::consts::PI;
 
     #[test]

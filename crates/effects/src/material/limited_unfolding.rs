@@ -101,10 +101,7 @@ mod tests {
     fn both_numbers_are_set_together() {
         let cloth = with(&LimitedUnfolding, &[8e4, 0.05], &pleated()).unwrap();
         assert_eq!(cloth.cloth, Some(TautCloth { stiffness: 8e4, radius: 0.05 }));
-        assert_eq!(
-            with(&LimitedUnfolding, &[0.0, 0.05], &pleated()).unwrap(),
-            Parts::of(&pleated())
-        );
+        assert_eq!(with(&LimitedUnfolding, &[0.0, 0.05], &pleated()).unwrap(), Parts::of(&pleated()));
         assert!(with(&LimitedUnfolding, &[-1.0, 0.05], &pleated()).is_err());
     }
 }

@@ -1,10 +1,10 @@
 //! The whole catalogue: names, cards, what `off` means, and every derivative against differences.
 
-use bulge_fibre::Parts;
 use bulge_effects::{
     Action, Balance, Card, CardDocument, Catalogue, Effect, Form, Input, Jet, LoadEffect, Mechanism, Moment,
     ParameterCard, Row, Setting, Stage, describe, overview,
 };
+use bulge_fibre::Parts;
 use bulge_muscles::{Muscle, PRESETS, Parameter, preset, units};
 use bulge_numerics::{Random, Real};
 use std::collections::{BTreeMap, BTreeSet};

@@ -135,8 +135,9 @@ mod tests {
     fn errors_are_those_of_the_usual_way() {
         let repeated = Repeated::new(Parts::of(&pleated("")).still()).unwrap();
         let at = |pa: f64, contraction: f64| {
-            let usual = Problem::new(&pleated(""), Pressure::pa(pa))
-                .and_then(|problem| problem.linearised(contraction, &problem.parts().still(), Approach::Auto));
+            let usual = Problem::new(&pleated(""), Pressure::pa(pa)).and_then(|problem| {
+                problem.linearised(contraction, &problem.parts().still(), Approach::Auto)
+            });
             let short = repeated.linearised_from(None, Pressure::pa(pa), contraction);
             assert_eq!(short.unwrap_err(), usual.unwrap_err());
         };

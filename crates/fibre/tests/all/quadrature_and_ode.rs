@@ -47,7 +47,8 @@ fn both_ways_give_the_same_equilibrium() {
             let problem = Problem::new(muscle, Pressure::bar(bar)).unwrap();
             for contraction in [-0.02, 0.0, 1e-6, 0.01, 0.05, 0.1, 0.2, 0.3] {
                 let Ok(ode) = problem.follow(contraction, Approach::Shooting) else { continue };
-                let found = problem.linearised(contraction, &problem.parts().still(), Approach::Shooting).unwrap();
+                let found =
+                    problem.linearised(contraction, &problem.parts().still(), Approach::Shooting).unwrap();
                 let scale = 1e5 * bar * 1e-4;
                 for (name, a, b, size) in [
                     ("force", ode.force_n, found.force_n.value, scale),

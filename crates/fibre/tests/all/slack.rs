@@ -14,10 +14,8 @@ fn rubber_that_carries_the_pressure_leaves_the_fibres_slack() {
                 wall = \"2 mm\"\n[effects.bladder-elasticity]\nc10 = \"0.29 MPa\"\n";
     let muscle = from_toml(text, "m.toml").unwrap();
     let at = |bar: f64, e: f64| {
-        {
-            let problem = Problem::new(&muscle, Pressure::bar(bar)).unwrap();
-            problem.linearised(e, &problem.parts().still(), Approach::Auto)
-        }
+        let problem = Problem::new(&muscle, Pressure::bar(bar)).unwrap();
+        problem.linearised(e, &problem.parts().still(), Approach::Auto)
     };
     assert!(
         matches!(at(1.0, 0.2), Err(FibreError::Slack { contraction, .. }) if contraction.to_bits() == 0.2_f64.to_bits())

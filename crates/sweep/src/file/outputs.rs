@@ -1,10 +1,9 @@
 //! The outputs of a sweep file.
 
-use bulge_fibre::Variable;
 use bulge_muscles::settings::{Setting, Settings, nearest, shortened};
 use bulge_muscles::{FileError, Parameter};
 
-use crate::output::Output;
+use crate::output::{Output, Variable};
 
 /// The outputs that a table of the file names, if it does; `has` says which numbers the muscle has.
 pub(super) fn outputs(

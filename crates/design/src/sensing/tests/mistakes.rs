@@ -6,7 +6,7 @@ use super::*;
 fn shapes_from_elsewhere_are_read_and_checked() {
     let muscle = ppam();
     let sensor = sensor(&muscle, layer(0.2, 0.8, 11.0));
-    let problem = Problem::new(muscle.muscle(), bar(2.0)).unwrap();
+    let problem = Problem::new(muscle.parts(), bar(2.0)).unwrap();
     let shape = problem.shape(Given::Contraction(0.2), Approach::Shooting, 301).unwrap();
     let [a, b] = [sensor.reading_of(&shape), sensor.reading(0.2)].map(Result::unwrap);
     close(a.resistance_ohm, b.resistance_ohm, 1e-9);

@@ -72,7 +72,7 @@ fn along_the_meridian_the_stretch_is_that_of_the_net() {
 fn a_ring_at_mid_length_measures_the_largest_radius() {
     let muscle = ppam();
     let ring = zone(0.5 - 5e-5, 0.5 + 5e-5, 1.0);
-    let problem = Problem::new(muscle.muscle(), bar(2.0)).unwrap();
+    let problem = Problem::new(muscle.parts(), bar(2.0)).unwrap();
     let radius = |e: f64| problem.solve(Given::Contraction(e), Approach::Auto).unwrap().max_radius_m;
     let sensor = sensor(&muscle, ring);
     let reference = Reference::At { pressure: bar(1.0), contraction: 0.05 };
@@ -140,7 +140,7 @@ fn a_thinning_layer_keeps_its_volume() {
     let sensor = sensor(&muscle, winding);
     let middle = sensor.channel(contraction, 3).unwrap()[1];
     // At mid-length the curvature is p A'/N, with N = n T for straight fibres.
-    let problem = Problem::new(muscle.muscle(), bar(2.0)).unwrap();
+    let problem = Problem::new(muscle.parts(), bar(2.0)).unwrap();
     let response = problem.solve(Given::Contraction(contraction), Approach::Auto).unwrap();
     let (n, r) = (40.0, response.mid_radius_m);
     let kappa = 2e5 * n * (TAU / n).sin() * r / (n * response.fibre_tension_n);

@@ -121,6 +121,7 @@ pub fn s1_tables() -> Result<S1Tables, ExportError> {
 /// The paper's muscle with a radius in mm.
 struct Curve {
     problem: Problem,
+    fibres: Option<u32>,
     radius_mm: f64,
 }
 
@@ -128,7 +129,8 @@ impl Curve {
     fn new(radius_mm: f64) -> Result<Self, ExportError> {
         let muscle = preset("ppam-2-r16")?;
         let muscle = muscle.with(Parameter::Radius, radius_mm * 1e-3)?;
-        Ok(Self { problem: Problem::new(&muscle, Pressure::pa(BAR))?, radius_mm })
+        let (problem, fibres) = (Problem::new(&muscle, Pressure::pa(BAR))?, muscle.fibres());
+        Ok(Self { problem, fibres, radius_mm })
     }
 
     /// F \[N\] at 1 bar and V \[m^3\].
@@ -168,7 +170,7 @@ fn force_table() -> Result<ForceTable, ExportError> {
         fine.iter().map(|row| [row.percent, row.percent * (3.0 * row.printed) / (3.0 * square)]).collect();
     let refit: Fitted<5> = fit(&measured, PRACTICAL);
     let off = |(found, printed): (&f64, f64)| (found / printed - 1.0).abs();
-    let fibres = curve.problem.muscle().fibres();
+    let fibres = curve.fibres;
     let factor = fibres.map_or(1.0, |n| {
         let turn = std::f64::consts::TAU / f64::from(n);
         turn.sin() / turn
