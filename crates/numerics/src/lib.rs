@@ -6,12 +6,14 @@
 pub mod dop853;
 mod dop853_coefficients;
 mod dual;
+mod elementary;
 pub mod elliptic;
 pub mod gauss;
 pub mod least_squares;
 mod random;
 mod real;
 pub mod root;
+pub mod tape;
 
 pub use dop853::Dop853;
 pub use dual::Dual;

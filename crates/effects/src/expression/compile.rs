@@ -1,53 +1,49 @@
-//! Parts into steps: every part gets its dimension, constants are computed once, and units that do not fit are refused.
+//! Parts into a tape: every part gets its dimension, constants are computed once, and units that do not fit are refused.
 
 use super::error::{ExpressionError, quoted};
-use super::function::Function;
-use super::node::{Node, Operator, Part};
-use super::program::{MAX_STACK, Program, Step};
+use super::function;
+use super::node::{Node, Part};
 use bulge_muscles::Dimension;
+use bulge_numerics::tape::{Builder, Function, Operator, Place};
 use std::ops::Range;
 
 /// The largest magnitude of a constant exponent.
 const MAX_EXPONENT: f64 = 1000.0;
+/// How many numbers may wait for their operator: a formula without shared parts needs as many registers.
+const MAX_WAITING: usize = 64;
 
-/// Compiles a formula that must have the dimension `result`.
+/// Compiles a formula that must have the dimension `result`: the steps, and the place of its value. Inputs are the variables, `count` of them, then the
+/// parameters.
 pub(crate) fn compile(
     text: &str,
     nodes: &[Node],
-    variables: impl Fn(usize) -> Dimension,
-    parameters: impl Fn(usize) -> Dimension,
+    count: usize,
+    dimension: impl Fn(usize) -> Dimension,
     result: Dimension,
-) -> Result<Program, ExpressionError> {
-    let mut compiler = Compiler { text, steps: Vec::new(), operands: Vec::new() };
+) -> Result<(Builder, Place), ExpressionError> {
+    let mut compiler = Compiler { text, tape: Builder::default(), operands: Vec::new() };
     for node in nodes {
         match &node.part {
             Part::Number { si, dimension, unit, .. } => {
                 // A plain 0 fits any dimension.
                 let is_plain_zero = *si == 0.0 && unit.is_none();
-                compiler.begin(
-                    node,
-                    Step::Constant(*si),
-                    (!is_plain_zero).then_some(*dimension),
-                    Some(*si),
-                )?;
+                let place = compiler.tape.constant(*si);
+                compiler.begin(node, place, (!is_plain_zero).then_some(*dimension))?;
             }
             Part::Pi => {
-                let pi = std::f64::consts::PI;
-                compiler.begin(node, Step::Constant(pi), Some(Dimension::NONE), Some(pi))?;
+                let place = compiler.tape.constant(std::f64::consts::PI);
+                compiler.begin(node, place, Some(Dimension::NONE))?;
             }
-            Part::Variable(index) => {
-                compiler.begin(node, Step::Variable(*index), Some(variables(*index)), None)?;
-            }
-            Part::Parameter(index) => {
-                compiler.begin(node, Step::Parameter(*index), Some(parameters(*index)), None)?;
-            }
+            Part::Variable(index) => compiler.input(node, *index, &dimension)?,
+            Part::Parameter(index) => compiler.input(node, count + index, &dimension)?,
             part => compiler.combine(node, part)?,
         }
     }
-    let found = compiler.operands.pop().and_then(|operand| operand.dimension);
-    match found {
+    let found = compiler.operands.pop();
+    let place = found.as_ref().map_or(0, |operand| operand.place);
+    match found.and_then(|operand| operand.dimension) {
         Some(found) if found != result => Err(compiler.wrong_result(found, result)),
-        _ => Ok(Program::new(compiler.steps)),
+        _ => Ok((compiler.tape, place)),
     }
 }
 
@@ -57,15 +53,12 @@ struct Operand {
     span: Range<usize>,
     /// None: a plain 0, which fits any.
     dimension: Option<Dimension>,
-    /// Where its steps begin.
-    start: usize,
-    /// Its value, if it is constant.
-    constant: Option<f64>,
+    place: Place,
 }
 
 struct Compiler<'t> {
     text: &'t str,
-    steps: Vec<Step>,
+    tape: Builder,
     operands: Vec<Operand>,
 }
 
@@ -79,70 +72,74 @@ impl Compiler<'_> {
         format!("`{}` ({})", quoted(&self.text[operand.span.clone()]), operand.dimension.unwrap_or_default())
     }
 
+    fn input(
+        &mut self,
+        node: &Node,
+        index: usize,
+        dimension: impl Fn(usize) -> Dimension,
+    ) -> Result<(), ExpressionError> {
+        let place = self.tape.input(index);
+        self.begin(node, place, Some(dimension(index)))
+    }
+
     /// A part without operands.
     fn begin(
         &mut self,
         node: &Node,
-        step: Step,
+        place: Place,
         dimension: Option<Dimension>,
-        constant: Option<f64>,
     ) -> Result<(), ExpressionError> {
-        let start = self.steps.len();
-        self.steps.push(step);
-        self.operands.push(Operand { span: node.span.clone(), dimension, start, constant });
-        if self.operands.len() <= MAX_STACK {
+        self.operands.push(Operand { span: node.span.clone(), dimension, place });
+        if self.operands.len() <= MAX_WAITING {
             return Ok(());
         }
-        let what = format!("the formula keeps more than {MAX_STACK} numbers waiting here");
+        let what = format!("the formula keeps more than {MAX_WAITING} numbers waiting here");
         Err(self.error(&node.span, what, "leave out parentheses, or put the long part of a sum first"))
+    }
+
+    fn constant(&self, operand: &Operand) -> Option<f64> {
+        self.tape.constant_at(operand.place)
     }
 
     /// A part whose operands are the last ones.
     fn combine(&mut self, node: &Node, part: &Part) -> Result<(), ExpressionError> {
         let first = self.operands.len().saturating_sub(part.arity());
         let operands = self.operands.split_off(first);
-        let start = operands.first().map_or(0, |operand| operand.start);
         let dimension = self.dimension(node, part, &operands)?;
-        let step = self.step(node, part, &operands)?;
-        self.steps.push(step);
-        let is_constant = operands.iter().all(|operand| operand.constant.is_some());
-        // Constant operands are one step each.
-        let constant = is_constant.then(|| Program::new(self.steps[start..].to_vec()).run::<f64>(&[], &[]));
-        if let Some(value) = constant {
-            if !value.is_finite() {
-                let what = format!("`{}` is not a finite number", quoted(&self.text[node.span.clone()]));
-                return Err(self.error(&node.span, what, "write a number, or a formula with a value"));
-            }
-            self.steps.truncate(start);
-            self.steps.push(Step::Constant(value));
+        let place = self.place(node, part, &operands)?;
+        if self.tape.constant_at(place).is_some_and(|value| !value.is_finite()) {
+            let what = format!("`{}` is not a finite number", quoted(&self.text[node.span.clone()]));
+            return Err(self.error(&node.span, what, "write a number, or a formula with a value"));
         }
-        self.operands.push(Operand { span: node.span.clone(), dimension, start, constant });
+        self.operands.push(Operand { span: node.span.clone(), dimension, place });
         Ok(())
     }
 
-    /// The step of an operator; a constant exponent becomes part of it.
-    fn step(&mut self, node: &Node, part: &Part, operands: &[Operand]) -> Result<Step, ExpressionError> {
-        Ok(match (part, operands) {
-            (Part::Operate(Operator::Power), [_, Operand { constant: Some(exponent), .. }]) => {
+    /// The value of an operator; a constant exponent becomes part of it.
+    fn place(&mut self, node: &Node, part: &Part, operands: &[Operand]) -> Result<Place, ExpressionError> {
+        let places: Vec<Place> = operands.iter().map(|operand| operand.place).collect();
+        let exponent = operands.get(1).and_then(|operand| self.constant(operand));
+        Ok(match (part, places.as_slice(), exponent) {
+            (Part::Operate(Operator::Power), [base, _], Some(exponent)) => {
                 if exponent.abs() > MAX_EXPONENT {
                     let what = format!("the exponent {exponent} is beyond {MAX_EXPONENT}");
                     return Err(self.error(&node.span, what, "write a smaller one, or `exp`"));
                 }
-                self.steps.pop();
-                match *exponent {
-                    0.5 => Step::Call(Function::Sqrt),
+                match exponent {
+                    0.5 => self.tape.call(Function::Sqrt, &[*base]),
                     whole if whole.fract() == 0.0 => {
                         #[expect(clippy::cast_possible_truncation, reason = "whole and at most 1000")]
                         let whole = whole as i32;
-                        Step::WholePower(whole)
+                        self.tape.whole_power(*base, whole)
                     }
-                    other => Step::RealPower(other),
+                    other => self.tape.real_power(*base, other),
                 }
             }
-            (Part::Operate(operator), _) => Step::Operate(*operator),
-            (Part::Compare(comparison), _) => Step::Compare(*comparison),
-            (Part::Call(function), _) => Step::Call(*function),
-            _ => Step::Negate,
+            (Part::Operate(operator), [a, b], _) => self.tape.operate(*operator, *a, *b),
+            (Part::Compare(comparison), [a, b], _) => self.tape.compare(*comparison, *a, *b),
+            (Part::Call(called), arguments, _) => self.tape.call(*called, arguments),
+            (_, [a, ..], _) => self.tape.negate(*a),
+            _ => self.tape.constant(f64::NAN),
         })
     }
 
@@ -181,13 +178,13 @@ impl Compiler<'_> {
         }
     }
 
-    fn call(&self, function: Function, operands: &[Operand]) -> Result<Option<Dimension>, ExpressionError> {
+    fn call(&self, called: Function, operands: &[Operand]) -> Result<Option<Dimension>, ExpressionError> {
         let together = |a: &Operand, b: &Operand| {
             self.agree(a, b, || {
-                format!("{} and {} cannot stand in one `{}`", self.named(a), self.named(b), function.name())
+                format!("{} and {} cannot stand in one `{}`", self.named(a), self.named(b), function::name(called))
             })
         };
-        match (function, operands) {
+        match (called, operands) {
             (Function::Min | Function::Max, [a, b]) | (Function::If, [_, a, b]) => together(a, b),
             (Function::Clamp, [x, low, high]) => {
                 let (with_low, with_high) = (together(x, low)?, together(x, high)?);
@@ -207,7 +204,7 @@ impl Compiler<'_> {
                 Some(dimension) if !dimension.is_none() => {
                     let what = format!(
                         "`{}` needs a pure number, but {} has a unit",
-                        function.name(),
+                        function::name(called),
                         self.named(x)
                     );
                     let instead = format!(
@@ -236,7 +233,7 @@ impl Compiler<'_> {
         if dimension.is_none() {
             return Ok(Some(dimension));
         }
-        let Some(constant) = exponent.constant else {
+        let Some(constant) = self.constant(exponent) else {
             let what = format!("{} has a unit, so its exponent must be a constant number", self.named(base));
             let instead = format!("divide it by a quantity in {dimension} before taking the power");
             return Err(self.error(&node.span, what, instead));

@@ -1,8 +1,9 @@
 //! A formula as text again, with no more parentheses than it needs.
 
-use super::function::Function;
-use super::node::{Node, Operator, Part};
-use super::variable::VARIABLES;
+use super::function;
+use super::node::{Node, Part};
+use super::variable::Variable;
+use bulge_numerics::tape::{Function, Operator};
 
 /// How tightly a text holds together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -16,7 +17,12 @@ enum Tightness {
 }
 
 /// Writes the parts; reading the text gives the same parts.
-pub(crate) fn written(text: &str, nodes: &[Node], parameters: &[String]) -> String {
+pub(crate) fn written(
+    text: &str,
+    nodes: &[Node],
+    variables: &[Variable],
+    parameters: &[String],
+) -> String {
     let mut operands: Vec<(String, Tightness)> = Vec::new();
     for node in nodes {
         let first = operands.len().saturating_sub(node.part.arity());
@@ -33,7 +39,7 @@ pub(crate) fn written(text: &str, nodes: &[Node], parameters: &[String]) -> Stri
             }
             Part::Pi => ("pi".to_owned(), Tightness::Atom),
             Part::Variable(index) => {
-                (VARIABLES.get(*index).map_or("", |variable| variable.name).to_owned(), Tightness::Atom)
+                (variables.get(*index).map_or("", |variable| variable.name).to_owned(), Tightness::Atom)
             }
             Part::Parameter(index) => (parameters.get(*index).cloned().unwrap_or_default(), Tightness::Atom),
             Part::Negate => (format!("-{}", next(Tightness::Unary)), Tightness::Unary),
@@ -53,7 +59,7 @@ pub(crate) fn written(text: &str, nodes: &[Node], parameters: &[String]) -> Stri
             Part::Compare(comparison) => {
                 let left = next(Tightness::Sum);
                 let right = next(Tightness::Sum);
-                (format!("{left} {} {right}", comparison.symbol()), Tightness::Comparison)
+                (format!("{left} {} {right}", function::symbol(*comparison)), Tightness::Comparison)
             }
             Part::Call(function) => (called(*function, |_| next(Tightness::Comparison)), Tightness::Atom),
         };
@@ -62,7 +68,7 @@ pub(crate) fn written(text: &str, nodes: &[Node], parameters: &[String]) -> Stri
     operands.pop().map_or_else(String::new, |(written, _)| written)
 }
 
-fn called(function: Function, argument: impl FnMut(usize) -> String) -> String {
-    let arguments: Vec<String> = (0..function.arity()).map(argument).collect();
-    format!("{}({})", function.name(), arguments.join(", "))
+fn called(called: Function, argument: impl FnMut(usize) -> String) -> String {
+    let arguments: Vec<String> = (0..called.arity()).map(argument).collect();
+    format!("{}({})", function::name(called), arguments.join(", "))
 }

@@ -1,100 +1,54 @@
-//! The functions and comparisons of formulas.
+//! How the functions and comparisons of formulas are written.
 
-/// A function of formulas; angles are in rad.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Function {
-    Sqrt,
-    Exp,
-    Ln,
-    Log10,
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Atan,
-    Tanh,
-    Sinh,
-    Cosh,
-    Abs,
-    Sign,
-    Step,
-    Min,
-    Max,
-    Clamp,
-    If,
+use bulge_numerics::tape::{Comparison, Function};
+
+/// Each function with its name and how it is written.
+const ALL: [(Function, &str, &str); 19] = [
+    (Function::Sqrt, "sqrt", "sqrt(x)"),
+    (Function::Exp, "exp", "exp(x)"),
+    (Function::Ln, "ln", "ln(x)"),
+    (Function::Log10, "log10", "log10(x)"),
+    (Function::Sin, "sin", "sin(x)"),
+    (Function::Cos, "cos", "cos(x)"),
+    (Function::Tan, "tan", "tan(x)"),
+    (Function::Asin, "asin", "asin(x)"),
+    (Function::Atan, "atan", "atan(x)"),
+    (Function::Tanh, "tanh", "tanh(x)"),
+    (Function::Sinh, "sinh", "sinh(x)"),
+    (Function::Cosh, "cosh", "cosh(x)"),
+    (Function::Abs, "abs", "abs(x)"),
+    (Function::Sign, "sign", "sign(x)"),
+    (Function::Step, "step", "step(x)"),
+    (Function::Min, "min", "min(a, b)"),
+    (Function::Max, "max", "max(a, b)"),
+    (Function::Clamp, "clamp", "clamp(x, low, high)"),
+    (Function::If, "if", "if(a < b, x, y)"),
+];
+
+/// The function of that name.
+pub(crate) fn named(name: &str) -> Option<Function> {
+    ALL.iter().find(|(_, known, _)| *known == name).map(|(function, ..)| *function)
 }
 
-impl Function {
-    /// Each with its name and how it is written.
-    pub(crate) const ALL: [(Self, &'static str, &'static str); 19] = [
-        (Self::Sqrt, "sqrt", "sqrt(x)"),
-        (Self::Exp, "exp", "exp(x)"),
-        (Self::Ln, "ln", "ln(x)"),
-        (Self::Log10, "log10", "log10(x)"),
-        (Self::Sin, "sin", "sin(x)"),
-        (Self::Cos, "cos", "cos(x)"),
-        (Self::Tan, "tan", "tan(x)"),
-        (Self::Asin, "asin", "asin(x)"),
-        (Self::Atan, "atan", "atan(x)"),
-        (Self::Tanh, "tanh", "tanh(x)"),
-        (Self::Sinh, "sinh", "sinh(x)"),
-        (Self::Cosh, "cosh", "cosh(x)"),
-        (Self::Abs, "abs", "abs(x)"),
-        (Self::Sign, "sign", "sign(x)"),
-        (Self::Step, "step", "step(x)"),
-        (Self::Min, "min", "min(a, b)"),
-        (Self::Max, "max", "max(a, b)"),
-        (Self::Clamp, "clamp", "clamp(x, low, high)"),
-        (Self::If, "if", "if(a < b, x, y)"),
-    ];
-
-    pub(crate) fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, known, _)| *known == name).map(|(function, ..)| *function)
-    }
-
-    pub(crate) fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(function, ..)| *function == self).map_or("", |(_, name, _)| *name)
-    }
-
-    pub(crate) fn form(self) -> &'static str {
-        Self::ALL.iter().find(|(function, ..)| *function == self).map_or("", |(.., form)| *form)
-    }
-
-    /// Number of arguments; those of `if` are the comparison and the two values.
-    pub(crate) fn arity(self) -> usize {
-        match self {
-            Self::Min | Self::Max => 2,
-            Self::Clamp | Self::If => 3,
-            _ => 1,
-        }
-    }
+/// All names.
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    ALL.iter().map(|(_, name, _)| *name)
 }
 
-/// A comparison, within `if` only.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Comparison {
-    Less,
-    LessOrEqual,
-    Greater,
-    GreaterOrEqual,
+pub(crate) fn name(function: Function) -> &'static str {
+    ALL.iter().find(|(known, ..)| *known == function).map_or("", |(_, name, _)| *name)
 }
 
-impl Comparison {
-    pub(crate) fn symbol(self) -> &'static str {
-        match self {
-            Self::Less => "<",
-            Self::LessOrEqual => "<=",
-            Self::Greater => ">",
-            Self::GreaterOrEqual => ">=",
-        }
-    }
+/// How it is written, with its arguments.
+pub(crate) fn form(function: Function) -> &'static str {
+    ALL.iter().find(|(known, ..)| *known == function).map_or("", |(.., form)| *form)
+}
 
-    pub(crate) fn holds(self, left: f64, right: f64) -> bool {
-        match self {
-            Self::Less => left < right,
-            Self::LessOrEqual => left <= right,
-            Self::Greater => left > right,
-            Self::GreaterOrEqual => left >= right,
-        }
+pub(crate) fn symbol(comparison: Comparison) -> &'static str {
+    match comparison {
+        Comparison::Less => "<",
+        Comparison::LessOrEqual => "<=",
+        Comparison::Greater => ">",
+        Comparison::GreaterOrEqual => ">=",
     }
 }

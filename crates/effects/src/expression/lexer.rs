@@ -1,7 +1,7 @@
 //! The words of a formula: numbers, units in brackets, names and signs.
 
 use super::error::{ExpressionError, quoted};
-use super::function::Comparison;
+use bulge_numerics::tape::Comparison;
 use std::ops::Range;
 
 /// What a word is.

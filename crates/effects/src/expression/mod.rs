@@ -14,24 +14,21 @@
 
 mod compile;
 mod display;
-mod elementary;
 mod error;
 mod function;
 mod lexer;
 mod node;
 mod parser;
-mod program;
 mod variable;
 
 pub use error::ExpressionError;
 pub(crate) use error::{nearest, quoted};
-pub use variable::{VARIABLES, Variable, variable_index};
+pub use variable::{SHAPE_VARIABLES, VARIABLES, Variable, variable_index};
 
 use bulge_muscles::Dimension;
 use bulge_numerics::Real;
-use function::Function;
+use bulge_numerics::tape::{Builder, MOST_REGISTERS, Place, Tape};
 use node::{Node, Part};
-use program::Program;
 use std::fmt;
 
 /// How deep parentheses, functions, signs and exponents may stand within each other.
@@ -64,9 +61,12 @@ pub const MAX_BYTES: usize = 16 << 10;
 pub struct Expression {
     text: String,
     nodes: Vec<Node>,
+    variables: &'static [Variable],
     parameters: Vec<String>,
     dimension: Dimension,
-    program: Program,
+    builder: Builder,
+    place: Place,
+    tape: Tape,
 }
 
 impl Expression {
@@ -84,6 +84,19 @@ impl Expression {
         parameters: &[(&str, Dimension)],
         result: Dimension,
     ) -> Result<Self, ExpressionError> {
+        Self::parse_over(text, &VARIABLES, parameters, result)
+    }
+
+    /// The same over other variables: [`SHAPE_VARIABLES`].
+    ///
+    /// # Errors
+    /// As [`Expression::parse`].
+    pub fn parse_over(
+        text: &str,
+        variables: &'static [Variable],
+        parameters: &[(&str, Dimension)],
+        result: Dimension,
+    ) -> Result<Self, ExpressionError> {
         if text.len() > MAX_BYTES {
             let what = format!("the formula has {} bytes, but at most {MAX_BYTES} are read", text.len());
             return Err(ExpressionError::new(
@@ -96,17 +109,22 @@ impl Expression {
         let names: Vec<&str> = parameters.iter().map(|(name, _)| *name).collect();
         for (index, name) in names.iter().enumerate() {
             let twice = || Err(format!("there are two parameters `{name}`"));
-            check_name(name)
+            check_name(name, variables)
                 .and_then(|()| if names[..index].contains(name) { twice() } else { Ok(()) })
                 .map_err(|what| ExpressionError::new(text, 0..0, what, "rename the parameter"))?;
         }
-        let nodes = parser::parse(text, &names)?;
-        let variable = |index: usize| VARIABLES.get(index).map_or(Dimension::NONE, |known| known.dimension);
-        let parameter =
-            |index: usize| parameters.get(index).map_or(Dimension::NONE, |(_, dimension)| *dimension);
-        let program = compile::compile(text, &nodes, variable, parameter, result)?;
+        let nodes = parser::parse(text, variables, &names)?;
+        let known = variables.iter().map(|variable| variable.dimension);
+        let dimensions: Vec<Dimension> = known.chain(parameters.iter().map(|(_, of)| *of)).collect();
+        let dimension = |index: usize| dimensions.get(index).copied().unwrap_or_default();
+        let (builder, place) = compile::compile(text, &nodes, variables.len(), dimension, result)?;
+        let tape = builder.finish(&[place]).ok_or_else(|| {
+            let what = format!("the formula needs more than {MOST_REGISTERS} numbers at a time");
+            ExpressionError::new(text, 0..0, what, "write several effects, each with a part of it")
+        })?;
         let parameters = names.into_iter().map(str::to_owned).collect();
-        Ok(Self { text: text.to_owned(), nodes, parameters, dimension: result, program })
+        let text = text.to_owned();
+        Ok(Self { text, nodes, variables, parameters, dimension: result, builder, place, tape })
     }
 
     /// The text as it was written; `Display` writes it in one form, which reads as an equal formula.
@@ -133,28 +151,38 @@ impl Expression {
         self.nodes.iter().any(|node| node.part == Part::Parameter(index))
     }
 
-    /// Whether the variable of this place in [`VARIABLES`] occurs.
+    /// Whether the variable of this place in its list occurs.
     #[must_use]
     pub fn uses_variable(&self, index: usize) -> bool {
         self.nodes.iter().any(|node| node.part == Part::Variable(index))
     }
 
-    /// The value in SI, for the values of [`VARIABLES`] and of the parameters in SI, each in its order.
+    /// The value in SI, for the values of the variables and of the parameters in SI, each in its order.
     ///
     /// Numbers with derivatives ([`bulge_numerics::Dual`]) give a value with exact derivatives. Nothing is allocated.
     /// Where the formula has no value, such as the logarithm or a real power of a negative number or a division by 0,
     /// the answer is not finite, which the caller checks; also where a value is missing.
     pub fn evaluate<D: Real>(&self, variables: &[D], parameters: &[D]) -> D {
-        self.program.run(variables, parameters)
+        let input = |index: usize| match index.checked_sub(self.variables.len()) {
+            Some(parameter) => parameters.get(parameter),
+            None => variables.get(index),
+        };
+        let [value] = self.tape.run_on(|index| input(index).copied().unwrap_or(D::from(f64::NAN)));
+        value
+    }
+
+    /// Its steps and the place of its value, to be gone on with; inputs are the variables, then the parameters.
+    pub(crate) fn steps(&self) -> (Builder, Place) {
+        (self.builder.clone(), self.place)
     }
 }
 
-/// Whether a parameter may have this name: letters a to z, digits and `_`, not first a digit, and no variable, function
+/// Whether a parameter may have this name: letters a to z, digits and `_`, not first a digit, and none of these variables, no function
 /// or constant.
 ///
 /// # Errors
 /// A sentence that says why not.
-pub fn check_name(name: &str) -> Result<(), String> {
+pub fn check_name(name: &str, variables: &[Variable]) -> Result<(), String> {
     let shown = quoted(name);
     let is_word = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     if name.is_empty() || name.len() > 64 || !is_word || name.starts_with(|c: char| c.is_ascii_digit()) {
@@ -162,10 +190,10 @@ pub fn check_name(name: &str) -> Result<(), String> {
             "`{shown}` is no name of a parameter: write letters from a to z, digits and `_`, first a letter, at most 64"
         ));
     }
-    if let Some(variable) = variable_index(name).and_then(|index| VARIABLES.get(index)) {
+    if let Some(variable) = variable::place(variables, name).and_then(|index| variables.get(index)) {
         return Err(format!("`{shown}` is a variable already: {}", variable.meaning));
     }
-    if Function::named(name).is_some() || name == "pi" {
+    if function::named(name).is_some() || name == "pi" {
         let kind = if name == "pi" { "constant" } else { "function" };
         return Err(format!("`{shown}` is a {kind} already"));
     }
@@ -176,13 +204,13 @@ impl PartialEq for Expression {
     fn eq(&self, other: &Self) -> bool {
         self.parameters == other.parameters
             && self.dimension == other.dimension
-            && self.program == other.program
+            && self.tape == other.tape
     }
 }
 
 impl fmt::Display for Expression {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let written = display::written(&self.text, &self.nodes, &self.parameters);
+        let written = display::written(&self.text, &self.nodes, self.variables, &self.parameters);
         // Blanks could make a long formula too long to be read again.
         f.pad(if written.len() > MAX_BYTES { &self.text } else { &written })
     }

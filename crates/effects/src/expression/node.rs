@@ -1,7 +1,7 @@
 //! A formula as its parts, operands before operators: a tree without pointers, so that nothing is ever recursive.
 
-use super::function::{Comparison, Function};
 use bulge_muscles::Dimension;
+use bulge_numerics::tape::{Comparison, Function, Operator};
 use std::ops::Range;
 
 /// One part of a formula. Its operands are the parts just before it.
@@ -30,16 +30,6 @@ pub(crate) enum Part {
     Operate(Operator),
     Compare(Comparison),
     Call(Function),
-}
-
-/// Two operands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Operator {
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Power,
 }
 
 impl Part {

@@ -11,19 +11,25 @@
 //! The first argument of `if` is `sum comparison sum`.
 
 use super::error::{ExpressionError, nearest, quoted};
-use super::function::Function;
+use super::function;
 use super::lexer::{Lexer, Token};
-use super::node::{Node, Operator, Part};
-use super::variable::{VARIABLES, variable_index};
+use super::node::{Node, Part};
+use super::variable::{Variable, place};
 use super::{MAX_DEPTH, MAX_NODES};
 use bulge_muscles::units;
+use bulge_numerics::tape::{Function, Operator};
 use std::ops::Range;
 
 /// Reads a formula over the variables and these parameters.
-pub(crate) fn parse(text: &str, parameters: &[&str]) -> Result<Vec<Node>, ExpressionError> {
+pub(crate) fn parse(
+    text: &str,
+    variables: &'static [Variable],
+    parameters: &[&str],
+) -> Result<Vec<Node>, ExpressionError> {
     let mut lexer = Lexer::new(text);
     let (token, span) = lexer.next()?;
-    let mut parser = Parser { text, parameters, lexer, token, span, end: 0, depth: 0, nodes: Vec::new() };
+    let mut parser =
+        Parser { text, variables, parameters, lexer, token, span, end: 0, depth: 0, nodes: Vec::new() };
     if parser.token == Token::End {
         let instead = "write a force, such as `-k * eps` with a parameter `k` in N";
         return Err(ExpressionError::new(text, 0..0, "the formula is empty", instead));
@@ -34,6 +40,7 @@ pub(crate) fn parse(text: &str, parameters: &[&str]) -> Result<Vec<Node>, Expres
 
 struct Parser<'t> {
     text: &'t str,
+    variables: &'static [Variable],
     parameters: &'t [&'t str],
     lexer: Lexer<'t>,
     /// The next word.
@@ -180,15 +187,15 @@ impl Parser<'_> {
         let name = &text[span.clone()];
         self.advance()?;
         let is_call = self.token == Token::Open;
-        if let Some(function) = Function::named(name) {
+        if let Some(found) = function::named(name) {
             if is_call {
-                return self.call(function, span.start);
+                return self.call(found, span.start);
             }
             let what = format!("`{name}` is a function, but has no argument here");
-            return Err(self.error(span, what, format!("write `{}`", function.form())));
+            return Err(self.error(span, what, format!("write `{}`", function::form(found))));
         }
         let parameter = self.parameters.iter().position(|known| *known == name);
-        let part = match variable_index(name) {
+        let part = match place(self.variables, name) {
             Some(variable) => Part::Variable(variable),
             None if name == "pi" => Part::Pi,
             None => match parameter {
@@ -205,31 +212,31 @@ impl Parser<'_> {
         self.push(part, span.start)
     }
 
-    fn call(&mut self, function: Function, start: usize) -> Parsed {
+    fn call(&mut self, called: Function, start: usize) -> Parsed {
         self.advance()?;
-        self.within(|parser| if function == Function::If { parser.condition() } else { parser.sum() })?;
+        self.within(|parser| if called == Function::If { parser.condition() } else { parser.sum() })?;
         let mut count = 1;
         while self.token == Token::Comma {
             // min(a, b, c) is min(min(a, b), c).
-            if count > 1 && matches!(function, Function::Min | Function::Max) {
-                self.push(Part::Call(function), start)?;
+            if count > 1 && matches!(called, Function::Min | Function::Max) {
+                self.push(Part::Call(called), start)?;
             }
             self.advance()?;
             self.within(Self::sum)?;
             count += 1;
         }
-        let is_right = match function {
+        let is_right = match called {
             Function::Min | Function::Max => count >= 2,
-            _ => count == function.arity(),
+            _ => count == called.arity(),
         };
         if let (false, Token::Close) = (is_right, self.token) {
-            let (name, form) = (function.name(), function.form());
+            let (name, form) = (function::name(called), function::form(called));
             let plural = if count == 1 { "" } else { "s" };
             let what = format!("`{name}` has {count} argument{plural} here");
             return Err(self.error(start..self.span.end, what, format!("write `{form}`")));
         }
         self.close()?;
-        self.push(Part::Call(function), start)
+        self.push(Part::Call(called), start)
     }
 
     /// The first argument of `if`.
@@ -246,8 +253,8 @@ impl Parser<'_> {
 
     fn unknown_name(&self, name: &str, span: Range<usize>) -> ExpressionError {
         let what = format!("unknown name `{}`", quoted(name));
-        let variables = VARIABLES.iter().map(|variable| variable.name);
-        let aliases = VARIABLES.iter().filter_map(|variable| variable.alias);
+        let variables = self.variables.iter().map(|variable| variable.name);
+        let aliases = self.variables.iter().filter_map(|variable| variable.alias);
         let known = self.parameters.iter().copied().chain(variables.clone()).chain(aliases);
         let guess = nearest(name, known).map_or_else(String::new, |near| format!("did you mean `{near}`?\n"));
         let parameters =
@@ -258,11 +265,11 @@ impl Parser<'_> {
 
     fn unknown_function(&self, name: &str, span: Range<usize>) -> ExpressionError {
         let also = [("log", "ln"), ("pow", "^"), ("heaviside", "step"), ("sgn", "sign"), ("arctan", "atan")];
-        let names = Function::ALL.iter().map(|(_, name, _)| *name);
-        let meant = also.iter().find(|(other, _)| *other == name).map(|(_, function)| *function);
-        let guess = meant.or_else(|| nearest(name, names.clone()));
+        let names: Vec<&str> = function::names().collect();
+        let meant = also.iter().find(|(other, _)| *other == name).map(|(_, known)| *known);
+        let guess = meant.or_else(|| nearest(name, names.iter().copied()));
         let guess = guess.map_or_else(String::new, |near| format!("did you mean `{near}`?\n"));
-        let list = names.collect::<Vec<_>>().join(", ");
+        let list = names.join(", ");
         self.error(span, format!("unknown function `{}`", quoted(name)), format!("{guess}functions: {list}"))
     }
 
@@ -281,7 +288,7 @@ impl Parser<'_> {
                 "write a unit as in `3 [N]`; the unit of a parameter stands where it is stated".to_owned(),
             ),
             Token::Compare(comparison) => (
-                format!("a comparison with `{}` stands outside of `if`", comparison.symbol()),
+                format!("a comparison with `{}` stands outside of `if`", function::symbol(comparison)),
                 "compare one time within `if`: `if(a < b, x, y)`".to_owned(),
             ),
             Token::Comma => (
@@ -307,16 +314,16 @@ mod tests {
 
     /// Reverse Polish, to see the order of operations.
     fn polish(text: &str) -> String {
-        let nodes = parse(text, &["a", "b", "c"]).unwrap();
+        let nodes = parse(text, &super::super::VARIABLES, &["a", "b", "c"]).unwrap();
         let word = |node: &Node| match &node.part {
             Part::Number { si, .. } => si.to_string(),
             Part::Pi => "pi".to_owned(),
-            Part::Variable(index) => VARIABLES[*index].name.to_owned(),
+            Part::Variable(index) => super::super::VARIABLES[*index].name.to_owned(),
             Part::Parameter(index) => ["a", "b", "c"][*index].to_owned(),
             Part::Negate => "neg".to_owned(),
             Part::Operate(operator) => ["+", "-", "*", "/", "^"][usize::from(*operator as u8)].to_owned(),
-            Part::Compare(comparison) => comparison.symbol().to_owned(),
-            Part::Call(function) => function.name().to_owned(),
+            Part::Compare(comparison) => function::symbol(*comparison).to_owned(),
+            Part::Call(called) => function::name(*called).to_owned(),
         };
         nodes.iter().map(word).collect::<Vec<_>>().join(" ")
     }
@@ -352,7 +359,7 @@ mod tests {
     fn each_part_knows_its_place() {
         let text = "a + max(b, 2 [N]) * c";
         let spans: Vec<_> =
-            parse(text, &["a", "b", "c"]).unwrap().iter().map(|n| &text[n.span.clone()]).collect();
+            parse(text, &super::super::VARIABLES, &["a", "b", "c"]).unwrap().iter().map(|n| &text[n.span.clone()]).collect();
         assert_eq!(spans, ["a", "b", "2 [N]", "max(b, 2 [N])", "c", "max(b, 2 [N]) * c", text]);
     }
 }

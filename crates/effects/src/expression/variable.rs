@@ -47,10 +47,27 @@ pub const VARIABLES: [Variable; 16] = [
     variable("braid_angle", Dimension::NONE, "angle between fibre and axis at rest, in rad"),
 ];
 
+/// What a formula of the shape may speak about: the wall of the net at one radius of the meridian.
+pub const SHAPE_VARIABLES: [Variable; 7] = [
+    variable("l1", Dimension::NONE, "stretch along the meridian"),
+    variable("l2", Dimension::NONE, "stretch around the axis, r/r0"),
+    variable("r", Dimension::LENGTH, "radius of the fibres"),
+    variable("r0", Dimension::LENGTH, "reference radius: pleated of the fibres at the fittings, braided of the braid at rest"),
+    also("pressure", variable("p", Dimension::PRESSURE, "gauge pressure of the gas")),
+    also("braid_angle", variable("alpha0", Dimension::NONE, "angle between fibre and axis at rest, in rad")),
+    variable("l0", Dimension::LENGTH, "length at rest"),
+];
+
+/// The place of a variable in a list, by its name or alias.
+#[must_use]
+pub(crate) fn place(variables: &[Variable], name: &str) -> Option<usize> {
+    variables.iter().position(|variable| variable.name == name || variable.alias == Some(name))
+}
+
 /// The place of a variable in [`VARIABLES`], by its name or alias.
 #[must_use]
 pub fn variable_index(name: &str) -> Option<usize> {
-    VARIABLES.iter().position(|variable| variable.name == name || variable.alias == Some(name))
+    place(&VARIABLES, name)
 }
 
 #[cfg(test)]

@@ -222,7 +222,7 @@ fn parameters(table: &Table<'_>) -> Result<(Vec<UserParameter>, Vec<Range<usize>
 
 fn parameter(list: &Table<'_>, entry: &Entry<'_>) -> Result<UserParameter, EffectFileError> {
     let (name, place, _) = entry;
-    check_name(name).map_err(|what| {
+    check_name(name, &VARIABLES).map_err(|what| {
         let taken = VARIABLES.iter().any(|known| known.name == *name || known.alias == Some(name));
         let instead = if taken {
             "rename the parameter, or delete it and use the variable".to_owned()

@@ -1,6 +1,6 @@
-//! Functions of formulas that [`Real`] does not have, from those that it has, each with its exact derivative.
+//! Functions of a tape that [`Real`] does not have, from those that it has, each with its exact derivative.
 
-use bulge_numerics::Real;
+use crate::Real;
 use std::f64::consts::{FRAC_PI_2, LN_10};
 
 /// Square root; at 0 its derivative, which is infinite, is taken as 0.
@@ -94,7 +94,7 @@ fn at_zero<D: Real>(x: D, exponent: f64) -> D {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bulge_numerics::Dual;
+    use crate::Dual;
 
     /// Value and derivative against the standard library's function and a known derivative.
     #[track_caller]
