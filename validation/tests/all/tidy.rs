@@ -20,7 +20,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("effects", &["numerics", "muscles", "fibre"]),
     ("model", &["numerics", "muscles", "fibre", "effects", "measurements"]),
     ("inference", &["numerics", "muscles", "effects", "measurements", "model"]),
-    ("design", &["numerics", "muscles", "fibre", "effects", "model"]),
+    ("design", &["numerics", "muscles", "fibre", "membrane", "effects", "model"]),
     ("sweep", &["numerics", "muscles", "fibre", "effects", "model", "table"]),
     ("vtk", &["muscles", "fibre", "membrane"]),
     (
