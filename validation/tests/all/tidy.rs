@@ -21,7 +21,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("model", &["numerics", "muscles", "fibre", "effects", "measurements"]),
     ("inference", &["numerics", "muscles", "effects", "measurements", "model"]),
     ("design", &["numerics", "muscles", "fibre", "membrane", "effects", "model"]),
-    ("sweep", &["numerics", "muscles", "fibre", "effects", "model", "table"]),
+    ("sweep", &["numerics", "muscles", "fibre", "effects", "model", "design", "table"]),
     ("vtk", &["muscles", "fibre", "membrane"]),
     (
         "report",
