@@ -8,7 +8,7 @@
 //! - [`effects`] what acts; the catalogue of physical effects and force laws,
 //! - [`model`] what it predicts along a measured history,
 //! - [`inference`] whether that matches; fits and the ladder of errors,
-//! - [`design`] puts them to use; sizing,
+//! - [`design`] puts them to use; sizing, joints, air, sensing, heat,
 //! - [`sweep`] runs families of muscles over their parameters, and makes certified tables of them,
 //! - [`table`] looks such tables up, without std,
 //! - [`vtk`] what it looks like in ParaView,

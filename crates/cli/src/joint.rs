@@ -1,9 +1,10 @@
 //! `bulge joint`: two antagonistic muscles on a joint: where it stands, how stiff it is, and which pressures it needs.
 
+use bulge_design::joint::{Checks, JOINT_EXAMPLE, Joint, JointError, JointState, Outside, Readings};
 use bulge_muscles::units::Quantity;
 use bulge_muscles::{Angle, Force, Pressure, Volume};
 use bulge_report::lines_svg;
-use bulge_sweep::{JOINT_EXAMPLE, Joint, JointError, JointState, Outside, Readings};
+use bulge_sweep::JointTable;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -76,7 +77,8 @@ impl JointCommand {
     pub(crate) fn run(&self) -> Result<String, Failure> {
         // Maps and drawings need all of the ranges, a question what it asks for.
         let is_point = self.plot.is_none() && (self.pressure.is_some() || self.angle.is_some());
-        let joint = if is_point { Joint::read_for_points(&self.joint)? } else { Joint::read(&self.joint)? };
+        let checks = if is_point { Checks::Linkage } else { Checks::Everywhere };
+        let joint = JointTable::read(&self.joint, checks)?.joint;
         let pressures = self.pressures()?;
         let angle = self.angle.as_deref().map(|text| quantity::<Angle>("--angle", text)).transpose()?;
         let angle = angle.map(Quantity::si);
@@ -265,13 +267,13 @@ fn surely(outside: &Outside) -> String {
 
 /// Pressures of the joint's range, evenly.
 fn pressures(joint: &Joint) -> Vec<f64> {
-    let [low, high] = joint.pressures();
+    let [low, high] = joint.pressure;
     (0..GRID).map(|k| low + (high - low) * k as f64 / (GRID - 1) as f64).collect()
 }
 
 /// Angles and stiffnesses over both pressures.
 fn mapped(joint: &Joint, torque: f64) -> Result<(Value, String), Failure> {
-    let [low, high] = joint.angles();
+    let [low, high] = joint.angle;
     let mut text = format!(
         "  from {} to {} deg; angle [deg] and stiffness [N m/rad] over both pressures",
         degrees(low),
@@ -318,7 +320,7 @@ fn mapped(joint: &Joint, torque: f64) -> Result<(Value, String), Failure> {
 
 /// Torque of both muscles against the angle, for pressures that go up together and against each other.
 fn drawn(joint: &Joint) -> Result<String, Failure> {
-    let ([low, high], all) = (joint.angles(), pressures(joint));
+    let ([low, high], all) = (joint.angle, pressures(joint));
     let pairs = all.iter().map(|p| [*p, *p]).chain([[all[GRID - 1], all[0]], [all[0], all[GRID - 1]]]);
     let mut lines = Vec::new();
     for [one, other] in pairs {

@@ -9,7 +9,6 @@ mod data;
 mod demo;
 mod diagnose;
 mod effects;
-mod elements;
 mod failure;
 mod files;
 mod fit;

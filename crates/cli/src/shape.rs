@@ -1,5 +1,6 @@
 //! `bulge shape`: one equilibrium.
 
+use bulge_design::elements::{self, ElementsError};
 use bulge_fibre::{Given, MeridianPoint, Problem, Shape};
 use bulge_model::{Equilibrium, MuscleWithEffects};
 use bulge_muscles::units::Quantity;
@@ -10,7 +11,6 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use crate::arguments::{MethodArgument, about, about_extended, extended, quantity};
-use crate::elements;
 use crate::failure::Failure;
 use crate::files;
 use crate::sketch::sketch;
@@ -91,7 +91,17 @@ impl ShapeCommand {
         let problem = Problem::new(extended.parts(), pressure).map_err(about(&muscle, pressure))?;
         let approach = self.method.approach();
         let found = if self.method == MethodArgument::Membrane {
-            let shape = elements::shape(&problem, &extended, pressure, given, self.points)?;
+            let shape = elements::shape(&extended, pressure, given, self.points);
+            let shape = shape.map_err(|error| match error {
+                ElementsError::Unknown(_) => {
+                    let what = format!("{error}: leave the method out, or write a case for `bulge membrane`");
+                    Failure::Value { option: "--method", what }
+                }
+                ElementsError::Equilibrium(error) => about(&muscle, pressure)(error),
+                ElementsError::Elements(_) => {
+                    Failure::NotConverged(format!("{error}; leave `--method membrane` out"))
+                }
+            })?;
             Equilibrium::of(&extended, &problem, shape, None, approach)
         } else {
             Equilibrium::new(&extended, pressure, given, approach, self.points)

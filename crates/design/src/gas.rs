@@ -41,6 +41,11 @@ pub use cycle::{CycleResult, Lift, Stroke};
 pub use filling::{Energy, Filling, GasModel, History, Sample, Supply};
 pub use orifice::{Orifice, REFERENCE_DENSITY, REFERENCE_TEMPERATURE_K};
 pub use stiffness::StiffnessSplit;
+pub(crate) use {
+    closed::ShutGas,
+    muscle::{failed, pulling, taut},
+    surroundings::Surroundings,
+};
 
 use bulge_model::MuscleWithEffectsError;
 

@@ -2,8 +2,8 @@
 
 mod axes;
 mod check;
-mod outputs;
-pub(crate) mod scale;
+pub(crate) mod outputs;
+mod scale;
 #[cfg(test)]
 mod tests;
 pub(crate) mod wish;

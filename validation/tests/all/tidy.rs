@@ -20,8 +20,8 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("effects", &["numerics", "muscles", "fibre"]),
     ("model", &["numerics", "muscles", "fibre", "effects", "measurements"]),
     ("inference", &["numerics", "muscles", "effects", "measurements", "model"]),
-    ("design", &["numerics", "muscles", "fibre", "effects", "model"]),
-    ("sweep", &["numerics", "muscles", "fibre", "effects", "model", "table"]),
+    ("design", &["numerics", "muscles", "fibre", "membrane", "effects", "model"]),
+    ("sweep", &["numerics", "muscles", "fibre", "effects", "model", "design", "table"]),
     ("vtk", &["muscles", "fibre", "membrane"]),
     (
         "report",

@@ -1,8 +1,9 @@
 //! `bulge table export`, `joint` and `papers`: tables for other programs.
 
+use bulge_design::joint::{Checks, JOINT_EXAMPLE};
 use bulge_muscles::{FileError, Ratio};
 use bulge_sweep::export::{self, papers_polynomial, polynomial};
-use bulge_sweep::{JOINT_EXAMPLE, Joint, JointField, TableDescription, build};
+use bulge_sweep::{JointField, JointTable, TableDescription, build};
 use bulge_table::Table;
 use clap::{Args, ValueEnum};
 use serde_json::json;
@@ -99,8 +100,8 @@ fn example() -> String {
 
 impl JointCommand {
     pub(super) fn run(&self) -> Result<String, Failure> {
-        let joint = Joint::read(&self.joint)?;
-        let Some(wish) = joint.table() else {
+        let wanted = JointTable::read(&self.joint, Checks::Everywhere)?;
+        let (joint, Some(wish)) = (&wanted.joint, &wanted.table) else {
             let origin = self.joint.display().to_string();
             let what = "the joint wants no table";
             return Err(FileError::whole(&origin, what, "add a line `[table]`").into());
@@ -111,14 +112,14 @@ impl JointCommand {
             "schema": "bulge.table/1",
             "version": env!("CARGO_PKG_VERSION"),
             "name": joint.name,
-            "joint": joint,
+            "joint": wanted,
             "muscles": muscles,
             "meaning": [
                 "a positive angle shortens the agonist; torque without load",
                 "stiffness = -d(torque)/d(angle) at constant pressures",
             ],
         });
-        let field = JointField::new(&joint);
+        let field = JointField::new(&wanted);
         let built = build(&field, &wish.with_text(serde_json::to_string(&text)?), &|_| ())
             .map_err(bulge_sweep::TabulateError::from)?;
         let description = TableDescription::of(&Table::from_bytes(&built.bytes)?)?;
@@ -126,11 +127,11 @@ impl JointCommand {
         if self.json {
             return Ok(serde_json::to_string_pretty(&description)? + "\n");
         }
-        Ok(self.text(&joint, &description, built.is_met))
+        Ok(self.text(&joint.name, &description, built.is_met))
     }
 
-    fn text(&self, joint: &Joint, description: &TableDescription, is_met: bool) -> String {
-        let mut out = format!("{}\n\n  {}, {} bytes\n", joint.name, description.form, description.bytes);
+    fn text(&self, name: &str, description: &TableDescription, is_met: bool) -> String {
+        let mut out = format!("{name}\n\n  {}, {} bytes\n", description.form, description.bytes);
         out.push_str(&errors(description));
         if !is_met {
             out.push_str("  ! the size limit came first: the tolerance is not met\n");

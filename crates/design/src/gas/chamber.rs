@@ -76,6 +76,13 @@ pub struct Inside {
     pub gas_volume_m3: f64,
 }
 
+impl Inside {
+    pub(crate) const fn of(pressure_pa: f64, found: &Response, around: &Surroundings) -> Self {
+        let Response { contraction, force_n, volume_m3, .. } = *found;
+        Self { pressure_pa, contraction, force_n, volume_m3, gas_volume_m3: around.gas_volume(volume_m3) }
+    }
+}
+
 #[derive(Debug, Clone, Copy)]
 enum Body<'a> {
     Vessel(f64),
@@ -259,13 +266,7 @@ impl<'a> Chamber<'a> {
             (_, Some(support)) if resting => self.held(muscle, pressure_pa, support)?,
             _ => self.balance(muscle, &load, pressure_pa.max(LEAST_PRESSURE_PA), near)?,
         };
-        Ok(Inside {
-            pressure_pa,
-            contraction: found.contraction,
-            force_n: found.force_n,
-            volume_m3: found.volume_m3,
-            gas_volume_m3: self.surroundings.gas_volume(found.volume_m3),
-        })
+        Ok(Inside::of(pressure_pa, &found, &self.surroundings))
     }
 
     /// At a contraction that something holds, where a muscle with a bladder may push.

@@ -1,4 +1,4 @@
-//! A closed muscle: filled, the valve shut, then moved.
+//! Gas that is shut in, and a closed muscle: filled, the valve shut, then moved.
 //!
 //! ```text
 //! P (V(p, e) + Vd)^n = P1 (V(p1, e1) + Vd)^n        1 <= n <= 1.4: isothermal (slow) to adiabatic (fast)
@@ -14,20 +14,47 @@ use bulge_model::MuscleWithEffects;
 use serde::Serialize;
 
 use super::chamber::{Chamber, Inside, Load, with_gas};
-use super::muscle::pulling;
+use super::muscle::{failed, pulling};
 use super::surroundings::Surroundings;
 use super::{AMBIENT_TEMPERATURE_K, GAMMA, GasError, R_AIR, at_least, positive};
+
+/// Gas that was shut in, with the exponent of its law.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ShutGas {
+    pub(crate) surroundings: Surroundings,
+    pub(crate) exponent: f64,
+    /// Gauge pressure at which it was shut in \[Pa\].
+    pub(crate) pressure_pa: f64,
+    /// Volume of the muscle there \[m^3\].
+    pub(crate) volume_m3: f64,
+}
+
+impl ShutGas {
+    /// P1 (V1 + Vd) \[J\].
+    fn filled(&self) -> f64 {
+        self.surroundings.absolute(self.pressure_pa) * self.surroundings.gas_volume(self.volume_m3)
+    }
+
+    /// The state of what it is in that obeys its law, searched from a gauge pressure \[Pa\].
+    pub(crate) fn state(
+        &self,
+        inside: impl Fn(f64) -> Result<Inside, GasError>,
+        start_pa: f64,
+    ) -> Result<Inside, GasError> {
+        let around = self.surroundings;
+        let z =
+            around.absolute(self.pressure_pa).ln() + self.exponent * around.gas_volume(self.volume_m3).ln();
+        with_gas(inside, around.ambient_pa, [z, self.exponent], start_pa)
+    }
+}
 
 /// A muscle with the gas that was shut in.
 #[derive(Debug, Clone, Copy)]
 pub struct ClosedMuscle<'a> {
     pub(super) muscle: &'a MuscleWithEffects,
     pub(super) approach: Approach,
-    pub(super) exponent: f64,
-    pub(super) surroundings: Surroundings,
-    pressure_pa: f64,
+    pub(super) gas: ShutGas,
     temperature_k: f64,
-    volume_m3: f64,
 }
 
 /// A state of a closed muscle.
@@ -69,17 +96,10 @@ impl<'a> ClosedMuscle<'a> {
                 instead: "give a number from 1 (isothermal) to 1.4 (adiabatic)",
             });
         }
-        let mut closed = Self {
-            muscle,
-            approach: Approach::Auto,
-            exponent,
-            surroundings: Surroundings::STANDARD,
-            pressure_pa,
-            temperature_k: AMBIENT_TEMPERATURE_K,
-            volume_m3: 0.0,
-        };
-        closed.volume_m3 = closed.pulling(pressure_pa, contraction)?.volume_m3;
-        Ok(closed)
+        let found = pulling(muscle, pressure_pa, contraction, Approach::Auto);
+        let volume_m3 = found.map_err(|error| failed(pressure_pa, error))?.volume_m3;
+        let gas = ShutGas { surroundings: Surroundings::STANDARD, exponent, pressure_pa, volume_m3 };
+        Ok(Self { muscle, approach: Approach::Auto, gas, temperature_k: AMBIENT_TEMPERATURE_K })
     }
 
     /// With the dead volume \[m^3\] of tubes and fittings.
@@ -87,7 +107,7 @@ impl<'a> ClosedMuscle<'a> {
     /// # Errors
     /// [`GasError::Number`] unless it is finite and not negative.
     pub fn with_dead_volume(mut self, volume_m3: f64) -> Result<Self, GasError> {
-        self.surroundings = self.surroundings.with_dead_volume(volume_m3)?;
+        self.gas.surroundings = self.gas.surroundings.with_dead_volume(volume_m3)?;
         Ok(self)
     }
 
@@ -96,7 +116,7 @@ impl<'a> ClosedMuscle<'a> {
     /// # Errors
     /// [`GasError::Number`] unless it is positive.
     pub fn with_ambient(mut self, pressure_pa: f64) -> Result<Self, GasError> {
-        self.surroundings = self.surroundings.with_ambient(pressure_pa)?;
+        self.gas.surroundings = self.gas.surroundings.with_ambient(pressure_pa)?;
         Ok(self)
     }
 
@@ -109,15 +129,10 @@ impl<'a> ClosedMuscle<'a> {
         Ok(self)
     }
 
-    /// P1 (V1 + Vd) \[J\].
-    fn filled(&self) -> f64 {
-        self.surroundings.absolute(self.pressure_pa) * self.surroundings.gas_volume(self.volume_m3)
-    }
-
     /// Mass of the gas \[kg\], that of the dead volume included.
     #[must_use]
     pub fn mass_kg(&self) -> f64 {
-        self.filled() / (R_AIR * self.temperature_k)
+        self.gas.filled() / (R_AIR * self.temperature_k)
     }
 
     /// The state at a contraction.
@@ -147,35 +162,31 @@ impl<'a> ClosedMuscle<'a> {
     }
 
     fn shut(&self, load: Load<'a>) -> Result<Inside, GasError> {
-        let around = self.surroundings;
-        let z =
-            around.absolute(self.pressure_pa).ln() + self.exponent * around.gas_volume(self.volume_m3).ln();
-        let chamber = Chamber::muscle(self.muscle, load)?.within(around).solved_by(self.approach);
+        let chamber =
+            Chamber::muscle(self.muscle, load)?.within(self.gas.surroundings).solved_by(self.approach);
         let near = Cell::new(None);
         let inside = |p: f64| {
             let found = chamber.inside(p, false, near.get())?;
             near.set(Some(found.contraction));
             Ok(found)
         };
-        with_gas(inside, around.ambient_pa, [z, self.exponent], self.pressure_pa)
+        self.gas.state(inside, self.gas.pressure_pa)
     }
 
     fn state(&self, pressure_pa: f64, contraction: f64) -> Result<ClosedState, GasError> {
-        let response = self.pulling(pressure_pa, contraction)?;
-        let now = self.surroundings.absolute(pressure_pa) * self.surroundings.gas_volume(response.volume_m3);
+        let response = pulling(self.muscle, pressure_pa, contraction, self.approach)
+            .map_err(|error| failed(pressure_pa, error))?;
+        let around = self.gas.surroundings;
+        let now = around.absolute(pressure_pa) * around.gas_volume(response.volume_m3);
         Ok(ClosedState {
             pressure_pa,
             contraction,
             force_n: response.force_n,
             volume_m3: response.volume_m3,
-            temperature_k: self.temperature_k * now / self.filled(),
+            temperature_k: self.temperature_k * now / self.gas.filled(),
             mass_kg: self.mass_kg(),
             response,
         })
-    }
-
-    fn pulling(&self, pressure_pa: f64, contraction: f64) -> Result<Response, GasError> {
-        pulling(self.muscle, pressure_pa, contraction, self.approach)
     }
 }
 

@@ -22,7 +22,7 @@ use bulge_numerics::gauss::SIX;
 use serde::Serialize;
 
 use super::chamber::{Chamber, LEAST_PRESSURE_PA, Load};
-use super::muscle::{follow, pulling};
+use super::muscle::{failed, follow, pulling};
 use super::orifice::REFERENCE_DENSITY;
 use super::surroundings::Surroundings;
 use super::{AMBIENT_TEMPERATURE_K, GasError, R_AIR, positive};
@@ -196,6 +196,7 @@ impl<'a> Stroke<'a> {
 
     fn pulling(&self, pressure_pa: f64, contraction: f64) -> Result<Response, GasError> {
         pulling(self.muscle, pressure_pa, contraction, Approach::Auto)
+            .map_err(|error| failed(pressure_pa, error))
     }
 
     /// The pressure at which the muscle carries the load at a contraction: from that of the supply by secants, inside what brackets it.

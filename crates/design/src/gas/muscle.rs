@@ -7,24 +7,22 @@ use bulge_muscles::{Pressure, Quantity as _};
 use super::{GasError, Load};
 
 /// What is wrong with the muscle, at a pressure.
-pub(super) fn failed(pressure_pa: f64, error: impl Into<MuscleWithEffectsError>) -> GasError {
+pub(crate) fn failed(pressure_pa: f64, error: impl Into<MuscleWithEffectsError>) -> GasError {
     GasError::Muscle { pressure_pa, error: Box::new(error.into()) }
 }
 
 /// The muscle with its effects where it pulls.
-pub(super) fn pulling(
+pub(crate) fn pulling(
     muscle: &MuscleWithEffects,
     pressure_pa: f64,
     contraction: f64,
     approach: Approach,
-) -> Result<Response, GasError> {
-    let found = muscle
-        .solve(Pressure::pa(pressure_pa), Given::Contraction(contraction), approach)
-        .map_err(|error| failed(pressure_pa, error))?;
+) -> Result<Response, MuscleWithEffectsError> {
+    let found = muscle.solve(Pressure::pa(pressure_pa), Given::Contraction(contraction), approach)?;
     // Effects may turn the pull of the equilibrium into a push. Rounding may as well, at the limit.
     let scale = pressure_pa * muscle.parts().radius.powi(2);
     if found.force_n < -1e-9 * scale {
-        return Err(failed(pressure_pa, FibreError::WouldPush { contraction, force_n: found.force_n }));
+        return Err(FibreError::WouldPush { contraction, force_n: found.force_n }.into());
     }
     Ok(found)
 }
@@ -50,11 +48,11 @@ pub(super) fn follow(
     contraction: f64,
     approach: Approach,
 ) -> Result<Response, GasError> {
-    let found = taut(muscle, pressure_pa, contraction, approach);
-    let Err(error) = found else { return found };
-    Lowest::of(muscle, contraction, approach)
-        .filter(|lowest| lowest.is_above(pressure_pa))
-        .map_or(Err(error), |lowest| Ok(lowest.down_to(pressure_pa)))
+    taut(muscle, pressure_pa, contraction, approach).or_else(|error| {
+        Lowest::of(muscle, contraction, approach)
+            .filter(|lowest| lowest.is_above(pressure_pa))
+            .map_or(Err(failed(pressure_pa, error)), |lowest| Ok(lowest.down_to(pressure_pa)))
+    })
 }
 
 /// A muscle whose fibres are slack at this pressure is not looked at any more \[Pa\].
@@ -118,21 +116,19 @@ impl Lowest {
     }
 }
 
-fn taut(
+/// The muscle with its effects at a contraction, also where it would push.
+pub(crate) fn taut(
     muscle: &MuscleWithEffects,
     pressure_pa: f64,
     contraction: f64,
     approach: Approach,
-) -> Result<Response, GasError> {
-    let own = muscle.parts().length;
-    let own_contraction = match muscle.given(Given::Contraction(contraction)) {
-        Given::Length(length) => 1.0 - length / own,
+) -> Result<Response, MuscleWithEffectsError> {
+    let own = match muscle.given(Given::Contraction(contraction)) {
+        Given::Length(length) => 1.0 - length / muscle.parts().length,
         _ => contraction,
     };
-    let plain = problem(muscle, pressure_pa)?
-        .follow(own_contraction, approach)
-        .map_err(|error| failed(pressure_pa, error))?;
-    muscle.complete(&plain).map_err(|error| failed(pressure_pa, error))
+    let problem = Problem::new(muscle.parts(), Pressure::pa(pressure_pa))?;
+    Ok(muscle.complete(&problem.follow(own, approach)?)?)
 }
 
 /// Load at a contraction \[N\].

@@ -57,9 +57,9 @@ impl ClosedMuscle<'_> {
         let response = &state.response;
         let [force_p, volume_p] = self.by_pressure(state)?;
         let volume_l = response.volume_slope_m2 * response.volume_m3 / response.volume_polygon_m3;
-        let absolute = self.exponent * self.surroundings.absolute(state.pressure_pa);
-        let pressure_l =
-            -absolute * volume_l / (self.surroundings.gas_volume(response.volume_m3) + absolute * volume_p);
+        let absolute = self.gas.exponent * self.gas.surroundings.absolute(state.pressure_pa);
+        let pressure_l = -absolute * volume_l
+            / (self.gas.surroundings.gas_volume(response.volume_m3) + absolute * volume_p);
         let geometry_n_per_m = response.stiffness_n_per_m;
         let gas_n_per_m = force_p * pressure_l;
         Ok(StiffnessSplit {

@@ -4,16 +4,16 @@ use super::{GasError, at_least, positive};
 
 /// Dead volume and ambient pressure, checked.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Surroundings {
+pub(crate) struct Surroundings {
     /// Dead volume \[m^3\], >= 0.
-    pub(super) dead_volume_m3: f64,
+    pub(crate) dead_volume_m3: f64,
     /// Ambient pressure \[Pa\], absolute, > 0.
-    pub(super) ambient_pa: f64,
+    pub(crate) ambient_pa: f64,
 }
 
 impl Surroundings {
     /// The standard atmosphere, and no dead volume.
-    pub(super) const STANDARD: Self = Self { dead_volume_m3: 0.0, ambient_pa: bulge_fibre::AMBIENT_PRESSURE };
+    pub(crate) const STANDARD: Self = Self { dead_volume_m3: 0.0, ambient_pa: bulge_fibre::AMBIENT_PRESSURE };
 
     pub(super) fn with_dead_volume(self, volume_m3: f64) -> Result<Self, GasError> {
         let dead_volume_m3 =
@@ -31,7 +31,7 @@ impl Surroundings {
     }
 
     /// Volume of the gas \[m^3\] around a volume \[m^3\].
-    pub(super) const fn gas_volume(&self, volume_m3: f64) -> f64 {
+    pub(crate) const fn gas_volume(&self, volume_m3: f64) -> f64 {
         volume_m3 + self.dead_volume_m3
     }
 }

@@ -29,7 +29,7 @@ impl Scale {
     }
 
     /// Of the pressure.
-    pub(crate) fn pressure() -> Self {
+    pub(super) fn pressure() -> Self {
         Self::new(Dimension::PRESSURE, false, "Pa", ["1 bar", "4 bar"])
     }
 
@@ -44,7 +44,7 @@ impl Scale {
     }
 
     /// Of a number of the muscle.
-    pub(crate) fn parameter(parameter: Parameter) -> Self {
+    pub(super) fn parameter(parameter: Parameter) -> Self {
         let (dimension, example) = match parameter.unit() {
             "rad" => (Dimension::NONE, ["20 deg", "30 deg"]),
             "N" => (Dimension::FORCE, ["5 kN", "20 kN"]),
@@ -107,7 +107,7 @@ impl Scale {
     }
 
     /// "1..3 bar": both ends, the upper one none if it is the word `limit`.
-    pub(crate) fn range(&self, text: &str) -> Result<(f64, Option<f64>), String> {
+    pub(super) fn range(&self, text: &str) -> Result<(f64, Option<f64>), String> {
         let Some((from, to)) = text.split_once("..") else {
             return Err(format!("`{}` is no range: two values with `..` between them", shortened(text)));
         };

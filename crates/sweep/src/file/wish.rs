@@ -8,7 +8,7 @@ use super::outputs::outputs;
 use crate::output::Output;
 use crate::plan::{Quantity, Range, TableForm, TableRequirements};
 
-/// Keys of the table, with an example of each.
+/// Keys of the table, with an example of each; the outputs first.
 pub(super) const TABLE: Keys = &[
     ("outputs", "outputs = [\"force_f\", \"volume_v\"]"),
     ("tolerance", "tolerance = 1e-6"),
@@ -49,8 +49,15 @@ pub(super) fn wish(
     Ok(Some(TableRequirements { outputs, ..limits(&table)? }))
 }
 
+/// The table that the file of a joint wants, which states the outputs itself.
+pub(crate) fn without_outputs(settings: &Settings<'_>) -> Result<Option<TableRequirements>, FileError> {
+    let Some(table) = settings.table("table", "`[table]`", &TABLE[1..])? else { return Ok(None) };
+    table.check_keys()?;
+    limits(&table).map(Some)
+}
+
 /// What a table must reach, without its outputs.
-pub(crate) fn limits(table: &Settings<'_>) -> Result<TableRequirements, FileError> {
+fn limits(table: &Settings<'_>) -> Result<TableRequirements, FileError> {
     let bytes = max_size(table)?;
     let forms = [
         ("fastest", TableForm::Fastest),

@@ -1,13 +1,13 @@
 //! Joint files: TOML into a joint, with the place and the cure for everything that is wrong.
 
-use bulge_muscles::settings::{Document, FileKind, Keys, Settings, nearest, shortened};
-use bulge_muscles::{Angle, Dimension, FileError, Length, Parameter, Quantity as _};
+use bulge_effects::{Catalogue, known};
+use bulge_fibre::Approach;
+use bulge_muscles::settings::{Document, FileKind, Keys, Settings};
+use bulge_muscles::{Angle, Dimension, FileError, Length, Pressure, Quantity, units};
 use std::f64::consts::PI;
 use std::path::Path;
 
-use super::{Drive, FourBar, Joint, JointMuscle, JointOutput, Linkage, Side};
-use crate::file::scale::Scale;
-use crate::file::wish;
+use super::{FourBar, Joint, JointMuscle, Linkage, Side};
 
 /// What messages call the file.
 const KIND: FileKind = FileKind { name: "joint", file: "joint.toml", line: "radius = \"40 mm\"" };
@@ -69,85 +69,75 @@ const TOP: Keys = &[
     ("outputs", "outputs = [\"torque\", \"stiffness\"]"),
     ("table", "[table]"),
 ];
-/// Keys of its table: the outputs are those of the joint.
-const TABLE: Keys = &[
-    ("tolerance", "tolerance = 1e-4"),
-    ("gradient", "gradient = 1e-2"),
-    ("max_size", "max_size = \"1 MiB\""),
-    ("form", "form = \"fastest\""),
-    ("checks", "checks = 131072"),
-];
+/// What is checked of a joint file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Checks {
+    /// Both muscles pull over the whole of its ranges, as maps and tables need it.
+    Everywhere,
+    /// Its linkage alone: a question at single angles and pressures is checked when it is asked.
+    Linkage,
+}
 
 impl Joint {
-    /// Reads a joint file; [`JOINT_EXAMPLE`] has every key. The muscle files that it names stand beside it.
+    /// Reads a joint file; [`JOINT_EXAMPLE`] has every key. The muscle files that it names stand beside it. `more` reads what the file says of other things:
+    /// the outputs and the table that are wanted of it.
     ///
     /// # Errors
     /// If the file can't be read, is larger than 1 MiB, is not UTF-8 or is no valid joint, or if a muscle can't be read. The message is complete.
-    pub fn read(path: impl AsRef<Path>) -> Result<Self, FileError> {
-        let path = path.as_ref();
-        let (text, origin) = (KIND.read(path)?, path.display().to_string());
-        Self::from_toml(&text, &origin, path.parent())
-    }
-
-    /// Reads a joint file for questions at single angles and pressures: only what is asked is checked then, not that both muscles pull over the whole of its
-    /// ranges, as maps and tables need it.
-    ///
-    /// # Errors
-    /// As [`Joint::read`], but for the muscles' own limits.
-    pub fn read_for_points(path: impl AsRef<Path>) -> Result<Self, FileError> {
-        let path = path.as_ref();
-        let (text, origin) = (KIND.read(path)?, path.display().to_string());
-        Self::parsed(&text, &origin, path.parent(), check)
+    pub fn read<T>(
+        path: &Path,
+        checks: Checks,
+        more: impl FnOnce(&Settings<'_>) -> Result<T, FileError>,
+    ) -> Result<(Self, T), FileError> {
+        Self::from_toml(&KIND.read(path)?, &path.display().to_string(), path.parent(), checks, more)
     }
 
     /// Reads a joint from TOML text; `origin` is what messages call the text, usually a file name, and `folder` is where the muscle files lie, if
     /// not in the current one.
     ///
     /// ```
-    /// use bulge_sweep::{JOINT_EXAMPLE, Joint};
-    /// let joint = Joint::from_toml(JOINT_EXAMPLE, "joint.toml", None)?;
+    /// use bulge_design::joint::{Checks, JOINT_EXAMPLE, Joint};
+    /// let (joint, ()) = Joint::from_toml(JOINT_EXAMPLE, "joint.toml", None, Checks::Everywhere, |_| Ok(()))?;
     /// // More pressure in the agonist: a positive angle.
-    /// assert!(joint.angle(1.2e5, 1e5)? > 0.0);
+    /// assert!(joint.rest([1.2e5, 1e5], 0.0)?.angle_rad > 0.0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
     /// With the place and the cure, if the text is no valid joint, a muscle can't be read, or the angles leave the domain of a muscle.
-    pub fn from_toml(text: &str, origin: &str, folder: Option<&Path>) -> Result<Self, FileError> {
-        Self::parsed(text, origin, folder, |settings, joint| {
-            check(settings, joint)?;
-            joint.muscles.iter().try_for_each(|muscle| check_muscle(settings, joint, muscle))
-        })
-    }
-
-    pub(super) fn parsed(
+    pub fn from_toml<T>(
         text: &str,
         origin: &str,
         folder: Option<&Path>,
-        check: impl Fn(&Settings<'_>, &Self) -> Result<(), FileError>,
-    ) -> Result<Self, FileError> {
+        checks: Checks,
+        more: impl FnOnce(&Settings<'_>) -> Result<T, FileError>,
+    ) -> Result<(Self, T), FileError> {
         let document = Document::parse(KIND, text, origin)?;
         let settings = document.settings("the joint", TOP);
         settings.check_keys()?;
-        let muscles = muscles(&settings, folder)?;
         let linkage = linkage(&settings)?;
-        let table = settings.table("table", "`[table]`", TABLE)?;
-        let table = table.map(|table| table.check_keys().and_then(|()| wish::limits(&table))).transpose()?;
+        let muscles = muscles(&settings, &linkage, folder)?;
+        let more = more(&settings)?;
         let joint = Self {
             name: settings.text("name")?.unwrap_or("joint").to_owned(),
             linkage,
             muscles,
-            angle: range(&settings, "angle", &Scale::parameter(Parameter::BraidAngle))?,
-            pressure: range(&settings, "pressure", &Scale::pressure())?,
-            outputs: outputs(&settings)?,
-            table,
+            angle: range::<Angle>(&settings, "angle")?,
+            pressure: range::<Pressure>(&settings, "pressure")?,
         };
         check(&settings, &joint)?;
-        Ok(joint)
+        if checks == Checks::Everywhere {
+            joint.muscles.iter().try_for_each(|muscle| check_muscle(&settings, &joint, muscle))?;
+        }
+        Ok((joint, more))
     }
 }
 
-fn muscles(settings: &Settings<'_>, folder: Option<&Path>) -> Result<[JointMuscle; 2], FileError> {
+fn muscles(
+    settings: &Settings<'_>,
+    linkage: &Linkage,
+    folder: Option<&Path>,
+) -> Result<[JointMuscle; 2], FileError> {
     let [agonist, antagonist] = each(settings, "muscle", ["agonist", "antagonist"])?;
     let contractions = each(settings, "contraction", ["agonist_contraction", "antagonist_contraction"])?;
     let one = |side: Side, key: &'static str, contraction: &'static str| {
@@ -159,10 +149,12 @@ fn muscles(settings: &Settings<'_>, folder: Option<&Path>) -> Result<[JointMuscl
             let instead = format!("write such as `{contraction} = \"15 %\"`");
             return Err(settings.error(settings.value_span(contraction), what, instead));
         }
-        JointMuscle::new(side, muscle, value).map_err(|error| {
+        let refused = |error: &dyn std::fmt::Display| {
             let what = format!("the {}: {error}", side.name());
             settings.error(settings.value_span(key), what, "name another muscle, or correct its file")
-        })
+        };
+        let known = known(&muscle, &Catalogue::builtin()).map_err(|error| refused(&error))?;
+        JointMuscle::new(side, linkage.clone(), muscle, known, value).map_err(|error| refused(&error))
     };
     Ok([one(Side::Agonist, agonist, contractions[0])?, one(Side::Antagonist, antagonist, contractions[1])?])
 }
@@ -222,29 +214,30 @@ fn linkage(settings: &Settings<'_>) -> Result<Linkage, FileError> {
             return Err(settings.error(settings.key_span(key), what, "delete one of the two"));
         }
         (true, Some(_), None) | (false, _, _) if is_pulley => {
-            Drive::Pulley { radius: length(settings, "radius")? }
+            Linkage::Pulley { radius: positive::<Length>(settings, "radius")? }
         }
-        _ => Drive::Lever {
-            arm: length(settings, "arm")?,
-            base: length(settings, "base")?,
-            lever_angle: positive(settings, "lever_angle", settings.size::<Angle>("lever_angle")?)?,
+        _ => Linkage::Lever {
+            arm: positive::<Length>(settings, "arm")?,
+            base: positive::<Length>(settings, "base")?,
+            lever_angle: positive::<Angle>(settings, "lever_angle")?,
         },
     };
     if !is_four_bar {
-        return Ok(drive.linkage());
+        return Ok(drive);
     }
     let bar = FourBar {
-        ground: length(settings, "ground")?,
-        crank: length(settings, "crank")?,
-        coupler: length(settings, "coupler")?,
-        rocker: length(settings, "rocker")?,
-        rocker_angle: positive(settings, "rocker_angle", settings.size::<Angle>("rocker_angle")?)?,
+        ground: positive::<Length>(settings, "ground")?,
+        crank: positive::<Length>(settings, "crank")?,
+        coupler: positive::<Length>(settings, "coupler")?,
+        rocker: positive::<Length>(settings, "rocker")?,
+        rocker_angle: positive::<Angle>(settings, "rocker_angle")?,
         is_crossed: settings.flag("crossed")?.unwrap_or(false),
     };
-    Ok(Linkage::FourBar { bar, drive })
+    Ok(Linkage::FourBar { bar, drive: Box::new(drive) })
 }
 
-fn positive(settings: &Settings<'_>, key: &'static str, value: f64) -> Result<f64, FileError> {
+fn positive<Q: Quantity>(settings: &Settings<'_>, key: &'static str) -> Result<f64, FileError> {
+    let value = settings.size::<Q>(key)?;
     let stated = settings.get(key).ok_or_else(|| settings.missing(key))?;
     if value > 0.0 {
         return Ok(value);
@@ -252,59 +245,21 @@ fn positive(settings: &Settings<'_>, key: &'static str, value: f64) -> Result<f6
     Err(settings.unreadable(key, stated, format!("`{key}` is {value}, but must be > 0")))
 }
 
-fn length(settings: &Settings<'_>, key: &'static str) -> Result<f64, FileError> {
-    positive(settings, key, settings.size::<Length>(key)?)
-}
-
-fn range(settings: &Settings<'_>, key: &'static str, scale: &Scale) -> Result<[f64; 2], FileError> {
+fn range<Q: Quantity>(settings: &Settings<'_>, key: &'static str) -> Result<[f64; 2], FileError> {
     let value = settings.get(key).ok_or_else(|| settings.missing(key))?;
     let text =
         value.text().ok_or_else(|| settings.wrong_type(key, value, "text with two values and `..`"))?;
-    let refused = |what: String| Err(settings.unreadable(key, value, what));
-    match scale.range(text) {
-        Ok((low, Some(high))) if low < high => Ok([low, high]),
-        Ok((low, Some(high))) => {
-            refused(format!("a range must rise: this one goes from {low} to {high} in SI"))
-        }
-        Ok((_, None)) => refused("this range needs a value at its upper end".to_owned()),
-        Err(what) => refused(what),
+    let ends = units::parse_range::<Q>(text).map_err(|error| settings.unreadable(key, value, error))?;
+    let (low, high) = (ends.0.si(), ends.1.si());
+    if low < high {
+        return Ok([low, high]);
     }
-}
-
-fn outputs(settings: &Settings<'_>) -> Result<Vec<JointOutput>, FileError> {
-    let Some(value) = settings.get("outputs") else {
-        return Ok(vec![JointOutput::Torque, JointOutput::Stiffness]);
-    };
-    let refused = |item| settings.wrong_type("outputs", item, "a list of names in quotes");
-    let mut found = vec![];
-    for item in value.items().ok_or_else(|| refused(value))? {
-        let name = item.text().ok_or_else(|| refused(item))?;
-        let names = JointOutput::ALL.map(JointOutput::name);
-        let Some(output) = JointOutput::ALL.into_iter().find(|output| output.name() == name) else {
-            let instead = match nearest(name, names.into_iter()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("known are {}", names.join(", ")),
-            };
-            return Err(settings.error(
-                item.span(),
-                format!("unknown output `{}`", shortened(name)),
-                instead,
-            ));
-        };
-        if found.contains(&output) {
-            let what = format!("the output `{name}` is named twice");
-            return Err(settings.error(item.span(), what, "delete one of the two"));
-        }
-        found.push(output);
-    }
-    if found.is_empty() {
-        return Err(settings.unreadable("outputs", value, "at least one output is needed"));
-    }
-    Ok(found)
+    let what = format!("a range must rise: this one goes from {low} to {high} in SI");
+    Err(settings.unreadable(key, value, what))
 }
 
 /// Refuses ranges that leave the domain of the linkage.
-pub(super) fn check(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
+fn check(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
     if joint.pressure[0] <= 0.0 {
         let what = format!("the pressure {} Pa is not possible: it must be > 0", joint.pressure[0]);
         let instead = "write such as `pressure = \"0.5 bar..3 bar\"`";
@@ -331,11 +286,7 @@ fn check_bars(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
 
 /// A lever that is turned through its dead centre pulls the other way from there on.
 fn check_lever(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> {
-    let (Linkage::Lever { lever_angle, .. }
-    | Linkage::FourBar { drive: Drive::Lever { lever_angle, .. }, .. }) = joint.linkage
-    else {
-        return Ok(());
-    };
+    let Some([lever_angle, distance]) = joint.linkage.lever() else { return Ok(()) };
     let room = lever_angle.min(PI - lever_angle);
     if room <= 0.0 {
         let what =
@@ -358,7 +309,6 @@ fn check_lever(settings: &Settings<'_>, joint: &Joint) -> Result<(), FileError> 
         let instead = format!("keep `angle` between {:.4} deg and {:.4} deg", -at.abs(), at.abs());
         return Err(settings.error(settings.value_span("angle"), what, instead));
     }
-    let distance = joint.linkage.distance().unwrap_or(f64::INFINITY);
     for muscle in &joint.muscles {
         let length = muscle.muscle.length().si() * (1.0 - muscle.contraction);
         if length > distance {
@@ -380,8 +330,8 @@ fn check_muscle(settings: &Settings<'_>, joint: &Joint, muscle: &JointMuscle) ->
     let name = muscle.side.name();
     let refused =
         |what: String, instead: String| Err(settings.error(settings.value_span("angle"), what, instead));
-    let contraction = |angle: f64| muscle.contraction(&joint.linkage, angle);
-    let angle_at = |contraction| muscle.angle_at(&joint.linkage, contraction, joint.angle);
+    let contraction = |angle: f64| muscle.contraction(angle);
+    let angle_at = |contraction| muscle.angle_at(contraction, joint.angle);
     // The angle at which it is longest comes first.
     let mut ends = joint.angle;
     if muscle.side == Side::Antagonist {
@@ -400,7 +350,7 @@ fn check_muscle(settings: &Settings<'_>, joint: &Joint, muscle: &JointMuscle) ->
         return refused(what, instead);
     }
     for pressure in joint.pressure {
-        let limit = muscle.family.member(&[muscle.contraction, pressure]).and_then(|m| m.contraction_limit());
+        let limit = muscle.extended.contraction_limit(Pressure::pa(pressure), Approach::Auto);
         let limit = match limit {
             Ok(limit) => limit,
             Err(error) => return refused(format!("the {name} at {pressure} Pa: {error}"), OTHER.to_owned()),
@@ -417,7 +367,7 @@ fn check_muscle(settings: &Settings<'_>, joint: &Joint, muscle: &JointMuscle) ->
             return refused(what, instead);
         }
         for angle in joint.angle {
-            if let Err(error) = muscle.pull(&joint.linkage, angle, pressure) {
+            if let Err(error) = muscle.pull(angle, pressure) {
                 return refused(error.to_string(), OTHER.to_owned());
             }
         }

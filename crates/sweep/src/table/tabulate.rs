@@ -4,9 +4,8 @@ use bulge_table::{Table, TableError};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::certified::{BuildError, Built, Requirements, build};
+use super::{BuildError, Built, MuscleField, Requirements, build};
 use crate::family_error::FamilyError;
-use crate::muscle_field::MuscleField;
 use crate::output::Output;
 use crate::plan::{Plan, TableRequirements};
 

@@ -34,7 +34,7 @@ impl Side {
 }
 
 /// What turns the pull of both muscles into torques; the antagonist's is the mirror image of the agonist's.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum Linkage {
     /// Belts on a pulley: l = l(0) - r theta.
@@ -56,38 +56,8 @@ pub enum Linkage {
         /// Its links.
         bar: FourBar,
         /// How the muscle turns the crank.
-        drive: Drive,
+        drive: Box<Linkage>,
     },
-}
-
-/// How a muscle turns the crank of a four-bar linkage.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case", tag = "kind")]
-pub enum Drive {
-    /// As [`Linkage::Pulley`].
-    Pulley {
-        /// Its radius \[m\].
-        radius: f64,
-    },
-    /// As [`Linkage::Lever`], with the angle at the joint's angle 0.
-    Lever {
-        /// From the crank's pivot to the attachment on the crank \[m\].
-        arm: f64,
-        /// From the crank's pivot to the attachment on the base \[m\].
-        base: f64,
-        /// Angle between both at the joint's angle 0 \[rad\].
-        lever_angle: f64,
-    },
-}
-
-impl Drive {
-    /// The same on the joint itself.
-    pub(super) const fn linkage(self) -> Linkage {
-        match self {
-            Self::Pulley { radius } => Linkage::Pulley { radius },
-            Self::Lever { arm, base, lever_angle } => Linkage::Lever { arm, base, lever_angle },
-        }
-    }
 }
 
 /// What an angle of the joint means for a muscle.
@@ -127,11 +97,11 @@ impl Linkage {
                     arm_by_angle: (by_phi * by_phi - arm * base * cos) / distance,
                 }
             }
-            Self::FourBar { bar, drive } => {
+            Self::FourBar { bar, ref drive } => {
                 // The antagonist's links are the mirror image: chi(-theta) turned round. Outside the range that was checked nothing is pulled.
                 let still = Turn { angle: f64::NAN, ratio: f64::NAN, bend: f64::NAN };
                 let Turn { angle: turn, ratio, bend } = bar.turn(sign * angle).unwrap_or(still);
-                let there = drive.linkage().at(side, sign * turn);
+                let there = drive.at(side, sign * turn);
                 Reach {
                     shortening: there.shortening,
                     arm: there.arm * ratio,
@@ -141,12 +111,12 @@ impl Linkage {
         }
     }
 
-    /// Distance of the two attachments at the angle 0 \[m\]; none for a pulley.
-    pub(super) fn distance(&self) -> Option<f64> {
+    /// Angle between the attachments of a lever at the angle 0 \[rad\], and their distance \[m\]; none of a pulley.
+    pub(super) fn lever(&self) -> Option<[f64; 2]> {
         match *self {
             Self::Pulley { .. } => None,
-            Self::Lever { arm, base, lever_angle } => Some(distance(arm, base, lever_angle)),
-            Self::FourBar { drive, .. } => drive.linkage().distance(),
+            Self::Lever { arm, base, lever_angle } => Some([lever_angle, distance(arm, base, lever_angle)]),
+            Self::FourBar { ref drive, .. } => drive.lever(),
         }
     }
 }
@@ -166,7 +136,7 @@ mod tests {
         let (a, b, phi) = (0.04_f64, 0.15_f64, 1.3_f64);
         let lever = Linkage::Lever { arm: a, base: b, lever_angle: phi };
         let d = |phi: f64| (a * a + b * b - 2.0 * a * b * phi.cos()).sqrt();
-        assert!((lever.distance().unwrap() - d(phi)).abs() < 1e-15);
+        assert!((lever.lever().unwrap()[1] - d(phi)).abs() < 1e-15);
         for angle in [-0.9, -0.3, 0.0, 1e-6, 0.4, 1.1] {
             for (side, sign) in [(Side::Agonist, 1.0), (Side::Antagonist, -1.0)] {
                 let at = |angle: f64| lever.at(side, angle);
@@ -195,9 +165,9 @@ mod tests {
             rocker_angle: 2.0,
             is_crossed: false,
         };
-        let lever = Drive::Lever { arm: 0.03, base: 0.16, lever_angle: 1.4 };
-        for drive in [Drive::Pulley { radius: 0.02 }, lever] {
-            let linkage = Linkage::FourBar { bar, drive };
+        let lever = Linkage::Lever { arm: 0.03, base: 0.16, lever_angle: 1.4 };
+        for drive in [Linkage::Pulley { radius: 0.02 }, lever.clone()] {
+            let linkage = Linkage::FourBar { bar, drive: Box::new(drive) };
             for angle in [-0.35, -0.1, 0.0, 0.2, 0.38] {
                 for side in [Side::Agonist, Side::Antagonist] {
                     let at = |angle: f64| linkage.at(side, angle);
@@ -216,9 +186,9 @@ mod tests {
         }
         // A parallelogram is no gear.
         let bar = FourBar { coupler: 0.1, rocker: 0.04, ..bar };
-        let (geared, plain) = (Linkage::FourBar { bar, drive: lever }, lever.linkage());
+        let geared = Linkage::FourBar { bar, drive: Box::new(lever.clone()) };
         for angle in [-0.3, 0.25] {
-            let [one, other] = [geared, plain].map(|linkage| linkage.at(Side::Antagonist, angle));
+            let [one, other] = [&geared, &lever].map(|linkage| linkage.at(Side::Antagonist, angle));
             assert!((one.shortening - other.shortening).abs() < 1e-14 && (one.arm - other.arm).abs() < 1e-14);
         }
     }

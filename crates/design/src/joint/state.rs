@@ -1,19 +1,14 @@
 //! How a joint stands: under a load, at an angle, for a wanted angle and stiffness, and with its valves shut.
 
-use bulge_numerics::root::illinois;
+use bulge_fibre::Approach;
 use serde::Serialize;
+use std::cell::Cell;
 
-use super::{Joint, JointError, JointMuscle, Side};
-use crate::output::Output;
+use super::{Joint, JointError, Side, TOLERANCE, root};
+use crate::gas::{GasError, Inside, ShutGas, Surroundings, failed, pulling};
 
-/// Ambient pressure \[Pa\].
-const AMBIENT: f64 = bulge_fibre::AMBIENT_PRESSURE;
-/// Pressures are found to this part of their range, and angles to this part of theirs.
-const TOLERANCE: f64 = 1e-12;
 /// Steps in which a closed joint is followed to its rest.
 const STEPS: u32 = 64;
-/// Rounds in which the volume of a closed muscle follows its pressure.
-const ROUNDS: usize = 50;
 
 /// One muscle of a joint that stands.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -77,29 +72,7 @@ pub struct Closed<'a> {
     joint: &'a Joint,
     /// Where it was shut.
     angle: f64,
-    /// P V^n of each muscle.
-    constant: [f64; 2],
-    exponent: f64,
-    dead_m3: [f64; 2],
-}
-
-impl JointMuscle {
-    /// Outputs of the muscle alone at an angle and a pressure.
-    fn at<const N: usize>(
-        &self,
-        joint: &Joint,
-        angle: f64,
-        pressure: f64,
-        outputs: [Output; N],
-    ) -> Result<(f64, [f64; N]), JointError> {
-        let contraction = self.contraction(&joint.linkage, angle);
-        let mut values = [0.0; N];
-        let member = self.family.member(&[contraction, pressure]);
-        member
-            .and_then(|member| member.pulling(contraction, None, &outputs, &mut values))
-            .map_err(|error| self.failed(angle, pressure, error))?;
-        Ok((contraction, values))
-    }
+    gas: [ShutGas; 2],
 }
 
 impl Joint {
@@ -116,25 +89,23 @@ impl Joint {
         let mut stiffness = [0.0; 3];
         let mut sides = Vec::with_capacity(2);
         for (muscle, pressure) in self.muscles.iter().zip(pressures) {
-            let asked = [
-                Output::Force,
-                Output::Volume,
-                Output::Stiffness,
-                Output::StiffnessIsothermal,
-                Output::StiffnessAdiabatic,
+            let found = muscle.response(angle, pressure)?;
+            let reach = muscle.reach(angle);
+            let along = [
+                found.stiffness_n_per_m,
+                found.stiffness_isothermal_n_per_m,
+                found.stiffness_adiabatic_n_per_m,
             ];
-            let (contraction, [force, volume, open, slow, fast]) = muscle.at(self, angle, pressure, asked)?;
-            let reach = self.linkage.at(muscle.side, angle);
-            for (sum, along) in stiffness.iter_mut().zip([open, slow, fast]) {
-                *sum += along * reach.arm * reach.arm - force * reach.arm_by_angle;
+            for (sum, along) in stiffness.iter_mut().zip(along) {
+                *sum += along * reach.arm * reach.arm - found.force_n * reach.arm_by_angle;
             }
             sides.push(SideState {
                 side: muscle.side,
                 pressure_pa: pressure,
-                contraction,
-                force_n: force,
-                torque_nm: force * reach.arm,
-                volume_m3: volume,
+                contraction: muscle.contraction(angle),
+                force_n: found.force_n,
+                torque_nm: found.force_n * reach.arm,
+                volume_m3: found.volume_m3,
             });
         }
         let [open, slow, fast] = stiffness;
@@ -155,11 +126,12 @@ impl Joint {
     /// [`JointError::NoRest`] if it isn't in the range of angles, or [`JointError::Muscle`].
     pub fn rest(&self, pressures: [f64; 2], outside: f64) -> Result<JointState, JointError> {
         self.within(pressures)?;
-        let torque = |angle: f64| {
-            Ok(self.pulls(angle, pressures)?.map(|pull| pull.torque).iter().sum::<f64>() + outside)
-        };
-        let angle = self.balanced(torque, pressures)?;
-        self.stand(angle, pressures)
+        let torque = |angle: f64| Ok(self.moment(angle, pressures)? + outside);
+        let (range @ [low, high], torques) = self.ends(torque, pressures)?;
+        if !(torques[0] >= 0.0 && torques[1] <= 0.0) {
+            return Err(JointError::NoRest { pressures, torques, range });
+        }
+        self.stand(root(torque, range, TOLERANCE * (high - low).abs())?, pressures)
     }
 
     /// Refuses pressures outside the joint's range.
@@ -171,21 +143,6 @@ impl Joint {
             Some((side, pressure_pa)) => Err(JointError::Pressure { side, pressure_pa, range }),
             None => Ok(()),
         }
-    }
-
-    /// The angle at which a falling torque vanishes.
-    fn balanced(
-        &self,
-        torque: impl Fn(f64) -> Result<f64, JointError>,
-        pressures: [f64; 2],
-    ) -> Result<f64, JointError> {
-        let (range @ [low, high], torques) = self.ends(&torque, pressures)?;
-        if !(torques[0] >= 0.0 && torques[1] <= 0.0) {
-            return Err(JointError::NoRest { pressures, torques, range });
-        }
-        first(|failed| {
-            illinois(|angle| kept(torque(angle), failed), low, high, TOLERANCE * (high - low).abs())
-        })
     }
 
     /// The outside torque that holds the joint at an angle against both muscles, as S1 (section 4.2) estimates the force of an operator from the pressures,
@@ -204,11 +161,10 @@ impl Joint {
         let stand = self.stand(angle, pressures)?;
         let (mut by_pressure, mut by_force, mut by_learnt) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (muscle, pressure) in self.muscles.iter().zip(pressures) {
-            by_pressure =
-                by_pressure.hypot(muscle.by_pressure(&self.linkage, angle, pressure)? * sd.pressure_pa);
-            let arm = self.linkage.at(muscle.side, angle).arm;
+            by_pressure = by_pressure.hypot(muscle.by_pressure(angle, pressure)? * sd.pressure_pa);
+            let arm = muscle.reach(angle).arm;
             by_force = by_force.hypot(arm * sd.force_n);
-            by_learnt = by_learnt.hypot(arm * muscle.unsure(&self.linkage, angle, pressure)?);
+            by_learnt = by_learnt.hypot(arm * muscle.unsure(angle, pressure)?);
         }
         let by_angle = (stand.stiffness_nm_per_rad * sd.angle_rad).abs();
         let from = [by_pressure, by_angle, by_force, by_learnt];
@@ -219,10 +175,7 @@ impl Joint {
     /// The antagonist's pressure that holds an angle under an outside torque beside a pressure of the agonist; the end of the range where none does.
     fn partner(&self, angle: f64, agonist: f64, outside: f64) -> Result<f64, JointError> {
         let (low, high) = (self.least_pressure(&self.muscles[1], angle)?, self.pressure[1]);
-        let torque = |p: f64| {
-            Ok(self.pulls(angle, [agonist, p])?.map(|pull| pull.torque).iter().sum::<f64>() + outside)
-        };
-        first(|failed| illinois(|p| kept(torque(p), failed), low, high, TOLERANCE * high))
+        root(|p| Ok(self.moment(angle, [agonist, p])? + outside), [low, high], TOLERANCE * high)
     }
 
     /// The pressures of agonist and antagonist that hold an angle \[rad\] under an outside torque \[N m\] with a stiffness \[N m/rad\] at constant
@@ -240,10 +193,8 @@ impl Joint {
         if !(stiffness >= least - slack && stiffness <= most + slack) {
             return Err(JointError::Stiffness { angle, stiffness, range: [least, most] });
         }
-        let agonist = first(|failed| {
-            let missing = |p: f64| kept(stand(p).map(|stand| stand.stiffness_nm_per_rad - stiffness), failed);
-            illinois(missing, range[0], range[1], TOLERANCE * range[1])
-        })?;
+        let missing = |p: f64| Ok(stand(p)?.stiffness_nm_per_rad - stiffness);
+        let agonist = root(missing, range, TOLERANCE * range[1])?;
         stand(agonist)
     }
 
@@ -252,15 +203,11 @@ impl Joint {
         let high = self.pressure[1];
         let [one, other] = &self.muscles;
         let (low, lowest) = (self.least_pressure(one, angle)?, self.least_pressure(other, angle)?);
-        let own = |p: f64| Ok::<_, JointError>(one.pull(&self.linkage, angle, p)?.torque + outside);
-        let against = |p: f64| Ok::<_, JointError>(-other.pull(&self.linkage, angle, p)?.torque);
+        let own = |p: f64| Ok::<_, JointError>(one.pull(angle, p)?.torque + outside);
+        let against = |p: f64| Ok::<_, JointError>(-other.pull(angle, p)?.torque);
         // Rising in p: what the agonist must reach, and must not pass.
         let [weakest, strongest] = [against(lowest)?, against(high)?];
-        let reached = |torque: f64| {
-            first(|failed| {
-                illinois(|p| kept(own(p).map(|own| own - torque), failed), low, high, TOLERANCE * high)
-            })
-        };
+        let reached = |torque: f64| root(|p| Ok(own(p)? - torque), [low, high], TOLERANCE * high);
         if own(high)? < weakest || own(low)? > strongest {
             // Without the torque from outside: what holds the joint there is the negative.
             let held = [weakest - own(high)? + outside, strongest - own(low)? + outside];
@@ -284,11 +231,12 @@ impl Joint {
         dead_m3: [f64; 2],
     ) -> Result<Closed<'_>, JointError> {
         let stand = self.stand(angle, pressures)?;
-        let constant = |i: usize| {
-            let side = stand.sides[i];
-            (side.pressure_pa + AMBIENT) * (side.volume_m3 + dead_m3[i]).powf(exponent)
-        };
-        Ok(Closed { joint: self, angle, constant: [constant(0), constant(1)], exponent, dead_m3 })
+        let gas = [0, 1].map(|i: usize| {
+            let SideState { pressure_pa, volume_m3, .. } = stand.sides[i];
+            let surroundings = Surroundings { dead_volume_m3: dead_m3[i], ..Surroundings::STANDARD };
+            ShutGas { surroundings, exponent, pressure_pa, volume_m3 }
+        });
+        Ok(Closed { joint: self, angle, gas })
     }
 }
 
@@ -299,22 +247,26 @@ impl Closed<'_> {
     /// [`JointError::Empty`] where a muscle has no gauge pressure left, or [`JointError::Muscle`].
     pub fn pressures(&self, angle: f64) -> Result<[f64; 2], JointError> {
         let mut pressures = [0.0; 2];
-        for (i, muscle) in self.joint.muscles.iter().enumerate() {
-            // Of fibres that don't stretch the volume doesn't depend on the pressure: one round; of others little: a few.
-            let mut p = self.joint.pressure[1];
-            for _ in 0..ROUNDS {
-                let (_, [volume]) = muscle.at(self.joint, angle, p, [Output::Volume])?;
-                let next = self.constant[i] / (volume + self.dead_m3[i]).powf(self.exponent) - AMBIENT;
-                if next <= 0.0 {
-                    return Err(JointError::Empty { side: muscle.side, angle, pressure_pa: next });
+        for ((found, muscle), gas) in pressures.iter_mut().zip(&self.joint.muscles).zip(&self.gas) {
+            let contraction = muscle.contraction(angle);
+            let empty = Cell::new(None);
+            let inside = |p: f64| {
+                if p <= 0.0 {
+                    empty.set(empty.get().or(Some(p)));
                 }
-                let step = (next - p).abs();
-                p = next;
-                if step <= 1e-12 * (p + AMBIENT) {
-                    break;
-                }
-            }
-            pressures[i] = p;
+                let found = pulling(&muscle.extended, p, contraction, Approach::Auto);
+                let found = found.map_err(|error| failed(p, error))?;
+                Ok(Inside::of(p, &found, &gas.surroundings))
+            };
+            let state = gas.state(inside, self.joint.pressure[1]).map_err(|error| match error {
+                GasError::Muscle { pressure_pa, error } => muscle.failed(angle, pressure_pa, error),
+                _ => JointError::Empty {
+                    side: muscle.side,
+                    angle,
+                    pressure_pa: empty.get().unwrap_or_default(),
+                },
+            })?;
+            *found = state.pressure_pa;
         }
         Ok(pressures)
     }
@@ -324,10 +276,7 @@ impl Closed<'_> {
     /// # Errors
     /// As [`Joint::rest`] and [`Closed::pressures`].
     pub fn rest(&self, outside: f64) -> Result<JointState, JointError> {
-        let torque = |angle: f64| {
-            let pressures = self.pressures(angle)?;
-            Ok(self.joint.pulls(angle, pressures)?.map(|pull| pull.torque).iter().sum::<f64>() + outside)
-        };
+        let torque = |angle: f64| Ok(self.joint.moment(angle, self.pressures(angle)?)? + outside);
         // From where it was shut outwards: at an end of the range a muscle may have lost its pressure, and rest before.
         let start = self.angle;
         let begun = torque(start)?;
@@ -336,16 +285,14 @@ impl Closed<'_> {
         for k in 1..=STEPS {
             let next = start + (end - start) * f64::from(k) / f64::from(STEPS);
             if torque(next)? * begun <= 0.0 {
-                let [low, high] = [before.min(next), before.max(next)];
                 let tolerance = TOLERANCE * (self.joint.angle[1] - self.joint.angle[0]);
-                let angle =
-                    first(|failed| illinois(|angle| kept(torque(angle), failed), low, high, tolerance))?;
+                let angle = root(torque, [before.min(next), before.max(next)], tolerance)?;
                 return self.joint.stand(angle, self.pressures(angle)?);
             }
             before = next;
         }
-        let range = self.joint.angle;
-        Err(JointError::NoRest { pressures: self.pressures(start)?, torques: [begun, torque(end)?], range })
+        let (pressures, range) = (self.gas.map(|gas| gas.pressure_pa), self.joint.angle);
+        Err(JointError::NoRest { pressures, torques: [begun, torque(end)?], range })
     }
 
     /// -dM/dtheta with the valves shut and the dead volume \[N m/rad\]: a difference of fourth order.
@@ -366,37 +313,18 @@ impl Closed<'_> {
     /// As [`Closed::pressures`].
     pub fn torque(&self, angle: f64) -> Result<f64, JointError> {
         self.joint.inside(angle)?;
-        let pressures = self.pressures(angle)?;
-        Ok(self.joint.pulls(angle, pressures)?.map(|pull| pull.torque).iter().sum())
+        self.joint.moment(angle, self.pressures(angle)?)
     }
-}
-
-/// A value, or NaN and the first error kept.
-fn kept(value: Result<f64, JointError>, failed: &mut Option<JointError>) -> f64 {
-    value.unwrap_or_else(|error| {
-        failed.get_or_insert(error);
-        f64::NAN
-    })
-}
-
-/// What a search finds, or the first error on its way.
-fn first(search: impl FnOnce(&mut Option<JointError>) -> f64) -> Result<f64, JointError> {
-    let mut failed = None;
-    let found = search(&mut failed);
-    failed.map_or(Ok(found), Err)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::joint::Checks;
+    use crate::joint::tests::{LEVER, PULLEY, read as joint};
 
-    const PULLEY: &str = "muscle = \"ppam-2-r16\"\nkind = \"pulley\"\nradius = \"40 mm\"\ncontraction = \"20 %\"\nangle = \"-25 deg..25 deg\"\npressure = \"0.5 bar..3 bar\"\n";
-    const LEVER: &str = "muscle = \"ppam-2-r16\"\nkind = \"lever\"\narm = \"40 mm\"\nbase = \"150 mm\"\nlever_angle = \"80 deg\"\ncontraction = \"20 %\"\nangle = \"-25..20 deg\"\npressure = \"0.5..3 bar\"\n";
+    const AMBIENT: f64 = bulge_fibre::AMBIENT_PRESSURE;
     const BRAIDS: &str = "muscle = \"dmsp-20-250\"\nkind = \"pulley\"\nradius = \"30 mm\"\ncontraction = \"12 %\"\nangle = \"-20 deg..20 deg\"\npressure = \"1 bar..6 bar\"\n";
-
-    fn joint(text: &str) -> Joint {
-        Joint::from_toml(text, "j.toml", None).unwrap()
-    }
 
     /// Torque and stiffness as the other functions have them; the torque of a pulley is the difference of the forces times its radius.
     #[test]
@@ -423,7 +351,6 @@ mod tests {
         for text in [PULLEY, LEVER, BRAIDS] {
             let joint = joint(text);
             let free = joint.rest([2e5, 2.1e5], 0.0).unwrap();
-            assert!((free.angle_rad - joint.angle(2e5, 2.1e5).unwrap()).abs() < 1e-8);
             let loaded = joint.rest([2e5, 2.1e5], 1.5).unwrap();
             assert!((loaded.torque_nm + 1.5).abs() < 1e-7 && loaded.angle_rad > free.angle_rad);
             // A small load turns it by load over stiffness.
@@ -464,7 +391,7 @@ mod tests {
                 panic!("nothing holds 10 kN m")
             };
             // The strongest pull of one against the weakest of the other.
-            let [low, high] = joint.pressures();
+            let [low, high] = joint.pressure;
             let torque = |one: f64, other: f64| joint.torque(0.0, one, other).unwrap();
             assert!((least + torque(high, low)).abs() < 1e-6 && (most + torque(low, high)).abs() < 1e-6);
             assert!(matches!(joint.rest([2.0 * high, low], 0.0), Err(JointError::Pressure { .. })));
@@ -515,7 +442,8 @@ mod tests {
         let with = |c10: f64, offset: f64, width: &str| {
             std::fs::write(folder.path().join("m.toml"), muscle(c10, offset, width)).unwrap();
             let text = BRAIDS.replace("dmsp-20-250", "m.toml").replace("1 bar..6", "3 bar..6");
-            Joint::from_toml(&text, "j.toml", Some(folder.path())).unwrap()
+            let read = Joint::from_toml(&text, "j.toml", Some(folder.path()), Checks::Everywhere, |_| Ok(()));
+            read.unwrap().0
         };
         let none = Readings { pressure_pa: 0.0, angle_rad: 0.0, force_n: 0.0 };
         let (angle, pressures) = (0.1, [4e5, 3e5]);

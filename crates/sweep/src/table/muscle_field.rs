@@ -1,6 +1,6 @@
 //! A family of muscles as a field to tabulate: the contraction first, up to its limit.
 
-use crate::certified::{Field, FieldAxis, FieldOutput, NoValue};
+use super::{Field, FieldAxis, FieldOutput, NoValue};
 use crate::family::Family;
 use crate::family_error::FamilyError;
 use crate::output::Output;

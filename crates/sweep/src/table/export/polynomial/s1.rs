@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::fit::{Fitted, fit, value};
 use super::{BAR, MILLILITRES, PapersPolynomial, S1_LENGTH, fitted};
-use crate::export::ExportError;
+use crate::table::export::ExportError;
 
 /// S1 Table 1: f4, f3, f2, f1, f0.
 pub(super) const TABLE_1: [f64; 5] = [-2.0413, 171.623, -7178.93, 128_611.6, 146_099.0];

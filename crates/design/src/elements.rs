@@ -1,21 +1,20 @@
-//! The equilibrium of a muscle by membrane finite elements of revolution: `bulge shape --method membrane`.
+//! The equilibrium of a muscle by membrane finite elements of revolution.
 //!
 //! Fibres as threads on a line of quadratic elements, a bladder as a sheet of rubber on the same line. A pleated muscle of n fibres is one of
 //! revolution under the pressure p sin(2 pi/n)/(2 pi/n): the polygon's area.
 
 use bulge_fibre::{
-    ADIABATIC, AMBIENT_PRESSURE, Convergence, Given, MeridianPoint, Method, Problem, Response, Shape,
+    ADIABATIC, AMBIENT_PRESSURE, Approach, Convergence, FibreError, Given, MeridianPoint, Method, Problem,
+    Response, Shape,
 };
 use bulge_membrane::mesher::{Grading, revolved};
 use bulge_membrane::{
-    Cloth, Copies, Fitting, Inflation, Law, Load, Part, RingLayer, Sheet, Solver, State, Structure, Support,
-    Thread, Tolerance,
+    Cloth, Copies, Fitting, Inflation, Law, Load, MembraneError, Part, RingLayer, Sheet, Solver, State,
+    Structure, Support, Thread, Tolerance,
 };
 use bulge_model::MuscleWithEffects;
 use bulge_muscles::{Construction, Ends, Muscle, Pressure, Quantity};
 use std::f64::consts::{PI, TAU};
-
-use crate::failure::Failure;
 
 /// Elements at least.
 const ELEMENTS: usize = 200;
@@ -23,6 +22,20 @@ const ELEMENTS: usize = 200;
 const STEP: f64 = 0.025;
 /// Difference of contraction for the derivatives.
 const DIFFERENCE: f64 = 1e-4;
+
+/// Why elements give no shape of a muscle.
+#[derive(Debug, thiserror::Error)]
+pub enum ElementsError {
+    /// What elements of revolution can't say.
+    #[error("membrane elements of revolution know no {0}")]
+    Unknown(&'static str),
+    /// Of the meridian, which knows what is possible.
+    #[error(transparent)]
+    Equilibrium(#[from] FibreError),
+    /// Of the elements.
+    #[error("membrane elements: {0}")]
+    Elements(#[from] MembraneError),
+}
 
 /// What the elements are made from.
 struct Elements {
@@ -38,19 +51,21 @@ struct Elements {
     every: usize,
 }
 
-/// The equilibrium of a muscle without other shape effects than those of its kind, ends, fibres and bladder.
-pub(crate) fn shape(
-    problem: &Problem,
+/// The equilibrium of a muscle without other shape effects than those of its kind, ends, fibres and bladder, at a gauge pressure, with this many points of the
+/// meridian.
+///
+/// # Errors
+/// [`ElementsError`].
+pub fn shape(
     extended: &MuscleWithEffects,
     pressure: Pressure,
     given: Given,
     points: usize,
-) -> Result<Shape, Failure> {
+) -> Result<Shape, ElementsError> {
     let muscle = extended.muscle();
     check(muscle, extended)?;
     // The meridian knows what is possible; of a force or a volume it also tells where they are, corrected below.
-    let near = problem.solve(given, bulge_fibre::Approach::Auto);
-    let near = near.map_err(crate::arguments::about(muscle, pressure))?.contraction;
+    let near = Problem::new(muscle, pressure)?.solve(given, Approach::Auto)?.contraction;
     let mut elements = Elements::new(muscle, pressure, points)?;
     let contraction = match given {
         Given::Contraction(contraction) => contraction,
@@ -73,14 +88,8 @@ pub(crate) fn shape(
     Ok(elements.drawn(contraction, &state, slopes, pressure.si()))
 }
 
-/// What elements of revolution can't say.
-fn check(muscle: &Muscle, extended: &MuscleWithEffects) -> Result<(), Failure> {
-    let refused = |what: &str| {
-        let what = format!(
-            "membrane elements of revolution know no {what}: leave the method out, or write a case for `bulge membrane`"
-        );
-        Err(Failure::Value { option: "--method", what })
-    };
+fn check(muscle: &Muscle, extended: &MuscleWithEffects) -> Result<(), ElementsError> {
+    let refused = |what| Err(ElementsError::Unknown(what));
     if extended.adds_force() || !extended.used().is_empty() {
         return refused("effects");
     }
@@ -96,10 +105,6 @@ fn check(muscle: &Muscle, extended: &MuscleWithEffects) -> Result<(), Failure> {
         Construction::Braided(_) if muscle.gas_wall().is_some() => refused("gas inside a thick wall"),
         _ => Ok(()),
     }
-}
-
-fn failed(error: impl std::fmt::Display) -> Failure {
-    Failure::NotConverged(format!("membrane elements: {error}; leave `--method membrane` out"))
 }
 
 /// Slope of the meridian at a node, by the parabola of its element; where two meet, the mean of theirs.
@@ -118,7 +123,7 @@ fn slope(places: &[[f64; 3]], node: usize) -> f64 {
 }
 
 impl Elements {
-    fn new(muscle: &Muscle, pressure: Pressure, points: usize) -> Result<Self, Failure> {
+    fn new(muscle: &Muscle, pressure: Pressure, points: usize) -> Result<Self, ElementsError> {
         let (length, radius) = (muscle.length().si(), muscle.end_radius().si());
         let fibres = muscle.fibres().map(f64::from);
         let (angle, share) = match muscle.construction() {
@@ -143,8 +148,8 @@ impl Elements {
         let ends = [("first", 0), ("last", 1)];
         let supports = ends.map(|(group, fitting)| (group.to_owned(), Support::Fitting { fitting }));
         let parts = [("wall".to_owned(), Part::Revolved { layers })];
-        let structure = Structure::new(&mesh, &parts, &supports, &[Fitting::Placed; 2]).map_err(failed)?;
-        let solver = Solver::new(structure, Copies::ONE, Tolerance::default()).map_err(failed)?;
+        let structure = Structure::new(&mesh, &parts, &supports, &[Fitting::Placed; 2])?;
+        let solver = Solver::new(structure, Copies::ONE, Tolerance::default())?;
         let pressure = pressure.si() * share;
         Ok(Self { solver, pressure, share, length, radius, sine: angle.sin(), threads, every })
     }
@@ -155,7 +160,7 @@ impl Elements {
     }
 
     /// From rest to a contraction in small steps.
-    fn at(&mut self, contraction: f64) -> Result<State, Failure> {
+    fn at(&mut self, contraction: f64) -> Result<State, ElementsError> {
         let mut state = self.solver.at_rest();
         let mut before = Load { inflation: Inflation::Pressure(0.0), fittings: vec![0.0; 2] };
         let first = contraction.min(STEP);
@@ -165,26 +170,25 @@ impl Elements {
         }
         for step in steps {
             let load = self.load(step);
-            state = self.solver.follow(&before, &state, &load, |_, _| ()).map_err(failed)?;
+            state = self.solver.follow(&before, &state, &load, |_, _| ())?;
             before = load;
         }
         Ok(state)
     }
 
     /// dF/dl, dV/dl and dF/dp (for gas enclosed) about a state.
-    fn slopes(&mut self, contraction: f64, state: &State) -> Result<[f64; 3], Failure> {
+    fn slopes(&mut self, contraction: f64, state: &State) -> Result<[f64; 3], ElementsError> {
         let mut ends = Vec::new();
         for sign in [-1.0, 1.0] {
             let load = self.load(contraction + sign * DIFFERENCE);
-            ends.push(self.solver.follow(&self.load(contraction), state, &load, |_, _| ()).map_err(failed)?);
+            ends.push(self.solver.follow(&self.load(contraction), state, &load, |_, _| ())?);
         }
         let over = -1.0 / (2.0 * DIFFERENCE * self.length);
         let slope = |of: &dyn Fn(&State) -> f64| over * (of(&ends[1]) - of(&ends[0]));
         let mut stiffer = self.load(contraction);
         let more = 1e-4 * self.pressure;
         stiffer.inflation = Inflation::Pressure(self.pressure + more);
-        let pressed =
-            self.solver.follow(&self.load(contraction), state, &stiffer, |_, _| ()).map_err(failed)?;
+        let pressed = self.solver.follow(&self.load(contraction), state, &stiffer, |_, _| ())?;
         Ok([slope(&|s| s.forces[1]), slope(&|s| s.volume), (pressed.volume - state.volume) / more])
     }
 
