@@ -1,7 +1,8 @@
 //! The equilibrium of a muscle by membrane finite elements of revolution: `bulge shape --method membrane`.
 //!
-//! Fibres as threads on a line of quadratic elements, a bladder as a sheet of rubber on the same line. A pleated muscle of n fibres is one of
-//! revolution under the pressure p sin(2 pi/n)/(2 pi/n): the polygon's area.
+//! Fibres are threads on a line of quadratic elements, a bladder is a sheet of rubber on the same line. A
+//! pleated muscle of n fibres is treated as one of revolution under the pressure p sin(2 pi/n)/(2 pi/n), the
+//! ratio of the area of the polygon to that of the circle.
 
 use bulge_fibre::{
     ADIABATIC, AMBIENT_PRESSURE, Convergence, Given, MeridianPoint, Method, Problem, Response, Shape,
@@ -17,28 +18,28 @@ use std::f64::consts::{PI, TAU};
 
 use crate::failure::Failure;
 
-/// Elements at least.
+/// Fewest elements.
 const ELEMENTS: usize = 200;
-/// Steps of contraction on the way: a long braid has more than one equilibrium, and small steps keep to the first.
+/// Step of contraction: a long braid has more than one equilibrium, and small steps stay on the first branch.
 const STEP: f64 = 0.025;
-/// Difference of contraction for the derivatives.
+/// Difference of contraction for the derivatives by central differences.
 const DIFFERENCE: f64 = 1e-4;
 
-/// What the elements are made from.
+/// The finite-element model.
 struct Elements {
     solver: Solver,
-    /// Effective pressure \[Pa\], and the share of the circle that carries it.
+    /// Effective pressure \[Pa\], and the ratio of the polygon's area to that of the circle.
     pressure: f64,
     share: f64,
     length: f64,
     radius: f64,
-    /// sin(alpha0), threads, and the mesh's nodes per point of the meridian.
+    /// sin(alpha0), number of threads, and nodes of the mesh per point of the meridian.
     sine: f64,
     threads: f64,
     every: usize,
 }
 
-/// The equilibrium of a muscle without other shape effects than those of its kind, ends, fibres and bladder.
+/// The equilibrium of a muscle whose shape depends on nothing but its construction, ends, fibres and bladder.
 pub(crate) fn shape(
     problem: &Problem,
     extended: &MuscleWithEffects,
@@ -48,7 +49,8 @@ pub(crate) fn shape(
 ) -> Result<Shape, Failure> {
     let muscle = extended.muscle();
     check(muscle, extended)?;
-    // The meridian knows what is possible; of a force or a volume it also tells where they are, corrected below.
+    // The meridian solver rejects impossible states. For a given force or volume it also gives a first
+    // contraction, which is corrected below.
     let near = problem.solve(given, bulge_fibre::Approach::Auto);
     let near = near.map_err(crate::arguments::about(muscle, pressure))?.contraction;
     let mut elements = Elements::new(muscle, pressure, points)?;
@@ -59,7 +61,7 @@ pub(crate) fn shape(
     };
     let mut state = elements.at(contraction)?;
     let mut slopes = elements.slopes(contraction, &state)?;
-    // The two solutions are so close that one step of Newton's method is enough.
+    // The two solutions are so close that one Newton step suffices.
     let off = match given {
         Given::Force(force) => (force - state.forces[1]) / (-elements.length * slopes[0]),
         Given::Volume(volume) => (volume - state.volume) / (-elements.length * slopes[1]),
@@ -73,7 +75,7 @@ pub(crate) fn shape(
     Ok(elements.drawn(contraction, &state, slopes, pressure.si()))
 }
 
-/// What elements of revolution can't say.
+/// Rejects what elements of revolution can't represent.
 fn check(muscle: &Muscle, extended: &MuscleWithEffects) -> Result<(), Failure> {
     let refused = |what: &str| {
         let what = format!(
@@ -102,7 +104,8 @@ fn failed(error: impl std::fmt::Display) -> Failure {
     Failure::NotConverged(format!("membrane elements: {error}; leave `--method membrane` out"))
 }
 
-/// Slope of the meridian at a node, by the parabola of its element; where two meet, the mean of theirs.
+/// Slope of the meridian at a node, from the parabola of its element; between two elements the mean of both
+/// slopes.
 fn slope(places: &[[f64; 3]], node: usize) -> f64 {
     let of = |element: usize, xi: f64| {
         let [a, m, b] = [0, 1, 2].map(|k| places[2 * element + k]);
@@ -136,7 +139,7 @@ impl Elements {
             let sheet = Sheet { cloth: Cloth::Isotropic(law), wrinkles: false, residual: 0.0 };
             layers.push(RingLayer::Sheet { sheet, fullness: 1.0 });
         }
-        // As many nodes as points, or a multiple.
+        // The number of elements makes every point of the meridian a node.
         let halves = points.div_ceil(2).max(2) - usize::from(points % 2 == 1);
         let every = ELEMENTS.div_ceil(halves);
         let mesh = revolved(|t| [radius, length * t], halves * every, true, Grading::Ends(3.0));
@@ -154,7 +157,7 @@ impl Elements {
         Load { inflation: Inflation::Pressure(self.pressure), fittings }
     }
 
-    /// From rest to a contraction in small steps.
+    /// Follows the equilibrium from rest to a contraction in small steps.
     fn at(&mut self, contraction: f64) -> Result<State, Failure> {
         let mut state = self.solver.at_rest();
         let mut before = Load { inflation: Inflation::Pressure(0.0), fittings: vec![0.0; 2] };
@@ -171,7 +174,7 @@ impl Elements {
         Ok(state)
     }
 
-    /// dF/dl, dV/dl and dF/dp (for gas enclosed) about a state.
+    /// dF/dl, dV/dl and dV/dp at a state (the last one for enclosed gas).
     fn slopes(&mut self, contraction: f64, state: &State) -> Result<[f64; 3], Failure> {
         let mut ends = Vec::new();
         for sign in [-1.0, 1.0] {
@@ -212,13 +215,13 @@ impl Elements {
                 fibre_tension_n: mean(&|e| threads[e].tension),
                 fibre_strain: strain,
                 membrane_force_n_per_m: carried / slope.cos() / (TAU * x),
-                // The material keeps its azimuth, and the mesh is the muscle at rest: a tube.
+                // The material keeps its azimuth, and the mesh is the muscle at rest, a tube.
                 fibre_length_m: (z - fields.displacements[node][2]) / cosine,
                 turn_rad: (z - fields.displacements[node][2]) * self.sine / (cosine * self.radius),
             }
         };
         let meridian: Vec<MeridianPoint> = (0..=last).step_by(self.every).map(point).collect();
-        // In the middle of every element N cos(psi) = F + p A.
+        // Equilibrium in the middle of every element: N cos(psi) = F + p A.
         for (e, thread) in threads.iter().enumerate() {
             let at = point(2 * e + 1);
             let sheet = rubber.map_or(0.0, |sheet| sheet[e].force[0] * TAU * at.r_m);
@@ -228,12 +231,12 @@ impl Elements {
             departure = departure.max((net * at.slope_rad.cos() - carried).abs() / scale);
         }
         let [stiffness, volume_slope, swelling] = slopes;
-        // The gas's pressure falls as the volume grows: dp/dl = -g p_abs dV/dl/(V + g p_abs dV/dp).
+        // The pressure of enclosed gas falls as the volume grows: dp/dl = -g p_abs dV/dl/(V + g p_abs dV/dp).
         let enclosed = |exponent: f64| {
             let absolute = exponent * (pressure + AMBIENT_PRESSURE);
             let (v, dv, swelling) =
                 (self.share * state.volume, self.share * volume_slope, self.share * swelling * self.share);
-            // dF/dp = -dV/dl at constant length (Maxwell), of the polygon's volume.
+            // dF/dp = -dV/dl at constant length (Maxwell), for the volume of the polygon.
             stiffness + dv * absolute * dv / (v + absolute * swelling)
         };
         let largest = meridian.iter().fold(0.0_f64, |a, at| a.max(at.r_m));
