@@ -25,7 +25,7 @@ const NOTHING: f64 = 1e-9;
 /// One form of an effect.
 #[derive(Debug, Clone)]
 pub(crate) struct Sensitivity {
-    /// Index of the effect in [`Screened::effects`].
+    /// Index of the effect in [`Sensitivities::effects`].
     pub(crate) effect: usize,
     /// All parameters of the effect (of one specimen), with the sizes at `off`.
     pub(crate) values: Vec<f64>,
