@@ -110,6 +110,7 @@ fn step_with_errors<D: Real, const N: usize>(
             (a[10], &k11),
         ],
     ));
+    // Stages 2 to 5 have no weight in the solution and in both error estimates.
     let used = [(0, k1), (5, &k6), (6, &k7), (7, &k8), (8, &k9), (9, &k10), (10, &k11), (11, &k12)];
     let new = combine(y, h, used.map(|(i, k)| (B[i], k)));
     let estimate = |weights: &[f64; 12]| -> [f64; N] {

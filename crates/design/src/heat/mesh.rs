@@ -99,6 +99,7 @@ impl Mesh {
         let (tube, n) = (&problem.tube, problem.numerics.cells);
         let (length, mouth) = (tube.length_m, problem.pipe.map_or(0.0, |pipe| pipe.length_m));
         let pipe_cells = problem.pipe.map_or(0, |_| nearest(n as f64 * mouth / length).clamp(1, n - 1));
+        // The mouth of the pipe lies on a face, so cells before and behind it differ in length.
         let before = if pipe_cells > 0 { mouth / pipe_cells as f64 } else { 0.0 };
         let beyond = (length - mouth) / (n - pipe_cells) as f64;
         let dx: Vec<f64> = (0..n).map(|i| if i < pipe_cells { before } else { beyond }).collect();

@@ -146,11 +146,13 @@ pub(crate) fn averaged_data(
         }
     };
     let at_means = whole(&averaged.record)?;
+    // Only checks that the model has a state at every set point.
     whole(&setpoints(&averaged.record))?;
     let forces = averaged.forces(&analysis.record, &base.force, &at_means.force);
     let record = averaged.record.clone().with_force(forces);
     let noise = analysis.noise;
     let slopes = at_means.by_pressure.iter().zip(&at_means.by_contraction);
+    // Errors of pressure and contraction act through the slopes of the force and average out within a mean.
     let input_variances: Vec<f64> = slopes
         .zip(averaged.counts())
         .enumerate()

@@ -126,6 +126,7 @@ impl Context<'_> {
             .filter(|h| Some(h.effects[0]) != own)
             .map(|h| {
                 let separation = plain.separation(&without.linear, h.effects[0]) / scatter.sqrt();
+                // Only rivals close to the best one or to this effect are fitted, and at most `MOST` of them.
                 let near = (h.log_evidence > best - FITTED * scatter || separation < RULE.separation)
                     && fitted < MOST;
                 fitted += usize::from(near);
@@ -141,6 +142,7 @@ impl Context<'_> {
                 let tried =
                     near.then(|| known.cloned().unwrap_or_else(|| beside.fitted(base, without, hypothesis)));
                 let fit = tried.as_ref().and_then(|tried| tried.confirmed.as_ref());
+                // If the rival has a form error, the separation takes its directions into account as well.
                 let own = fit.filter(|fit| fit.form.log_evidence > 0.0);
                 let own = own.map_or(Vec::new(), |fit| {
                     let known = Context { kin: Some(&fit.form.kin), ..*self };

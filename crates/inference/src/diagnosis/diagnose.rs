@@ -237,6 +237,7 @@ fn concluded(
     let progress = &options.progress;
     progress.at(0.6, "rivals");
     let mut judged = classes(context, model, &search);
+    // The rivals may show that an effect can be dropped or swapped; the classes are then judged again.
     for _ in 0..MOST_CHANGES {
         let last = &search.stages[search.stages.len() - 1];
         let better = judged.iter().enumerate().find_map(|(place, j)| {

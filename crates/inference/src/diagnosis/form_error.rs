@@ -159,6 +159,7 @@ impl Columns {
         };
         let mut sds = vec![[0.0; 4]; bendings.len()];
         let mut best = (0.0, 0.0, vec![0.0; bendings.len()]);
+        // Coordinate ascent, one standard deviation at a time, in at most `ROUNDS` rounds.
         for _ in 0..ROUNDS {
             let before = sds.clone();
             for (effect, bending) in bendings.iter().enumerate() {
@@ -181,6 +182,7 @@ impl Columns {
                 break;
             }
         }
+        // Raises each standard deviation as long as the evidence stays within `AS_LIKELY` of the best.
         if to_draw {
             let likeliest = best.0;
             for (effect, bending) in bendings.iter().enumerate() {
@@ -228,6 +230,7 @@ impl FormError {
             lengths.push([length, norm(&bending.change)]);
             for (kind, column) in &bending.columns {
                 let mut seen = whiten(column);
+                // A column of kind `Kin` is scaled to the length of the effect's own change.
                 let scale =
                     if *kind == Kind::Kin { length / norm(&seen).max(f64::MIN_POSITIVE) } else { 1.0 };
                 for value in &mut seen {

@@ -175,6 +175,7 @@ pub(crate) fn ways_to_reversals(record: &Record) -> [Vec<f64>; 3] {
     let mut begun = Vec::with_capacity(moments.len());
     let (mut way, mut direction, mut first) = (1.0, 0.0, 0.0);
     for (row, moment) in moments.iter().enumerate() {
+        // A sweep begins as if its last reversal were a whole range away.
         if moment.begins {
             (way, direction, first) = (1.0, moment.branch(), 0.0);
         } else {
@@ -192,6 +193,7 @@ pub(crate) fn ways_to_reversals(record: &Record) -> [Vec<f64>; 3] {
     }
     let mut next = vec![0.0; moments.len()];
     let (mut way, mut direction) = (1.0, 0.0);
+    // The distance to the next reversal, found in the same way backwards.
     for row in (0..moments.len()).rev() {
         let branch = moments[row].branch();
         if branch * direction < 0.0 {

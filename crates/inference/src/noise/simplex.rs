@@ -57,10 +57,12 @@ pub(crate) fn minimise(
         let nearer = along(-0.5);
         let (point, value, left) = at(outward);
         rest = left;
+        // The reflected point replaces the worst corner if it is better than the second worst.
         if value < corners[last - usize::from(last > 1)].1 && value >= corners[0].1 {
             corners[last] = (point, value);
             continue;
         }
+        // Expansion if the reflection is the best point, else contraction outside or inside the simplex.
         let (tried, other, left) = at(if value < corners[0].1 {
             further
         } else if value < corners[last].1 {
@@ -74,6 +76,7 @@ pub(crate) fn minimise(
         } else if value < corners[last].1 {
             corners[last] = (point, value);
         } else {
+            // Nothing helped: the simplex shrinks towards its best corner.
             for i in 1..corners.len() {
                 let half = corners[0].0.iter().zip(&corners[i].0).map(|(best, x)| 0.5 * (best + x)).collect();
                 let (point, value, left) = at(half);

@@ -173,6 +173,7 @@ fn pulled(
             }
         }
         let record = Record::new(&data, l0);
+        // Rows without equilibrium, or in which the muscle would push.
         let bad: Vec<usize> = match model.evaluate(&record, theta, &Wanted::default()) {
             Ok(Prediction { force, .. }) => {
                 let bad: Vec<usize> = (0..force.len()).filter(|row| force[*row] <= 0.0).collect();
@@ -192,6 +193,7 @@ fn pulled(
                 rows
             }
         };
+        // A static map can drop single rows; the runs of a path are shortened instead.
         if protocol.is_static() {
             let places: Vec<usize> = (0..kept.len()).filter(|row| kept[*row]).collect();
             for row in bad {

@@ -343,6 +343,7 @@ impl<'a, P: Residuals> Search<'a, P> {
             if trial.theta == self.theta {
                 return Progress::Stuck;
             }
+            // If the model can't be evaluated there, a shorter step may still succeed.
             let Some(point) = self.at(trial.theta.clone()) else {
                 if trial.predicted < self.options.least_decrease {
                     return Progress::Kink;

@@ -113,6 +113,7 @@ impl ActiveSet<'_> {
         loop {
             let free: Vec<usize> = (0..self.z.len()).filter(|j| self.held[*j].is_none()).collect();
             let target = self.free_minimum(&free);
+            // A released variable whose minimum lies outside again would cycle: it is held for good.
             if let Some((j, side)) = released
                 && let Some(place) = free.iter().position(|f| *f == j)
             {
@@ -126,6 +127,7 @@ impl ActiveSet<'_> {
                     continue;
                 }
             }
+            // Fraction of the way to its target at which a variable reaches its bound.
             let part = |j: usize, target: f64| {
                 let limit = if target < self.z[j] { self.limits.lower[j] } else { self.limits.upper[j] };
                 if target >= self.limits.lower[j] && target <= self.limits.upper[j] {
@@ -144,6 +146,7 @@ impl ActiveSet<'_> {
                 }
                 return;
             }
+            // All variables stop at the first bound on the way; those that reach it are held there.
             for (i, j) in free.iter().enumerate() {
                 if blocked[i] && parts[i] <= least {
                     let side = if target[i] < self.z[*j] { Side::Lower } else { Side::Upper };
